@@ -166,6 +166,7 @@ void run(MapBuildArguments options) {
                                  options.source, counted(kept, "keyframe")));
   const SE3 map_from_world = find_map_frame(options, source, mapper, posed.poses);
   mapper.update(posed.poses, map_from_world);
+  mapper.associate_detections();
   for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
   const MapStudy study = study_of(mapper.map(), {.robot_height_m = options.height_m});
   write_map_files(options.out, mapper.map(), study);

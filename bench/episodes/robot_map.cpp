@@ -113,6 +113,7 @@ RobotMap build_robot_map(const MapInput& input) {
   const std::vector<std::size_t> chosen = frames_for_map(input.frames, input.estimate);
   for (const std::size_t i : chosen) mapper.keep(input.frames.frame(i, input.noise));
   mapper.update(input.estimate, map.map_from_estimate);
+  mapper.associate_detections();
   map.grid = obstacle_grid(mapper.map(), {.robot_height_m = input.robot.height_m});
   if (std::ranges::count(map.grid.cells, kFreeCell) == 0)
     throw InputError("the map shows no free floor: its frames have no depth");

@@ -155,6 +155,7 @@ int run(const std::string& scene_file, const std::string& tour, const std::strin
              static_cast<double>(octree.memoryUsage()) * 1e-6);
   OccupancyGrid grid;
   fmt::print("grid: {:.1f} ms; ", time_ms([&] { grid = obstacle_grid(mapper.map()); }));
+  fmt::print("detections associated: {:.1f} ms; ", time_ms([&] { mapper.associate_detections(); }));
   fmt::print("objects: {:.1f} ms\n", time_ms([&] { find_objects(mapper.map()); }));
   plan_all(grid);
   return 0;

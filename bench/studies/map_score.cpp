@@ -70,7 +70,7 @@ ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scen
   ObjectScore score;
   for (const Instance& instance : scene.instances) {
     const Vector3d low = instance.min_m.cast<double>(), high = instance.max_m.cast<double>();
-    if (is_thing(instance.class_id) && (high - low).maxCoeff() >= least_m)
+    if (is_thing(instance.class_id))
       score.objects.push_back({.name = instance.name,
                                .class_id = instance.class_id,
                                .center_m = 0.5 * (low + high),
@@ -93,6 +93,8 @@ ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scen
       score.objects[t].found = true;
       used[f] = true;
     }
+  // A found object is right whatever the size of the true one: a voxel's side makes some larger.
+  std::erase_if(score.objects, [&](const TrueObject& o) { return o.size_m.maxCoeff() < least_m; });
   for (const TrueObject& object : score.objects) score.recall.add(object.found);
   for (std::size_t f = 0; f < found.size(); ++f)
     if ((found[f].max_m - found[f].min_m).maxCoeff() >= least_m) score.precision.add(used[f]);

@@ -53,8 +53,9 @@ struct TrueObject {
 };
 
 struct ObjectScore {
-  Share recall;     ///< true objects of at least the least size with one of the class within reach
-  Share precision;  ///< found objects of that size within reach of a true one of the class
+  Share recall;  ///< true objects of at least the least size with one of the class within reach
+  /// Found objects of that size within reach of a true one of the class, of any size.
+  Share precision;
   std::vector<TrueObject> objects;
 };
 

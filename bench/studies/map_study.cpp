@@ -72,7 +72,7 @@ std::optional<FloorFrame> floor_of(const OccupancyMapper& mapper,
     const TimedPose& pose = world_from_camera[i];
     const Grid2d<float>* depth_m = mapper.depth_of(pose.stamp_ns);
     if (depth_m == nullptr) continue;
-    const Grid2d<ClassId>& labels = *mapper.labels_of(pose.stamp_ns);
+    const Grid2d<ClassId>& labels = mapper.labels_of(pose.stamp_ns)->classes;
     cameras.push_back(pose.world_from_camera);
     for (int y = 0; y < depth_m->height(); y += kStep)
       for (int x = 0; x < depth_m->width(); x += kStep) {
@@ -91,6 +91,7 @@ MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Tra
   const DepthModel model{.resolution_m = config.resolution_m};
   MapScores scores;
   VoxelMap exact(config.resolution_m), true_poses(config.resolution_m);
+  DetectionAssociation association;
   std::vector<Vector3d> seeds;
   for (const Stamp stamp_ns : mapper.stamps()) {
     const TimedPose* pose = pose_at(truth, stamp_ns);
@@ -106,8 +107,10 @@ MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Tra
     const VoxelView told = look(*mapper.depth_of(stamp_ns), *mapper.labels_of(stamp_ns),
                                 mapper.thin_camera(), at, model);
     true_poses.replace(nullptr, &told);
+    association.add(told);
     ++scores.keyframes;
   }
+  true_poses.set_detected(association.objects(true_poses));
   const TrueSpace space(scene, config.resolution_m, seeds);
   const ObstacleGridConfig band{.floor_z_m = config.floor_z_m,
                                 .robot_height_m = config.robot_height_m};

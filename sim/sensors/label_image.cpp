@@ -34,6 +34,43 @@ SemanticImage boxes_image(const RenderedFrame& truth, std::vector<VisibleObject>
   return image;
 }
 
+/// Gives each visible object an entry of its own: equal distributions under different entries. If
+/// the palette is too small, the smallest objects stay under the entry of their class.
+/// @param image  of classes: entry c is class c
+void name_objects(SemanticImage& image, const Grid2d<InstanceId>& instances) {
+  constexpr std::size_t kMost = 256;
+  struct Object {
+    std::uint32_t pixels = 0;
+    ClassId class_id = kVoid;  ///< of its first pixel; pixels of another one are not of it
+    std::uint8_t entry = 0;    ///< 0: none of its own
+  };
+  std::vector<Object> objects;  // by instance
+  const auto object_at = [&](std::size_t pixel) -> Object* {
+    const InstanceId instance = instances.data()[pixel];
+    const ClassId class_id = image.index.data()[pixel];
+    if (instance == 0 || class_id == kVoid) return nullptr;
+    if (instance >= objects.size()) objects.resize(instance + 1U);
+    Object& object = objects[instance];
+    if (object.pixels == 0) object.class_id = class_id;
+    return object.class_id == class_id ? &object : nullptr;
+  };
+  for (std::size_t i = 0; i < image.index.size(); ++i)
+    if (Object* object = object_at(i)) ++object->pixels;
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (objects[i].pixels > 0) seen.push_back(i);
+  std::ranges::stable_sort(seen, std::ranges::greater(),
+                           [&](std::size_t i) { return objects[i].pixels; });
+  if (seen.size() > kMost - image.palette.size()) seen.resize(kMost - image.palette.size());
+  for (const std::size_t i : seen) {
+    objects[i].entry = static_cast<std::uint8_t>(image.palette.size());
+    image.palette.push_back(ClassDistribution(image.palette[objects[i].class_id]));
+  }
+  for (std::size_t i = 0; i < image.index.size(); ++i)
+    if (const Object* object = object_at(i); object && object->entry != 0)
+      image.index.data()[i] = object->entry;
+}
+
 /// Each pixel's class, or the class assigned to its instance; instances without one are void.
 SemanticImage exact_image(const RenderedFrame& truth, const std::vector<VisibleObject>& before,
                           const std::vector<VisibleObject>& after) {
@@ -52,6 +89,12 @@ SemanticImage exact_image(const RenderedFrame& truth, const std::vector<VisibleO
       image.index.data()[i] = given[instance];
   }
   return image;
+}
+
+/// Labels of pixels or boxes, an entry of the palette for each class.
+SemanticImage without_faults(const RenderedFrame& truth, LabelMode mode) {
+  return is_per_pixel(mode) ? SemanticImage{truth.classes, one_hot_palette()}
+                            : boxes_image(truth, visible_objects(truth));
 }
 
 SemanticImage detector_image(const RenderedFrame& truth, const std::vector<Detection>& found) {
@@ -90,8 +133,9 @@ void sort_for_painting(std::vector<VisibleObject>& objects) {
 
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode) {
   if (mode == LabelMode::kNone) return {};
-  if (is_per_pixel(mode)) return {truth.classes, one_hot_palette()};
-  return boxes_image(truth, visible_objects(truth));
+  SemanticImage image = without_faults(truth, mode);
+  if (is_per_pixel(mode)) name_objects(image, truth.instances);
+  return image;
 }
 
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const LabelConfig& config,
@@ -102,7 +146,7 @@ SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const Labe
   if (mode == LabelMode::kDetector) {
     image = detector_image(truth, detect(truth, config, world_from_camera, stream));
   } else if (noise.confusion == 0.0 && noise.swap == 0.0 && noise.dropout == 0.0) {
-    image = label_image(truth, mode);
+    image = without_faults(truth, mode);
   } else {
     const std::vector<VisibleObject> objects = visible_objects(truth);
     const std::vector<VisibleObject> faulty =
@@ -111,6 +155,7 @@ SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const Labe
                                       : exact_image(truth, objects, faulty);
   }
   erode(image.index, noise.erosion_px);
+  if (is_per_pixel(mode)) name_objects(image, truth.instances);
   return image;
 }
 

@@ -11,13 +11,13 @@
 namespace mh {
 
 /// The origin of a frame's labels. kExact: one-hot class per pixel, matching the color image: with
-/// a rolling shutter, labels are read out row by row, too (Shutter). kAnnotated: the same at a
-/// single instant, the stamp, as if a labeled mesh were rendered at the frame's pose (ScanNet's
-/// labels are made this way). kBoxes: the bounding box of the visible pixels of each instance of a
-/// COCO class is filled with its class; everything else is background. kDetector: those boxes as a
-/// network would draw them, see DetectorConfig. kNone: none. kRecorded: the labels of a recording;
-/// no simulated frame has them.
-/// is simulated has them.
+/// a rolling shutter, labels are read out row by row, too (Shutter). Each visible object is a
+/// detection of its own (an entry of the palette), as a perfect panoptic segmentation tells.
+/// kAnnotated: the same at a single instant, the stamp, as if a labeled mesh were rendered at the
+/// frame's pose (ScanNet's labels are made this way). kBoxes: the bounding box of the visible
+/// pixels of each instance of a COCO class is filled with its class; everything else is background.
+/// kDetector: those boxes as a network would draw them, see DetectorConfig. kNone: none. kRecorded:
+/// the labels of a recording; no simulated frame has them.
 enum class LabelMode { kNone, kExact, kAnnotated, kBoxes, kDetector, kRecorded };
 
 /// Whether each pixel has the class of the surface seen there, not that of a box.

@@ -19,8 +19,9 @@ struct Rgb8 {
 };
 
 /// Per-pixel class distributions, stored as a palette: pixel (x, y) has distribution
-/// palette[index(x, y)]. Exact labels need one entry per class, a detector one per detection. An
-/// empty index grid means that the frame has no labels.
+/// palette[index(x, y)]. Pixels of one entry belong together: a detector has an entry for each
+/// detection, exact labels one for each visible object, labels of a recording one for each class.
+/// An empty index grid means that the frame has no labels.
 struct SemanticImage {
   Grid2d<std::uint8_t> index;
   std::vector<ClassDistribution> palette;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -29,13 +30,6 @@ struct LabeledVoxel {
   std::uint32_t votes, all_votes;
 };
 
-std::uint64_t key_of(const Vector3i& index) {
-  std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    key = key << 21U | static_cast<std::uint64_t>(index[axis] + (1 << 20));
-  return key;
-}
-
 /// Sets that merge (union-find); the representative is the smallest member.
 class Groups {
  public:
@@ -55,26 +49,69 @@ class Groups {
   std::vector<std::size_t> parent_;
 };
 
+/// Half of a voxel's 26 neighbors, the others being their opposites: so each pair is met once.
+const std::vector<Vector3i>& forward_neighbors() {
+  static const std::vector<Vector3i> kAll = [] {
+    std::vector<Vector3i> all;
+    for (int z = 0; z <= 1; ++z)
+      for (int y = z == 0 ? 0 : -1; y <= 1; ++y)
+        for (int x = z == 0 && y == 0 ? 1 : -1; x <= 1; ++x) all.emplace_back(x, y, z);
+    return all;
+  }();
+  return kAll;
+}
+
 /// Voxels of one object, or of a part of one.
 struct Cluster {
   std::vector<std::size_t> voxels;
-  Vector3i low, high;  ///< both included
+  Vector3i low, high;                      ///< both included
+  std::set<DetectedObjects::Id> detected;  ///< which detected objects they are of
 };
 
-/// Voxels that touch, corners included.
-std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels) {
-  constexpr int reach = 1;
+using Detected = std::set<DetectedObjects::Id>;
+
+bool are_apart(const Detected& a, const Detected& b, const DetectedObjects& detected) {
+  return std::ranges::any_of(a, [&](DetectedObjects::Id i) {
+    return std::ranges::any_of(b, [&](DetectedObjects::Id j) { return detected.are_apart(i, j); });
+  });
+}
+
+/// Voxels that touch, corners included, unless they are of objects that are apart. Where three
+/// objects touch and not all may merge, those with the longest border do.
+std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels,
+                                 const DetectedObjects& detected) {
   std::unordered_map<std::uint64_t, std::size_t> at;  // only looked up, never walked
   at.reserve(voxels.size());
   for (std::size_t i = 0; i < voxels.size(); ++i) at.emplace(key_of(voxels[i].index), i);
   Groups groups(voxels.size());
+  std::vector<DetectedObjects::Id> ids;
+  for (const LabeledVoxel& voxel : voxels) ids.push_back(detected.at(voxel.index));
+  std::vector<std::pair<std::size_t, std::size_t>> borders;
   for (std::size_t i = 0; i < voxels.size(); ++i)
-    for (int z = 0; z <= reach; ++z)
-      for (int y = z == 0 ? 0 : -reach; y <= reach; ++y)
-        for (int x = z == 0 && y == 0 ? 1 : -reach; x <= reach; ++x)
-          if (const auto other = at.find(key_of(voxels[i].index + Vector3i(x, y, z)));
-              other != at.end())
-            groups.merge(i, other->second);
+    for (const Vector3i& neighbor : forward_neighbors()) {
+      const auto other = at.find(key_of(voxels[i].index + neighbor));
+      if (other == at.end()) continue;
+      if (ids[i] == ids[other->second])
+        groups.merge(i, other->second);
+      else
+        borders.emplace_back(i, other->second);
+    }
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> lengths;
+  for (const auto& [i, j] : borders) ++lengths[std::minmax(groups.of(i), groups.of(j))];
+  std::map<std::size_t, Detected> of_group;
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (ids[i] != 0) of_group[groups.of(i)].insert(ids[i]);
+  std::vector<std::pair<std::size_t, std::pair<std::size_t, std::size_t>>> longest;
+  for (const auto& [pair, length] : lengths) longest.emplace_back(length, pair);
+  std::ranges::stable_sort(longest, std::ranges::greater(), [](const auto& l) { return l.first; });
+  for (const auto& [length, pair] : longest) {
+    const std::size_t a = groups.of(pair.first), b = groups.of(pair.second);
+    if (a == b || are_apart(of_group[a], of_group[b], detected)) continue;
+    Detected both = of_group[a];
+    both.merge(of_group[b]);
+    groups.merge(a, b);
+    of_group[groups.of(a)] = std::move(both);
+  }
   std::map<std::size_t, Cluster> by_first;
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     Cluster& cluster = by_first[groups.of(i)];
@@ -82,6 +119,7 @@ std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels) {
     cluster.low = cluster.voxels.empty() ? v : cluster.low.cwiseMin(v).eval();
     cluster.high = cluster.voxels.empty() ? v : cluster.high.cwiseMax(v).eval();
     cluster.voxels.push_back(i);
+    if (ids[i] != 0) cluster.detected.insert(ids[i]);
   }
   std::vector<Cluster> clusters;
   for (auto& [first, cluster] : by_first) clusters.push_back(std::move(cluster));
@@ -104,12 +142,15 @@ void absorb(Cluster& into, const Cluster& part) {
   into.voxels.insert(into.voxels.end(), part.voxels.begin(), part.voxels.end());
   into.low = into.low.cwiseMin(part.low);
   into.high = into.high.cwiseMax(part.high);
+  into.detected.insert(part.detected.begin(), part.detected.end());
 }
 
-/// Whether a cluster is a fragment of a larger one: at most a quarter of it, and beside it or above
-/// or below it, where depth left a gap.
-bool is_fragment(const Cluster& small, const Cluster& large, int gap, int stacked_gap) {
+/// Whether a cluster is a fragment of a larger one: at most a quarter of it, not apart from it,
+/// and beside it or above or below it, where depth left a gap.
+bool is_fragment(const Cluster& small, const Cluster& large, const DetectedObjects& detected,
+                 int gap, int stacked_gap) {
   if (4 * small.voxels.size() > large.voxels.size()) return false;
+  if (are_apart(small.detected, large.detected, detected)) return false;
   const Vector3i apart =
       (small.low - large.high).cwiseMax(large.low - small.high).array() - 1;  // empty voxels
   if (apart.maxCoeff() <= gap) return true;
@@ -117,13 +158,14 @@ bool is_fragment(const Cluster& small, const Cluster& large, int gap, int stacke
 }
 
 /// Gives fragments to the largest cluster that they belong to.
-void merge_fragments(std::vector<Cluster>& clusters, int gap, int stacked_gap) {
+void merge_fragments(std::vector<Cluster>& clusters, const DetectedObjects& detected, int gap,
+                     int stacked_gap) {
   std::ranges::stable_sort(clusters, std::ranges::greater(),
                            [](const Cluster& c) { return c.voxels.size(); });
   std::vector<Cluster> merged;
   for (const Cluster& cluster : clusters) {
     const auto whole = std::ranges::find_if(merged, [&](const Cluster& large) {
-      return is_fragment(cluster, large, gap, stacked_gap);
+      return is_fragment(cluster, large, detected, gap, stacked_gap);
     });
     if (whole == merged.end())
       merged.push_back(cluster);
@@ -195,8 +237,9 @@ std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& co
   const int gap = static_cast<int>(std::lround(config.gap_m / r));
   std::vector<MapObject> objects;
   for (std::size_t id = 0; id < by_class.size(); ++id) {
-    std::vector<Cluster> clusters = clusters_of(by_class[id]);
-    merge_fragments(clusters, gap, static_cast<int>(std::lround(config.stacked_gap_m / r)));
+    std::vector<Cluster> clusters = clusters_of(by_class[id], map.detected());
+    merge_fragments(clusters, map.detected(), gap,
+                    static_cast<int>(std::lround(config.stacked_gap_m / r)));
     int number = 0;
     for (const Cluster& cluster : clusters) {
       if (cluster.voxels.size() < static_cast<std::size_t>(config.min_voxels)) continue;

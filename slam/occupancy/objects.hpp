@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// A thing in a map: voxels of one class that hang together.
+/// A thing in a map: voxels of one class that hang together and that its views showed as one.
 struct MapObject {
   std::string name;  ///< class and number, e.g. "chair 2"; unique in a map
   ClassId class_id = kVoid;
@@ -28,8 +28,9 @@ struct MapObject {
 
 struct ObjectsConfig {
   int min_voxels = 6;  ///< smaller clusters are noise of labels
-  /// Voxels of one class that touch hang together. A cluster of at most a quarter of another's
-  /// voxels is a fragment of it if the gap between their boxes is at most this,
+  /// Voxels of one class that touch hang together, unless they are of objects that are apart
+  /// (DetectedObjects). A cluster of at most a quarter of another's voxels, not apart from it, is a
+  /// fragment of it if the gap of their boxes is at most this,
   double gap_m = 0.10;
   /// or this where one is above the other: the legs below a seat, whose rim is thin.
   double stacked_gap_m = 0.25;

@@ -50,17 +50,21 @@ Grid2d<float> thin_depth(const Grid2d<float>& depth_m, const Camera& thin,
 }
 
 /// Empty if the frame has no labels.
-Grid2d<ClassId> thin_labels(const SemanticImage& semantics, const Camera& thin,
-                            const std::vector<std::size_t>& pixels) {
+PixelLabels thin_labels(const SemanticImage& semantics, const Camera& thin,
+                        const std::vector<std::size_t>& pixels) {
   if (semantics.index.empty()) return {};
   std::vector<ClassId> of_palette;
   for (const ClassDistribution& entry : semantics.palette) {
     const ClassId best = entry.most_probable();
     of_palette.push_back(best == kBackground ? kVoid : best);
   }
-  Grid2d<ClassId> small(thin.width_px, thin.height_px);
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (pixels[i] != kNoPixel) small.data()[i] = of_palette[semantics.index.data()[pixels[i]]];
+  PixelLabels small{{thin.width_px, thin.height_px}, {thin.width_px, thin.height_px}};
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (pixels[i] == kNoPixel) continue;
+    const std::uint8_t entry = semantics.index.data()[pixels[i]];
+    small.classes.data()[i] = of_palette[entry];
+    small.detections.data()[i] = entry;
+  }
   return small;
 }
 
@@ -123,6 +127,7 @@ SE3 OccupancyMapper::rounded(const SE3& map_from_camera) const {
 OccupancyUpdate OccupancyMapper::update(const Trajectory& world_from_camera,
                                         const SE3& map_from_world) {
   OccupancyUpdate update;
+  map_.set_detected({});
   auto pose = world_from_camera.begin();
   for (auto& [stamp_ns, kept] : kept_) {
     while (pose != world_from_camera.end() && pose->stamp_ns < stamp_ns) ++pose;
@@ -148,12 +153,18 @@ OccupancyUpdate OccupancyMapper::update(const Trajectory& world_from_camera,
   return update;
 }
 
+void OccupancyMapper::associate_detections() {
+  DetectionAssociation association;
+  for (const auto& [stamp_ns, kept] : kept_) association.add(kept.told);
+  map_.set_detected(association.objects(map_));
+}
+
 const Grid2d<float>* OccupancyMapper::depth_of(Stamp stamp_ns) const {
   const auto kept = kept_.find(stamp_ns);
   return kept == kept_.end() ? nullptr : &kept->second.depth_m;
 }
 
-const Grid2d<ClassId>* OccupancyMapper::labels_of(Stamp stamp_ns) const {
+const PixelLabels* OccupancyMapper::labels_of(Stamp stamp_ns) const {
   const auto kept = kept_.find(stamp_ns);
   return kept == kept_.end() ? nullptr : &kept->second.labels;
 }

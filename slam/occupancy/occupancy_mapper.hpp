@@ -43,12 +43,16 @@ class OccupancyMapper {
   /// @param map_from_world  the map's frame, z up
   OccupancyUpdate update(const Trajectory& world_from_camera, const SE3& map_from_world = {});
 
+  /// Notes in the map which objects its voxels are of, by the detections of all keyframes. To be
+  /// called after the last update(): the next one forgets it.
+  void associate_detections();
+
   const VoxelMap& map() const { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
   /// Depth of a keyframe thinned to stride_px and smoothed, and the camera that fits it; nullptr if
   /// unknown.
   const Grid2d<float>* depth_of(Stamp stamp_ns) const;
-  const Grid2d<ClassId>* labels_of(Stamp stamp_ns) const;
+  const PixelLabels* labels_of(Stamp stamp_ns) const;
   /// Of all kept keyframes, in order.
   std::vector<Stamp> stamps() const;
   const Camera& thin_camera() const { return camera_; }
@@ -56,7 +60,7 @@ class OccupancyMapper {
  private:
   struct Kept {
     Grid2d<float> depth_m;
-    Grid2d<ClassId> labels;
+    PixelLabels labels;
     std::optional<SE3> pose;  ///< rounded, at which it was told
     VoxelView told;
   };

@@ -62,10 +62,10 @@ void replace_block(VoxelTree& tree, const VoxelBlock& before, const VoxelBlock& 
   count(not_free, &VoxelNode::misses, -1);
   count(not_hit, &VoxelNode::hits, -1);
   if (votes_differ) {
-    for (const auto& [place, class_id] : after.votes)
-      tree.voxel(block, place).votes.change(class_id, 1);
-    for (const auto& [place, class_id] : before.votes)
-      tree.voxel(block, place).votes.change(class_id, -1);
+    for (const VoxelVote& vote : after.votes)
+      tree.voxel(block, vote.place).votes.change(vote.class_id, 1);
+    for (const VoxelVote& vote : before.votes)
+      tree.voxel(block, vote.place).votes.change(vote.class_id, -1);
   }
   if (is_any(not_free) || is_any(not_hit)) tree.drop_untold(after.index);
 }
@@ -117,6 +117,14 @@ void VoxelMap::replace(const VoxelView* before, const VoxelView* after) {
     if (take_old) ++o;
     if (take_new) ++n;
   }
+}
+
+void VoxelMap::set_detected(DetectedObjects objects) {
+  impl_->detected = std::move(objects);
+}
+
+const DetectedObjects& VoxelMap::detected() const {
+  return impl_->detected;
 }
 
 VoxelState VoxelMap::state_at(const Eigen::Vector3d& point_m) const {

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "slam/core/labels.hpp"
+#include "slam/occupancy/detected_objects.hpp"
 #include "slam/occupancy/voxel_view.hpp"
 
 namespace mh {
@@ -62,6 +63,10 @@ class VoxelMap {
   /// @param before  was added earlier; nullptr: nothing is taken back
   /// @param after   nullptr: nothing is added
   void replace(const VoxelView* before, const VoxelView* after);
+
+  /// Notes which objects its voxels are of; what replace() changes later does not change it.
+  void set_detected(DetectedObjects objects);
+  const DetectedObjects& detected() const;
 
   VoxelState state_at(const Eigen::Vector3d& point_m) const;
   /// Calls visit for every known voxel, in the octree's order.

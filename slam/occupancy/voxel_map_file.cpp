@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The counts that follow the tree in an .ot file, little-endian:
-//   the line "modelhouse voxel counts 1"
+//   the line "modelhouse voxel counts 2"
 //   u64  size of the content
-//   content: f64 resolution (m); for each block of 8 x 8 x 8 voxels with any known voxel:
+//   content: f64 resolution (m)
+//     u32       voxels of detected objects; for each, by place: 3 x i16 voxel, u16 object
+//     u32       pairs of objects that are apart; for each, ascending: 2 x u16
+//     (version 1 has neither)
+//   for each block of 8 x 8 x 8 voxels with any known voxel:
 //     3 x i16   index of the block
 //     8 x u64   known voxels, bit x + 8 y of word z
 //     for each of them, by place: hits, misses, number of votes; then class and views of each vote
@@ -28,11 +32,16 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie");
 
 constexpr std::string_view kTreeMagic = "# Octomap OcTree file";
-constexpr std::string_view kCountsMagic = "modelhouse voxel counts 1\n";
+constexpr std::string_view kCountsMagic = "modelhouse voxel counts 2\n",
+                           kFirstCountsMagic = "modelhouse voxel counts 1\n";
 
 template <class T>
 void put(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void put_index(std::string& bytes, const Eigen::Vector3i& index) {
+  for (int axis = 0; axis < 3; ++axis) put(bytes, static_cast<std::int16_t>(index[axis]));
 }
 
 void put_number(std::string& bytes, unsigned number) {
@@ -103,7 +112,7 @@ class BlockWriter {
   }
   void end() {
     if (!any_) return;
-    for (int axis = 0; axis < 3; ++axis) put(bytes_, static_cast<std::int16_t>(block_[axis]));
+    put_index(bytes_, block_);
     VoxelBlock::Bits known{};
     for (std::size_t place = 0; place < nodes_.size(); ++place)
       if (nodes_[place]) known[place / 64] |= std::uint64_t{1} << place % 64;
@@ -129,9 +138,16 @@ class BlockWriter {
   bool any_ = false;
 };
 
-std::string counts_of(const VoxelTree& tree) {
+std::string counts_of(const VoxelTree& tree, const DetectedObjects& detected) {
   std::string bytes;
   put(bytes, tree.getResolution());
+  put(bytes, static_cast<std::uint32_t>(detected.entries().size()));
+  for (const DetectedObjects::Entry& entry : detected.entries()) {
+    put_index(bytes, entry.voxel);
+    put(bytes, entry.object);
+  }
+  put(bytes, static_cast<std::uint32_t>(detected.apart().size()));
+  for (const auto& [a, b] : detected.apart()) put(bytes, a), put(bytes, b);
   BlockWriter writer(bytes);
   for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
     const auto [block, place] = block_and_place(leaf.getKey());
@@ -155,9 +171,31 @@ void read_votes(CountsReader& in, VoxelNode& node) {
   node.votes.assign(votes);
 }
 
-void read_block(CountsReader& in, VoxelTree& tree) {
+Eigen::Vector3i read_index(CountsReader& in) {
   Eigen::Vector3i index;
   for (int axis = 0; axis < 3; ++axis) index[axis] = in.get<std::int16_t>();
+  return index;
+}
+
+DetectedObjects read_detected(CountsReader& in) {
+  using Id = DetectedObjects::Id;
+  std::vector<DetectedObjects::Entry> entries;
+  for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
+    const Eigen::Vector3i voxel = read_index(in);
+    entries.push_back({voxel, in.get<Id>()});
+    if (entries.back().object == 0) in.fail("a voxel of no object");
+  }
+  std::set<std::pair<Id, Id>> apart;
+  for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
+    const Id a = in.get<Id>(), b = in.get<Id>();
+    if (a >= b) in.fail("a pair of objects");
+    apart.emplace(a, b);
+  }
+  return {std::move(entries), std::move(apart)};
+}
+
+void read_block(CountsReader& in, VoxelTree& tree) {
+  const Eigen::Vector3i index = read_index(in);
   if ((index.array() < -VoxelTree::kMiddle / 8).any() ||
       (index.array() >= VoxelTree::kMiddle / 8).any())
     in.fail("a block is outside of an octree");
@@ -240,7 +278,7 @@ void VoxelMap::write_ot(std::ostream& out) const {
   if (tree.size() > 0) tree.updateInnerOccupancy();
   tree.prune();
   tree.write(out);
-  const std::string counts = counts_of(impl_->tree);
+  const std::string counts = counts_of(impl_->tree, impl_->detected);
   std::string end(kCountsMagic);
   put(end, static_cast<std::uint64_t>(counts.size()));
   end += counts;
@@ -258,7 +296,8 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
   if (reader.at_end())
     throw InputError(fmt::format(
         "{}: has no counts after its tree: it is from another program, or was edited", name));
-  if (reader.take(kCountsMagic.size()) != kCountsMagic) reader.fail("its counts do not begin");
+  const std::string_view magic = reader.take(kCountsMagic.size());
+  if (magic != kCountsMagic && magic != kFirstCountsMagic) reader.fail("its counts do not begin");
   const std::string_view content = reader.take(reader.get<std::uint64_t>());
   if (XXH3_64bits(content.data(), content.size()) != reader.get<std::uint64_t>())
     reader.fail("the checksum of its counts is wrong");
@@ -268,6 +307,7 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
   if (!(std::abs(resolution_m - header.resolution_m) <= 1e-4 * header.resolution_m))
     counts.fail("its counts have another resolution");
   VoxelMap map(resolution_m);
+  if (magic == kCountsMagic) map.set_detected(read_detected(counts));
   while (!counts.at_end()) read_block(counts, map.impl_->tree);
   return map;
 }

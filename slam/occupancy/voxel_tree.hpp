@@ -95,6 +95,7 @@ struct VoxelMap::Impl {
     return tree.search(key);
   }
   VoxelTree tree;
+  DetectedObjects detected;
 };
 
 }  // namespace mh

@@ -110,8 +110,7 @@ class View {
 
 struct Hit {
   std::uint32_t block;  ///< its place in the box of blocks
-  std::uint16_t place;
-  ClassId label;
+  VoxelVote vote;
 };
 
 /// The blocks around a camera, as far as it can tell.
@@ -137,9 +136,9 @@ struct BlockBox {
   Vector3i low, size;
 };
 
-/// The returns within range, ordered by block, then voxel, then class.
-std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels,
-                         const View& view, const DepthModel& model, const BlockBox& box) {
+/// The returns within range, ordered by block, then voxel, then class, then detection.
+std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const PixelLabels& labels, const View& view,
+                         const DepthModel& model, const BlockBox& box) {
   std::vector<std::uint64_t> keys;
   const double least2 = model.min_range_m * model.min_range_m,
                most2 = model.max_range_m * model.max_range_m;
@@ -153,38 +152,53 @@ std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const Grid2d<ClassId>& la
       const Vector3i voxel = voxel_of(view.in_map(in_camera), model.resolution_m);
       const Vector3i block = block_of(voxel), at = voxel - kSide * block;
       const auto place = static_cast<std::uint64_t>(at.x() + kSide * (at.y() + kSide * at.z()));
-      const ClassId label = labels.empty() ? kVoid : labels(x, y);
-      keys.push_back(std::uint64_t{box.place(block)} << 32U | place << 8U | label);
+      const ClassId label = labels.classes.empty() ? kVoid : labels.classes(x, y);
+      const std::uint8_t detection = labels.detections.empty() ? 0 : labels.detections(x, y);
+      keys.push_back(std::uint64_t{box.place(block)} << 32U | place << 16U |
+                     std::uint64_t{label} << 8U | detection);
     }
   std::sort(keys.begin(), keys.end());  // one number each: half the time of comparing three
   std::vector<Hit> hits;
   hits.reserve(keys.size());
   for (const std::uint64_t key : keys)
-    hits.push_back({static_cast<std::uint32_t>(key >> 32U),
-                    static_cast<std::uint16_t>(key >> 8U & 0xFFFFU), static_cast<ClassId>(key)});
+    hits.push_back(
+        {static_cast<std::uint32_t>(key >> 32U),
+         {static_cast<std::uint16_t>(key >> 16U & 0xFFFFU), static_cast<ClassId>(key >> 8U & 0xFFU),
+          static_cast<std::uint8_t>(key & 0xFFU)}});
   return hits;
 }
 
-/// Sets the hit voxels of a block, each with the class of most of its returns (ties to the
-/// smallest id). @returns the first hit of another block
+/// Sets the hit voxels of a block, each with the class of most of its returns and, of this class,
+/// the detection with most (ties to the smallest id). @returns the first hit of another block
 std::vector<Hit>::const_iterator take_hits(std::vector<Hit>::const_iterator hit,
                                            std::vector<Hit>::const_iterator end,
                                            std::uint32_t place, VoxelBlock& block) {
   while (hit != end && hit->block == place) {
-    const std::uint16_t voxel = hit->place;
+    const std::uint16_t voxel = hit->vote.place;
     block.hit[voxel / 64] |= std::uint64_t{1} << voxel % 64U;
-    ClassId best = kVoid;
+    const auto is_here = [&] {
+      return hit != end && hit->block == place && hit->vote.place == voxel;
+    };
+    VoxelVote best{.place = voxel};
     std::ptrdiff_t most = 0;
-    while (hit != end && hit->block == place && hit->place == voxel) {
-      const auto first = hit;
-      while (hit != end && hit->block == place && hit->place == voxel && hit->label == first->label)
-        ++hit;
-      if (first->label != kVoid && hit - first > most) {
-        most = hit - first;
-        best = first->label;
+    while (is_here()) {
+      const auto of_class = hit;
+      VoxelVote largest = hit->vote;
+      std::ptrdiff_t most_of_detection = 0;
+      while (is_here() && hit->vote.class_id == of_class->vote.class_id) {
+        const auto first = hit;
+        while (is_here() && hit->vote == first->vote) ++hit;
+        if (hit - first > most_of_detection) {
+          most_of_detection = hit - first;
+          largest = first->vote;
+        }
+      }
+      if (largest.class_id != kVoid && hit - of_class > most) {
+        most = hit - of_class;
+        best = largest;
       }
     }
-    if (best != kVoid) block.votes.emplace_back(voxel, best);
+    if (best.class_id != kVoid) block.votes.push_back(best);
   }
   return hit;
 }
@@ -337,10 +351,10 @@ Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m) {
   return smooth;
 }
 
-VoxelView look(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels, const Camera& camera,
+VoxelView look(const Grid2d<float>& depth_m, const PixelLabels& labels, const Camera& camera,
                const SE3& map_from_camera, const DepthModel& model) {
-  assert(labels.empty() ||
-         (labels.width() == depth_m.width() && labels.height() == depth_m.height()));
+  assert(labels.classes.empty() || labels.classes.size() == depth_m.size());
+  assert(labels.detections.empty() || labels.detections.size() == depth_m.size());
   const View view(camera, map_from_camera);
   const BlockBox box(view.eye(), model);
   const std::vector<Hit> hits = hits_of(depth_m, labels, view, model, box);

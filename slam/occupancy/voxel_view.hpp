@@ -14,13 +14,22 @@
 
 namespace mh {
 
+/// What one view said of the class of a voxel.
+struct VoxelVote {
+  std::uint16_t place = 0;  ///< in its block: x + 8 y + 64 z
+  ClassId class_id = kVoid;
+  /// Which voxels of the view belong together: each of its detections has a number of its own. It
+  /// means nothing beyond this view.
+  std::uint8_t detection = 0;
+  friend bool operator==(const VoxelVote&, const VoxelVote&) = default;
+};
+
 /// What one view told of 8 x 8 x 8 voxels: bit x + 8 y + 64 z of a set is the voxel at (x, y, z).
 struct VoxelBlock {
   using Bits = std::array<std::uint64_t, 8>;        ///< one word per z
   Eigen::Vector3i index = Eigen::Vector3i::Zero();  ///< covers voxels [8 index, 8 index + 8)
   Bits free{}, hit{};                               ///< disjoint
-  /// Classes of hit voxels that have one: (place in the block, class), ordered by place.
-  std::vector<std::pair<std::uint16_t, ClassId>> votes;
+  std::vector<VoxelVote> votes;  ///< of hit voxels with a class, ordered by place
 };
 
 /// What one view told of space, ordered by block (z, then y, then x).
@@ -48,10 +57,15 @@ struct DepthModel {
 /// Nguyen et al., 3DIMPVT 2012
 Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m = 0.0019);
 
+/// Labels of the pixels of a depth image: both of its size, or empty.
+struct PixelLabels {
+  Grid2d<ClassId> classes;          ///< kVoid = none
+  Grid2d<std::uint8_t> detections;  ///< see VoxelVote; empty: all pixels of a class are one
+};
+
 /// What a depth image tells, labels included. Frame: of `map_from_camera`.
 /// @param depth_m  along z, undistorted; 0 = no return, which tells nothing
-/// @param labels   of the same size, kVoid = none; or empty
-VoxelView look(const Grid2d<float>& depth_m, const Grid2d<ClassId>& labels, const Camera& camera,
+VoxelView look(const Grid2d<float>& depth_m, const PixelLabels& labels, const Camera& camera,
                const SE3& map_from_camera, const DepthModel& model);
 
 }  // namespace mh

@@ -2,6 +2,7 @@
 // A simulated tour and the recording that is written of it are the same to a run.
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "bench/plan/suite.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/run/run_one.hpp"
+#include "scenes/recorded/class_map.hpp"
 #include "scenes/recorded/frame_files.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "source_dir.hpp"
@@ -25,10 +27,15 @@ World built(const RunSpec& spec) {
   return build_world(spec, 1, Cache(MH_TEST_CACHE), [](std::string_view) {});
 }
 
-/// Depth as a file of 16 bits holds it: the one thing that a recording changes of a frame.
-void round_depth(RgbdFrame& frame) {
+/// What a recording changes of a frame: a file of 16 bits rounds depth, and an image of classes
+/// does not tell objects of one class apart.
+void as_recorded(RgbdFrame& frame) {
   for (float& depth_m : frame.depth_m)
     depth_m = static_cast<float>(depth_units(depth_m) / kDepthPerMeter);
+  const Grid2d<ClassId> classes = class_image(frame.semantics);
+  Grid2d<std::uint16_t> ids(classes.width(), classes.height());
+  std::ranges::copy(classes.data(), classes.data() + classes.size(), ids.data());
+  frame.semantics = one_hot(ids, nullptr);
 }
 
 TEST(RecordedTour, GivesTheBitsOfTheSimulationWhereThatHasNoNoise) {
@@ -41,7 +48,7 @@ TEST(RecordedTour, GivesTheBitsOfTheSimulationWhereThatHasNoNoise) {
   spec.environment.query_tour.reset();
   const World simulated = built(spec);
   const RunTools tools = {
-      .tamper = {.frame = [](std::size_t, RgbdFrame& f) { round_depth(f); }, .report = {}},
+      .tamper = {.frame = [](std::size_t, RgbdFrame& f) { as_recorded(f); }, .report = {}},
       .occupancy = false};
   const RunResult drawn = run_one(spec, simulated, tools);
 

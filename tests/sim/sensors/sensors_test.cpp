@@ -296,6 +296,45 @@ TEST(LabelImage, ExactLabelsAreThePixelsClasses) {
   EXPECT_TRUE(label_image(truth, LabelMode::kNone).at(3, 3).entries.empty());
 }
 
+TEST(LabelImage, EachVisibleObjectHasAnEntryOfItsOwn) {
+  RenderedFrame truth = blank_frame(2.0F);
+  paint_box(truth, 10, 10, 59, 59, 5, 1);
+  paint_box(truth, 60, 10, 99, 59, 5, 2);  // touches the first
+  paint_box(truth, 10, 80, 59, 99, 7, 0);  // of no instance
+  const SemanticImage image = label_image(truth, LabelMode::kExact);
+  EXPECT_NE(image.index(20, 20), image.index(80, 20));
+  EXPECT_EQ(image.at(20, 20), image.at(80, 20));
+  EXPECT_EQ(image.index(20, 90), 7);
+  // Erosion takes what lies at the border of a class, not at that of two objects of one.
+  LabelConfig config;
+  config.noise = {.enabled = true, .erosion_px = 2};
+  const SemanticImage eroded =
+      label_image(truth, LabelMode::kExact, config, SE3(), RandomStream(1));
+  EXPECT_EQ(eroded.at(59, 30).most_probable(), 5);
+  EXPECT_EQ(eroded.at(60, 30).most_probable(), 5);
+  EXPECT_EQ(eroded.at(11, 30).most_probable(), kVoid);
+}
+
+TEST(LabelImage, MoreObjectsThanAPaletteHoldsShareTheEntryOfTheirClass) {
+  RenderedFrame truth = blank_frame(2.0F);
+  for (int i = 0; i < 400; ++i) {
+    const int x = i % 25 * 12, y = i / 25 * 12, side = i < 300 ? 8 : 4;  // the last are smaller
+    paint_box(truth, x, y, x + side, y + side, 5, static_cast<InstanceId>(i + 1));
+  }
+  const SemanticImage image = label_image(truth, LabelMode::kExact);
+  EXPECT_EQ(image.palette.size(), 256u);
+  std::set<std::uint8_t> entries;
+  for (int i = 0; i < 400; ++i) {
+    const int x = i % 25 * 12, y = i / 25 * 12;
+    EXPECT_EQ(image.at(x + 1, y + 1), ClassDistribution::one_hot(5));
+    if (i >= 300) {
+      EXPECT_EQ(image.index(x + 1, y + 1), 5);
+    }
+    entries.insert(image.index(x + 1, y + 1));
+  }
+  EXPECT_EQ(entries.size(), 256 - classes().size() + 1);
+}
+
 TEST(LabelImage, BoxesAreThoseWorkedOutByHand) {
   constexpr ClassId chair = 5, table = 7, wall = 1;
   RenderedFrame truth = blank_frame(2.0F);

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr ClassId kChair = 5, kTable = 7, kFridge = 24, kPerson = 31;
+constexpr ClassId kFridge = 24, kPerson = 31;
 
 /// A floor, two chairs, a table with thin legs, a refrigerator, a person; moved by `by` voxels.
 MadeMap furnished(const Vector3i& by) {

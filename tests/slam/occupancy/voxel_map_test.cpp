@@ -10,10 +10,13 @@
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
+#include <xxhash.h>
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/occupancy/objects.hpp"
 #include "tests/slam/occupancy/box_room.hpp"
+#include "tests/slam/occupancy/made_map.hpp"
 
 namespace mh {
 namespace {
@@ -150,6 +153,49 @@ TEST(VoxelMap, FilesRestoreEveryCount) {
   EXPECT_FALSE(back.votes_at({2.02, 0.3, 0.6}).empty());
 }
 
+TEST(VoxelMap, FilesKeepDetectedObjects) {
+  MadeMap made;
+  made.box({-3, 0, 0}, {2, 2, 2}, 5, 1);
+  made.box({3, 0, 0}, {6, 2, 2}, 5, 2);
+  VoxelMap map = made.map();
+  const std::string before = bytes_of(map);
+  DetectionAssociation association;
+  association.add(made.view());
+  map.set_detected(association.objects(map));
+  EXPECT_NE(map.detected().at({2, 1, 1}), map.detected().at({3, 1, 1}));
+  EXPECT_EQ(map.detected().at({1, 1, 1}), map.detected().at({2, 1, 1}));
+  std::istringstream in(bytes_of(map));
+  const VoxelMap back = VoxelMap::read_ot(in, "it");
+  EXPECT_EQ(back.detected().entries().size(), map.detected().entries().size());
+  EXPECT_EQ(back.detected().apart(), map.detected().apart());
+  EXPECT_EQ(back.detected().apart().size(), 1u);
+  EXPECT_EQ(bytes_of(back), bytes_of(map));
+  EXPECT_NE(bytes_of(map), before);
+}
+
+/// A file as it was written before maps knew detected objects.
+TEST(VoxelMap, FilesOfTheFirstVersionAreRead) {
+  const OccupancyMapper mapper = mapped_room();
+  std::string bytes = bytes_of(mapper.map());
+  const std::string magic = "modelhouse voxel counts 2\n";
+  const std::size_t at = bytes.find(magic);
+  ASSERT_NE(at, std::string::npos);
+  std::string content = bytes.substr(at + magic.size() + 8);
+  content.resize(content.size() - 8);  // the checksum
+  ASSERT_EQ(content.substr(8, 8), std::string(8, '\0'));
+  content.erase(8, 8);
+  bytes.resize(at);
+  bytes += "modelhouse voxel counts 1\n";
+  const auto put = [&](std::uint64_t number) {
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+  };
+  put(content.size());
+  bytes += content;
+  put(XXH3_64bits(content.data(), content.size()));
+  std::istringstream in(bytes);
+  EXPECT_EQ(bytes_of(VoxelMap::read_ot(in, "it")), bytes_of(mapper.map()));
+}
+
 void expect_refused(const std::string& bytes, const std::string& message) {
   std::istringstream in(bytes);
   try {
@@ -227,6 +273,25 @@ TEST(VoxelMap, OctoMapsOwnToolsOpenTheFiles) {
   EXPECT_EQ(back.getNumLeafNodes(), direct.getNumLeafNodes());
   EXPECT_EQ(std::system(("bt2vrml " + bt + " > /dev/null 2>&1").c_str()), 0);
   EXPECT_TRUE(is_file(drawn));
+}
+
+TEST(OccupancyMapper, DetectionsOfOneClassBecomeTwoObjects) {
+  OccupancyMapper mapper(room_camera());
+  RgbdFrame frame;
+  const Camera camera = room_camera();
+  frame.depth_m = Grid2d<float>(camera.width_px, camera.height_px, 1.5F);
+  frame.semantics.index = Grid2d<std::uint8_t>(camera.width_px, camera.height_px, 1);
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = camera.width_px / 2; x < camera.width_px; ++x) frame.semantics.index(x, y) = 2;
+  frame.semantics.palette = {{}, ClassDistribution::one_hot(5), ClassDistribution::one_hot(5)};
+  mapper.keep(frame);
+  const Trajectory poses{{.stamp_ns = 0, .world_from_camera = {}}};
+  mapper.update(poses);
+  EXPECT_EQ(find_objects(mapper.map()).size(), 1u);
+  mapper.associate_detections();
+  EXPECT_EQ(find_objects(mapper.map()).size(), 2u);
+  mapper.update(poses);
+  EXPECT_TRUE(mapper.map().detected().entries().empty()) << "is older than the poses";
 }
 
 TEST(OccupancyMapper, RefusesSettingsOutOfRangeAndFramesOfAnotherSize) {
