@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/sequence_source.hpp"
+#include "bench/studies/laser_scans.hpp"
 #include "bench/studies/map_images.hpp"
 #include "bench/studies/map_score.hpp"
 #include "bench/studies/map_study.hpp"
@@ -17,6 +19,7 @@
 #include "scenes/images/write_image.hpp"
 #include "scenes/load.hpp"
 #include "sim/render/renderer.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -37,7 +40,7 @@ struct MapBuildArguments : SourceOptions {
   std::string vocabulary = "vocabulary", out, map, poses;
   double resolution_m = 0.05, height_m = 1.21;
   std::size_t frames = SIZE_MAX, every = 1;
-  bool plain = false, score = false;
+  bool plain = false, score = false, lasers = false;
 };
 
 /// Poses of the frames whose depth is taken, in the frame of their first camera.
@@ -116,13 +119,26 @@ SE3 find_map_frame(const MapBuildArguments& options, const Source& source,
   return floor->floor_from_world;
 }
 
-void score(const MapBuildArguments& options, const Source& source, const OccupancyMapper& mapper,
-           const MapStudy& study) {
-  const Scene scene = load_scene(find_scene(options.source.substr(kSceneSource.size())), nullptr,
-                                 options.frame.frame());
+/// What lasers saw from the keyframes: where the map has these, and where they truly were.
+struct Scans {
+  ScanGrid map, truth;
+};
+Scans scan(const SceneLasers& lasers, const Trajectory& map_from_camera, const Trajectory& truth,
+           double resolution_m) {
+  Trajectory true_poses;
+  for (const TimedPose& pose : map_from_camera)
+    if (const TimedPose* known = pose_at(truth, pose.stamp_ns)) true_poses.push_back(*known);
+  return {lasers.scans(map_from_camera, truth, resolution_m),
+          lasers.scans(true_poses, truth, resolution_m)};
+}
+
+/// @param scans  at the true poses; null: none
+void score(const MapBuildArguments& options, const Trajectory& truth, const Scene& scene,
+           const OccupancyMapper& mapper, const MapStudy& study, const ScanGrid* scans) {
   const MapScores scores = score_map(
-      scene, mapper, *source.frames->truth(), study,
-      {.resolution_m = options.resolution_m, .floor_z_m = 0, .robot_height_m = options.height_m});
+      scene, mapper, truth, study,
+      {.resolution_m = options.resolution_m, .floor_z_m = 0, .robot_height_m = options.height_m},
+      scans);
   const fs::path out = options.out;
   write_atomically(out / "score.json", scores_json(scores));
   write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores.plan));
@@ -135,9 +151,18 @@ void run(MapBuildArguments options) {
     throw InputError("--map and --poses: one of them says where the frames are");
   if (options.score && !options.is_scene())
     throw InputError("--score needs the exact mesh: the source must be scene:FILE");
+  if (options.lasers && !(options.is_scene() && is_driven(options.tour)))
+    throw InputError(
+        "--lasers are a robot's: the source must be scene:FILE, with a tour that it drives");
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
   const Source source = open_source(options);
+  std::optional<Scene> scene;
+  if (options.lasers || options.score)
+    scene = load_scene(find_scene(options.source.substr(kSceneSource.size())), nullptr,
+                       options.frame.frame());
+  std::optional<SceneLasers> lasers;
+  if (options.lasers) lasers.emplace(*scene, load_robot(options.robot_file()));
   const OutputFolder folder(options.out, "map build", {kMapFiles.begin(), kMapFiles.end()});
   OccupancyMapper mapper(source.frames->camera(),
                          {.depth = {.resolution_m = options.resolution_m}});
@@ -168,7 +193,14 @@ void run(MapBuildArguments options) {
   mapper.update(posed.poses, map_from_world);
   mapper.associate_detections();
   for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
-  const MapStudy study = study_of(mapper.map(), {.robot_height_m = options.height_m});
+  std::optional<Scans> scans;
+  if (lasers) {
+    Trajectory at = posed.poses;
+    for (TimedPose& pose : at) pose.world_from_camera = map_from_world * pose.world_from_camera;
+    scans = scan(*lasers, at, *source.frames->truth(), options.resolution_m);
+  }
+  const MapStudy study =
+      study_of(mapper.map(), {.robot_height_m = options.height_m}, scans ? &scans->map : nullptr);
   write_map_files(options.out, mapper.map(), study);
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
   write_image(fs::path(options.out) / "grid_classes.png",
@@ -177,7 +209,8 @@ void run(MapBuildArguments options) {
              counted(kept, "keyframe"), counted(mapper.map().voxel_count(), "voxel"),
              static_cast<double>(mapper.map().memory_bytes()) * 1e-6, study.grid.cells.width(),
              study.grid.cells.height(), counted(study.objects.size(), "object"));
-  if (options.score) score(options, source, mapper, study);
+  if (options.score)
+    score(options, *source.frames->truth(), *scene, mapper, study, scans ? &scans->truth : nullptr);
 }
 
 }  // namespace
@@ -208,6 +241,8 @@ void add_map_build(CLI::App& map) {
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   command->add_flag("--plain", options->plain, "SLAM without semantics");
+  command->add_flag("--lasers", options->lasers,
+                    "scene: what the robot's lasers see of the floor joins the grid");
   command->add_flag("--score", options->score,
                     "scene: against the exact mesh, with the poses given and with the true ones");
   command->footer("Example:\n  modelhouse map build out/sequence --out out/map");

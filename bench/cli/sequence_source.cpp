@@ -62,6 +62,10 @@ void SourceOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Seed of RANSAC and of a scene's noise")->check(seed_number());
 }
 
+std::filesystem::path SourceOptions::robot_file() const {
+  return find_shipped(robot.empty() ? kUsualRobot : robot, Shipped::kRobot);
+}
+
 void SourceOptions::check() const {
   if (is_scene()) {
     if (!classes.empty())
@@ -99,11 +103,10 @@ Source open_source(const SourceOptions& options) {
   const std::string& source = options.source;
   if (options.is_scene()) {
     if (options.tour.empty()) throw InputError(fmt::format("source '{}' needs --tour", source));
-    const std::string robot = options.robot.empty() ? kUsualRobot : options.robot;
     std::vector<std::string> notes;
     auto frames = open_scene({.scene = find_scene(source.substr(kSceneSource.size())),
                               .tour = find_shipped(options.tour, Shipped::kTour),
-                              .robot = find_shipped(robot, Shipped::kRobot),
+                              .robot = options.robot_file(),
                               .level = find_shipped(options.level, Shipped::kLevel),
                               .seed = options.seed,
                               .frame = options.frame.frame()},

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,6 +28,8 @@ struct SourceOptions {
   bool labels = true;  ///< false: a recording's own labels are not read
 
   bool is_scene() const { return source.starts_with(kSceneSource); }
+  /// Of a scene. @throws InputError if there is none.
+  std::filesystem::path robot_file() const;
   void add_to(CLI::App& command);
   /// @throws InputError if an option does not fit the kind of source.
   void check() const;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/studies/laser_scans.hpp"
 #include "slam/core/error.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 #include "slam/occupancy/occupancy_mapper.hpp"
@@ -61,25 +62,16 @@ std::vector<std::vector<Vector2d>> footprints_of(const VoxelMap& map,
 }
 
 /// What the lasers saw from those frames' places, as the system estimated them.
-void add_scans(const MapInput& input, const std::vector<std::size_t>& chosen,
-               const SE3& map_from_estimate, OccupancyGrid& grid) {
+void add_lasers(const MapInput& input, const std::vector<std::size_t>& chosen,
+                const SE3& map_from_estimate, OccupancyGrid& grid) {
   if (!input.lasers) return;
-  const Equipment& equipment = *input.robot.equipment;
   ScanGrid scans(grid.resolution_m);
   auto pose = input.estimate.begin();
   for (const std::size_t i : chosen) {
     while (pose->stamp_ns < input.frames.stamp_ns(i)) ++pose;
     const SE3 map_from_base =
         map_from_estimate * pose->world_from_camera * input.robot.base_from_camera.inverse();
-    for (std::size_t l = 0; l < equipment.lasers.size(); ++l) {
-      const LaserScanner& laser = equipment.lasers[l];
-      scans.add_scan(map_from_base * laser.base_from_laser,
-                     {.first_angle_rad = -0.5 * laser.field_of_view_rad,
-                      .angle_increment_rad = laser.field_of_view_rad / (laser.rays - 1),
-                      .min_range_m = laser.min_range_m,
-                      .max_range_m = laser.max_range_m,
-                      .ranges_m = input.lasers(i)[l]});
-    }
+    add_scans(scans, *input.robot.equipment, map_from_base, input.lasers(i));
   }
   scans.add_to(grid);
 }
@@ -117,7 +109,7 @@ RobotMap build_robot_map(const MapInput& input) {
   map.grid = obstacle_grid(mapper.map(), {.robot_height_m = input.robot.height_m});
   if (std::ranges::count(map.grid.cells, kFreeCell) == 0)
     throw InputError("the map shows no free floor: its frames have no depth");
-  add_scans(input, chosen, map.map_from_estimate, map.grid);
+  add_lasers(input, chosen, map.map_from_estimate, map.grid);
   map.objects = find_objects(mapper.map());
   map.footprints_m = footprints_of(mapper.map(), map.objects);
   map.known = known_map(map.grid);

@@ -42,8 +42,10 @@ nlohmann::ordered_json part_json(const VoxelScore& voxels, const GridScore& grid
 
 }  // namespace
 
-MapStudy study_of(const VoxelMap& map, const ObstacleGridConfig& config) {
-  return {.grid = obstacle_grid(map, config), .objects = find_objects(map)};
+MapStudy study_of(const VoxelMap& map, const ObstacleGridConfig& config, const ScanGrid* scans) {
+  MapStudy study{.grid = obstacle_grid(map, config), .objects = find_objects(map)};
+  if (scans != nullptr) scans->add_to(study.grid);
+  return study;
 }
 
 void write_map_files(const std::filesystem::path& folder, const VoxelMap& map,
@@ -86,7 +88,7 @@ std::optional<FloorFrame> floor_of(const OccupancyMapper& mapper,
 }
 
 MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Trajectory& truth,
-                    const MapStudy& study, const MapScoreConfig& config) {
+                    const MapStudy& study, const MapScoreConfig& config, const ScanGrid* scans) {
   const auto renderer = make_embree_renderer(scene);
   const DepthModel model{.resolution_m = config.resolution_m};
   MapScores scores;
@@ -116,7 +118,7 @@ MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Tra
                                 .robot_height_m = config.robot_height_m};
   scores.plan = space.floor_plan(config.floor_z_m + band.ground_m,
                                  config.floor_z_m + config.robot_height_m, seeds);
-  const MapStudy study_true = study_of(true_poses, band);
+  const MapStudy study_true = study_of(true_poses, band, scans);
   scores.voxels = score_voxels(mapper.map(), exact, space);
   scores.voxels_true_poses = score_voxels(true_poses, exact, space);
   scores.grid = score_grid(study.grid, scores.plan);

@@ -21,7 +21,9 @@ struct MapStudy {
   OccupancyGrid grid;
   std::vector<MapObject> objects;
 };
-MapStudy study_of(const VoxelMap& map, const ObstacleGridConfig& config);
+/// @param scans  a second source of the grid; may be null
+MapStudy study_of(const VoxelMap& map, const ObstacleGridConfig& config,
+                  const ScanGrid* scans = nullptr);
 
 /// Files that write_map_files() and `map build` write.
 inline constexpr std::array<const char*, 12> kMapFiles{"map.ot",
@@ -65,8 +67,10 @@ struct MapScoreConfig {
 
 /// @param mapper  holds the map of `study` and the depth of its keyframes; frame: the scene's
 /// @param truth   poses of the keyframes; those without one are left out
+/// @param scans   at the true poses, if the study's grid has some; may be null
 MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Trajectory& truth,
-                    const MapStudy& study, const MapScoreConfig& config);
+                    const MapStudy& study, const MapScoreConfig& config,
+                    const ScanGrid* scans = nullptr);
 
 std::string scores_json(const MapScores& scores);
 std::string scores_text(const MapScores& scores);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "robots/model/robot.hpp"
+#include "scenes/scene.hpp"
+#include "slam/core/trajectory.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
+
+namespace mh {
+
+/// Adds what a robot's lasers read at one moment.
+/// @param map_from_base  where the robot is taken to be
+/// @param lasers_m       by laser, as RobotReading's
+void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
+               std::span<const std::vector<float>> lasers_m);
+
+/// The lasers of a robot on its way through a scene: a second source of a map beside depth.
+class SceneLasers {
+ public:
+  /// @throws InputError if the robot has no lasers.
+  SceneLasers(const Scene& scene, Robot robot);
+  ~SceneLasers();
+  SceneLasers(SceneLasers&&) noexcept;
+
+  /// What the lasers read at each pose that has a true one, placed where the pose says.
+  /// @param map_from_camera    ordered by stamp
+  /// @param world_from_camera  the true poses, ordered by stamp; of a camera on the robot
+  ScanGrid scans(const Trajectory& map_from_camera, const Trajectory& world_from_camera,
+                 double resolution_m) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mh
