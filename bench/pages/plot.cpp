@@ -71,7 +71,7 @@ class PlotTable {
 
 std::string beginning(const PlotOrder& order, const fs::path& file, double height_cm) {
   return gnuplot_terminal(file, order.width_cm, height_cm) +
-         "set key outside top center horizontal noenhanced samplen 3\nset border 3\nset tics "
+         "set key outside top center horizontal noenhanced samplen 6\nset border 3\nset tics "
          "nomirror out scale 0.5\nset grid linecolor '#dddddd' linewidth 0.5\n";
 }
 

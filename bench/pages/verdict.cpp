@@ -22,9 +22,11 @@ bool is_share(const Comparison& c) {
 
 /// A signed amount with its unit: "+4.20 percentage points", "-3.10 mm".
 std::string amount(const Comparison& c, double value, bool with_unit = true) {
-  if (is_share(c))
-    return fmt::format("{:+.2f}{}", 100 * value, with_unit ? " percentage points" : "");
-  return fmt::format("{:+.2f}{}", 1000 * value, with_unit ? " mm" : "");
+  const double scaled = (is_share(c) ? 100 : 1000) * value;
+  const char* unit = !with_unit ? "" : is_share(c) ? " percentage points" : " mm";
+  // Nothing that is not zero is said to be zero.
+  if (scaled != 0 && std::abs(scaled) < 0.005) return fmt::format("{:+.1g}{}", scaled, unit);
+  return fmt::format("{:+.2f}{}", scaled, unit);
 }
 
 /// What the pairs are: "149 queries", "12 environments".
@@ -156,9 +158,11 @@ std::string verdict_sentence(const Suite& suite, const SystemPair& systems, cons
 }
 
 Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
-  PageTable table("What differs between the systems",
-                  "First minus second, 95 % bootstrap intervals, p corrected by Holm over the "
-                  "declared family; shares in percentage points, distances in mm.");
+  PageTable table(
+      "What differs between the systems",
+      "First minus second, 95 % bootstrap intervals, p corrected by Holm over the "
+      "declared family; shares in percentage points, distances in mm. p of pooled rows is "
+      "of random signs, so that it has a least value.");
   Json sentences = Json::array();
   for (const Judged& j : judged(suite, rows)) {
     const Comparison& c = j.comparison;

@@ -17,6 +17,11 @@ struct PairNames {
       : first(suite.systems[pair.first].name), second(suite.systems[pair.second].name) {}
 };
 
+/// "0.0488"; no p is 0.
+std::string p_text(double p) {
+  return p < 0.00005 ? "< 0.0001" : fmt::format("{:.4f}", p);
+}
+
 std::string comparison_line(const PairNames& names, const Comparison& c) {
   if (c.pairs == 0) return fmt::format("  {:<61} -  (no pairs)\n", c.what.text());
   const Verdict v = verdict(c);
@@ -27,13 +32,13 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
           ? fmt::format("undecided; smallest detectable difference {:.4f}", c.detectable)
           : std::string("undecided; too few pairs");
   const std::string corrected =
-      c.in_family ? fmt::format("(Holm {:.4f})  {}", c.p_holm, word)
+      c.in_family ? fmt::format("(Holm {})  {}", p_text(c.p_holm), word)
       : c.clusters > 0
           ? fmt::format("(outside the family; {} of {} as clusters)",
                         counted(c.pairs, "query", "queries"), counted(c.clusters, "scene"))
           : "(outside the family)";
-  return fmt::format("  {:<61} {:+.4f} {}  p = {:.4f} {}\n", c.what.text(), c.difference,
-                     interval(c), c.p, corrected);
+  return fmt::format("  {:<61} {:+.4f} {}  p {}{} {}\n", c.what.text(), c.difference, interval(c),
+                     c.p < 0.00005 ? "" : "= ", p_text(c.p), corrected);
 }
 
 /// The line of a comparison of success for a suite that states a margin.

@@ -210,15 +210,20 @@ Comparison compare_clusters(std::span<const std::vector<PairedDifference>> clust
 }
 
 double wilcoxon_signed_rank(std::span<const double> differences) {
+  // Differences that are equal as fractions, such as 3/23 - 2/23 and 1/23, differ in their last
+  // bits.
+  double largest = 0;
+  for (const double difference : differences) largest = std::max(largest, std::abs(difference));
+  const double equal = 1e-9 * largest;
   std::vector<double> d;
   for (const double difference : differences)
-    if (difference != 0) d.push_back(difference);
+    if (std::abs(difference) > equal) d.push_back(difference);
   std::sort(d.begin(), d.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   // Ranks doubled, so that mid-ranks are integers.
   std::vector<std::size_t> ranks(d.size());
   for (std::size_t first = 0; first < d.size();) {
     std::size_t end = first;
-    while (end < d.size() && std::abs(d[end]) == std::abs(d[first])) ++end;
+    while (end < d.size() && std::abs(d[end]) - std::abs(d[first]) <= equal) ++end;
     for (std::size_t i = first; i < end; ++i) ranks[i] = first + end + 1;
     first = end;
   }

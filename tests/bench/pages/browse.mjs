@@ -3,7 +3,7 @@
 //   node browse.mjs FOLDER_WITH_REPORTS SCREENSHOTS [REPORT...]
 // Prints a line per finding and, at the end, JSON of what was measured; exit code 1 at a finding.
 import { chromium } from "playwright-core";
-import { existsSync, mkdirSync, readFileSync, readdirSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createRequire } from "node:module";
 
@@ -201,6 +201,12 @@ async function use(browser, report) {
   await views(page, go, report);
   await colors(page, go, report);
   await links(page, go, report);
+  await go("overview");
+  const zeros = await page.evaluate(() => [...document.querySelectorAll("details section.table")].flatMap((table) => {
+    const heads = [...table.querySelectorAll("th")].map((th) => th.textContent);
+    return [...table.querySelectorAll("tbody tr")].map((row) => row.children[heads.indexOf("p")]?.textContent ?? "").filter((text) => text !== "" && Number(text) === 0);
+  }));
+  expect(zeros.length === 0, `${report}: a p of ${zeros[0]}`);
   await go("figures");
   if ((await page.locator("figure.chart").count()) > 0)
     for (const kind of ["SVG", "PNG"]) {
@@ -213,6 +219,33 @@ async function use(browser, report) {
       expect(good && bytes.length > 1500, `${report}: saved ${kind} is ${bytes.length} bytes`);
     }
   await context.close();
+}
+
+/** A report whose data were damaged by hand: it says so on every page that needs them. */
+async function damaged(browser, report) {
+  const copy = join(screenshots, "damaged");
+  rmSync(copy, { recursive: true, force: true });
+  cpSync(join(root, report), copy, { recursive: true });
+  const file = join(copy, "data", "0-runs.js");
+  const text = readFileSync(file, "utf8");
+  writeFileSync(file, text.replace(/"values":\s*\[/, '"values":null,"lost":['));
+  const run = (await firstRunOf(browser, report)) ?? "";
+  const context = await browser.newContext({ viewport: sizes.laptop });
+  const page = await context.newPage();
+  for (const place of ["runs", run]) {
+    await visit(page, `file://${copy}/index.html#/${place}`);
+    const said = await page.evaluate(() => document.querySelector("main").textContent);
+    expect(/damaged/.test(said), `${report} ${place}: damaged data are not told: ${said.slice(0, 120)}`);
+    measured.damaged = (measured.damaged ?? 0) + 1;
+  }
+  await context.close();
+}
+
+async function firstRunOf(browser, report) {
+  const { context, page, go } = await open(browser, report);
+  const run = await firstRun(page, go);
+  await context.close();
+  return run;
 }
 
 /** A choice on Figures outlives a reload, and a link to another state of an open page is followed. */
@@ -240,11 +273,11 @@ async function links(page, go, report) {
 /** A system has one color on all pages. */
 async function colors(page, go, report) {
   const known = new Map();
-  const systems = await page.evaluate(() => globalThis.modelhouse.index.folders[0].arms.map((arm) => arm.system));
+  const systems = await page.evaluate(() => globalThis.modelhouse.index.folders.flatMap((folder) => folder.arms.map((arm) => arm.system)));
   for (const place of ["figures", "failures"]) {
     await go(place);
     const legends = await page.evaluate(() =>
-      [...document.querySelector(".folder").querySelectorAll(".legend li")].map((li) => [
+      [...document.querySelectorAll(".folder .legend li")].map((li) => [
         li.textContent.trim(),
         li.querySelector("line, path, circle, rect")?.getAttribute("stroke") ?? li.querySelector("[fill]")?.getAttribute("fill"),
       ]),
@@ -253,6 +286,8 @@ async function colors(page, go, report) {
       if (!systems.some((system) => name === system || name.startsWith(`${system}, `))) continue;
       expect(color && (known.get(name) ?? color) === color, `${report} ${place}: ${name} is ${color}, elsewhere ${known.get(name)}`);
       known.set(name, color);
+      const other = [...known].find(([n, c]) => c === color && n !== name);
+      expect(!other, `${report} ${place}: ${name} has the color of ${other?.[0]}`);
       measured.colors = (measured.colors ?? 0) + 1;
     }
   }
@@ -294,6 +329,12 @@ async function views(page, go, report) {
 /** Play, step, scrub, and a link to a moment. */
 async function replay(page, go, report) {
   const run = await firstRun(page, go);
+  await go(run);
+  await page.locator("button.open").click();
+  await page.waitForSelector(".replay canvas[data-engine]", { timeout: 20000 });
+  await page.keyboard.press("ArrowRight");
+  const stepped = await page.waitForFunction(() => Number(document.querySelector(".replay").dataset.ms) > 0, undefined, { timeout: 5000 }).then(() => true, () => false);
+  expect(stepped, `${report}: an arrow key does not step a replay that was just opened`);
   await go(`${run}?t=1000`);
   await page.waitForSelector(".replay canvas[data-engine]", { timeout: 20000 });
   const moment = async () => Number(await page.locator(".replay").getAttribute("data-ms"));
@@ -354,6 +395,7 @@ for (const report of asked.length > 0 ? asked : readdirSync(root).sort()) {
   });
   if (steps.includes("axe")) await accessible(browser, report);
   if (steps.includes("use") && !report.startsWith("odd")) await use(browser, report);
+  if (steps.includes("use") && report === "rooms") await damaged(browser, report);
 }
 await browser.close();
 console.log(JSON.stringify(measured));

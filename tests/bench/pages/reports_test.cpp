@@ -274,6 +274,20 @@ TEST(PairsToDecide, GrowWithTheSquareOfWhatIsMissing) {
   EXPECT_EQ(pairs_to_decide(c), std::nullopt);
 }
 
+TEST_F(Reports, SayNoAmountIsZeroThatIsNot) {
+  const Suite suite = *source_of({"den", "hall"}).suite;
+  Comparison c;
+  c.what.unit = "m";
+  c.what.measure = "ATE";
+  c.pairs = 60;
+  c.difference = 6.64e-7;
+  c.low = -4.8e-7;
+  c.high = 2.47e-6;
+  c.detectable = 2e-6;
+  const std::string text = verdict_sentence(suite, {0, 1}, c);
+  EXPECT_NE(text.find("+0.0007 mm (95 % interval -0.0005 to +0.002)"), std::string::npos) << text;
+}
+
 TEST_F(Reports, ShowNamesAsText) {
   PagesSource source = source_of({"den"});
   source.name = kHostile;
@@ -514,6 +528,8 @@ class InTheBrowser : public Reports {
     write("rooms", rooms);
     PagesSource later = rooms;
     later.name = "after";
+    later.suite->levels = {"dusk.yaml"};  // a level of its own changes no system's color
+    for (RunResult& run : later.results.runs) run.spec.level = "dusk.yaml";
     write_pages(root() / "two", std::array{rooms, later});
     write("sweep", source_of_suite(sweep()));
     PagesSource bare = source_of({"den"});

@@ -134,6 +134,16 @@ TEST(Wilcoxon, AgreesWithCountingAllSigns) {
   EXPECT_EQ(wilcoxon_signed_rank(std::vector<double>{-2, 2}), 1.0);
 }
 
+TEST(Wilcoxon, EqualSharesAreTiesHoweverTheyAreRounded) {
+  // Differences of shares of 23 queries: 1, -1, 2, -1, 3, 0 of them, in several roundings.
+  const auto share = [](int more, int fewer) { return more / 23.0 - fewer / 23.0; };
+  const std::vector<double> shares = {share(3, 2),   share(7, 8),   share(22, 20),
+                                      share(10, 11), share(20, 17), 1.0 / 3 - (1 - 2.0 / 3)};
+  ASSERT_NE(std::abs(shares[0]), std::abs(shares[1])) << "these would be no test";
+  EXPECT_EQ(wilcoxon_signed_rank(shares),
+            wilcoxon_signed_rank(std::vector<double>{1, -1, 2, -1, 3, 0}));
+}
+
 TEST(Wilcoxon, NearsTheNormalDistributionForManyScenes) {
   std::vector<double> d;
   for (int i = 1; i <= 200; ++i) d.push_back(i % 2 == 0 && i % 14 != 0 ? -i : i);

@@ -216,8 +216,10 @@ export class Table {
 
 export function shownNumber(value: number | null, unit: string, decimals: number): string {
   if (value === null) return "";
-  if (unit === "%") return (100 * value).toFixed(decimals);
-  return value.toFixed(decimals);
+  const shown = unit === "%" ? 100 * value : value;
+  // Nothing that is not zero is shown as zero.
+  if (shown !== 0 && Math.abs(shown) < 0.5 * 10 ** -decimals) return shown.toPrecision(1);
+  return shown.toFixed(decimals);
 }
 
 /** A column's heading with its unit. */

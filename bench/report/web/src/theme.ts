@@ -56,9 +56,17 @@ const kColors: Record<Theme, string[]> = {
 export const kDashes = ["0", "6 3", "2 3", "8 3 2 3", "1 3", "10 4"];
 export const kSymbols = ["circle", "square", "triangle", "diamond", "star", "cross", "wye"] as const;
 
+/** The color between two of form #rrggbb. */
+function halfWay(a: string, b: string): string {
+  const part = (at: number) => Math.round((parseInt(a.slice(at, at + 2), 16) + parseInt(b.slice(at, at + 2), 16)) / 2);
+  return `#${[1, 3, 5].map((at) => part(at).toString(16).padStart(2, "0")).join("")}`;
+}
+
+/** Colors that can be told apart; those beyond the seventh are paler. */
 export function colorOf(index: number): string {
   const colors = kColors[theme()];
-  return colors[index % colors.length] ?? "#888888";
+  const color = colors[index % colors.length] ?? "#888888";
+  return index < colors.length ? color : halfWay(color, ink().paper);
 }
 
 /** Ink and paper of charts: as app.css has them, for files that are saved. */

@@ -15,7 +15,7 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
       sentences
         .filter((s) => s.unit === unit && s.difference !== null)
         .map((s) => {
-          const scale = unit === "%" ? 100 : 1;
+          const scale = unit === "%" ? 100 : 1000;
           const of = (value: number | null) => (value === null ? null : scale * value);
           return {
             what: `${s.what.replaceAll("_", " ")}${sentences.some((o) => o.level !== s.level) ? `, ${s.level}` : ""}${
@@ -26,7 +26,7 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
             difference: of(s.difference) ?? 0,
             low: of(s.low),
             high: of(s.high),
-            state: s.decided ? "decided" : s.in_family ? "undecided" : "not tested",
+            state: s.decided ? "decided" : s.in_family ? "undecided" : "not judged",
           };
         }),
     [sentences, unit],
@@ -39,13 +39,13 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
       const letters = Math.floor((width - 40) / 7);
       const lines = beside ? 1 : Math.max(...shown.map((d) => Math.ceil(d.what.length / letters)));
       const ends = [0, ...shown.map((d) => d.difference), ...bounded.flatMap((d) => [d.low ?? 0, d.high ?? 0])];
-      const spare = Math.max(unit === "%" ? 1 : 0.0005, 0.05 * (Math.max(...ends) - Math.min(...ends)));
+      const spare = Math.max(unit === "%" ? 1 : 0.5, 0.05 * (Math.max(...ends) - Math.min(...ends)));
       const color = (d: { state: string }) => (d.state === "decided" ? colorOf(0) : ink().faint);
       return {
         height: 60 + shown.length * (beside ? 28 : 30 + 15 * lines),
         marginLeft: beside ? room : 20,
         marginTop: 24,
-        x: { label: unit === "%" ? "difference, percentage points" : "difference, m", grid: true, domain: [Math.min(...ends) - spare, Math.max(...ends) + spare] },
+        x: { label: unit === "%" ? "difference, percentage points" : "difference, mm", grid: true, domain: [Math.min(...ends) - spare, Math.max(...ends) + spare] },
         y: { label: null, domain: shown.map((d) => d.what), axis: beside ? "left" : null, padding: 0.4 },
         marks: [
           Plot.ruleX([0], { stroke: ink().text }),
@@ -86,8 +86,8 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
     <Chart
       title={unit === "%" ? "Differences of shares" : "Differences of distances"}
       about={`${pair ? `${first?.first} minus ${first?.second}` : "First minus second"}, ${
-        unit === "%" ? "percentage points" : "m"
-      }, with 95 % bootstrap intervals; colored circles are decided, gray diamonds are not; gray crosses stand beside the declared family and were not tested. Source: results.sqlite.`}
+        unit === "%" ? "percentage points" : "mm"
+      }, with 95 % bootstrap intervals; colored circles are decided, gray diamonds are not; gray crosses stand beside the declared family and are not judged. Source: results.sqlite.`}
       marks={{ difference: shown.length, interval: bounded.length }}
       make={make}
     />

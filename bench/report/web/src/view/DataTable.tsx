@@ -111,6 +111,9 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
     setSorting(next);
     note({ [`${id}.sort`]: next ? `${next.down ? "-" : ""}${next.key}` : "" });
   };
+  // Names in the first column stand in one line, unless one of them is very long.
+  const first = columns[0];
+  const longest = useMemo(() => (first?.isText ? Math.max(0, ...table.words(first.key).map((word) => word.length)) : 0), [table, first]);
   const copy = async (format: Format) => {
     const done = await tableText(table, columns, found, format);
     setSaid(done ? `${found.length} rows are copied as ${format}.` : "The browser denied the clipboard.");
@@ -161,7 +164,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
       </div>
       {!all && saidOnce.length > 0 && <p class="note">In every row: {saidOnce.map(([title, text]) => `${title} ${text}`).join("; ")}.</p>}
       <div class="scroll" tabIndex={0} role="region" aria-label={table.title}>
-        <table>
+        <table class={longest <= 34 ? "whole-names" : undefined}>
           <caption class="unseen">{table.title}</caption>
           <thead>
             <tr>

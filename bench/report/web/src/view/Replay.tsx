@@ -46,7 +46,7 @@ function placesOf(queries: Table, rows: number[]): { truths: Place3[]; right: Pl
   return made;
 }
 
-function Player({ run, queries, rows, piece, views, onFail }: Props & { onFail: (why: string) => void }): JSX.Element {
+function Player({ run, queries, rows, piece, views, focus, onFail }: Props & { focus: boolean; onFail: (why: string) => void }): JSX.Element {
   const theme = useTheme();
   const canvas = useRef<HTMLCanvasElement>(null);
   const view = useRef<ReplayView | null>(null);
@@ -61,6 +61,9 @@ function Player({ run, queries, rows, piece, views, onFail }: Props & { onFail: 
   const [cut, setCut] = useState("2.0");
   const [data, setData] = useState<ReplayData | null>(null);
   const places = useMemo(() => placesOf(queries, rows), [queries, rows]);
+
+  // For the arrow keys; a page that opens with its replay stays where its reader is.
+  useEffect(() => (focus ? canvas.current?.focus({ preventScroll: true }) : undefined), []);
 
   useEffect(() => {
     let live = true;
@@ -182,14 +185,15 @@ function Player({ run, queries, rows, piece, views, onFail }: Props & { onFail: 
 
 export function Replay(props: Props): JSX.Element {
   const [open, setOpen] = useState(currentRoute().at.has("t"));
+  const [clicked, setClicked] = useState(false);
   const [why, setWhy] = useState("");
   if (!props.run.truth && !props.run.estimate) return <Missing>Without a path there is nothing to replay.</Missing>;
   if (why) return <Missing>{why}</Missing>;
   return open ? (
-    <Player {...props} onFail={setWhy} />
+    <Player {...props} focus={clicked} onFail={setWhy} />
   ) : (
     <p>
-      <button type="button" class="open" onClick={() => setOpen(true)}>
+      <button type="button" class="open" onClick={() => (setClicked(true), setOpen(true))}>
         Open the replay{props.piece ? "" : " (paths alone)"}
       </button>
     </p>

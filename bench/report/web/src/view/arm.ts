@@ -16,13 +16,13 @@ export function armStyle(i: number): Style {
 const armKey = (system: string, labels: string) => `${system}\n${labels}`;
 /** Of all folders, each once, in the order of the first that has it. */
 const kArms = [...new Set(folders.flatMap((folder) => folder.arms.map((arm) => armKey(arm.system, arm.labels))))];
-const kLevels = [...new Set(folders.flatMap((folder) => folder.levels))];
 
-/** The style of a system with its labels at a level: the same on all pages, and in all folders. */
+/** The style of a system with its labels: the same on all pages, and in all folders. A folder's
+ * levels beyond the first have styles of their own. */
 export function styleOf(folder: Folder, system: string, labels: string, level: string): Style {
   const seen = folder.arms.find((arm) => arm.system === system && (arm.labels === labels || arm.labels === "none"));
   const arm = kArms.indexOf(armKey(system, seen?.labels ?? labels));
-  return armStyle(Math.max(0, kLevels.indexOf(level)) * kArms.length + Math.max(0, arm));
+  return armStyle(Math.max(0, folder.levels.indexOf(level)) * kArms.length + Math.max(0, arm));
 }
 
 export interface Arms {

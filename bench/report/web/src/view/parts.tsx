@@ -29,7 +29,12 @@ export function Piece<T>({ piece, children }: PieceProps<T>): JSX.Element {
   const found = usePiece<T>(piece);
   if (found === undefined) return <p class="loading">Loading …</p>;
   if (found instanceof Error) return <Missing>{found.message}.</Missing>;
-  return <Guarded>{children(found)}</Guarded>;
+  return <Guarded><Drawn of={() => children(found)} /></Guarded>;
+}
+
+/** Draws inside of Guarded: what fails there is caught. */
+function Drawn({ of }: { of: () => ComponentChildren }): JSX.Element {
+  return <>{of()}</>;
 }
 
 /** Says so where a part of a page cannot be drawn, in place of the whole page. */
@@ -66,7 +71,7 @@ export function PerFolder({
           {folder.problem !== null && <Missing>{folder.problem}</Missing>}
           {folder.first_point !== null && points === "first" && <p class="remarks">This suite sweeps settings. What stands here is at its first point, {folder.first_point}; the page Sweeps shows all.</p>}
           {folder.first_point !== null && points === "runs" && <p class="remarks">This suite sweeps settings. Each run stands here at the first point that it maps for; the page Sweeps shows all.</p>}
-          <Guarded>{children(folder, place)}</Guarded>
+          <Guarded><Drawn of={() => children(folder, place)} /></Guarded>
         </section>
       ))}
     </div>

@@ -153,7 +153,7 @@ export function topView(
     width,
     height,
     marginRight: 12,
-    marginTop: 18,
+    marginTop: 26,
     x: { domain: x, label: "x, m", grid: !grid },
     y: { domain: y, label: "y, m", grid: !grid },
     color: { type: "identity" } as Plot.ScaleOptions,
