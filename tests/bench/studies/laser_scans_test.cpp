@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/studies/laser_scans.hpp"
 
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -62,7 +63,9 @@ TEST(SceneLasers, AFloorMayBeAnywhere) {
 
 TEST(SceneLasers, ARobotWithoutIsRefused) {
   Robot robot = test::pepper();
-  robot.equipment->lasers.clear();
+  auto equipment = std::make_shared<Equipment>(*robot.equipment);
+  equipment->lasers.clear();
+  robot.equipment = equipment;
   const Scene scene = room_with_box();
   try {
     const SceneLasers lasers(scene, robot);
