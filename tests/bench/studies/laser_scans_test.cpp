@@ -26,10 +26,10 @@ std::int8_t cell_at(const ScanGrid& scans, double x_m, double y_m) {
   return cell ? grid.cells(cell->x(), cell->y()) : kUnknownCell;
 }
 
-/// A room with a box 1.5 m before the place (5, 5), and perhaps with its floor 2 m higher.
+/// A room with a box 1.52 m before the place (5, 5), and perhaps with its floor 2 m higher.
 Scene room_with_box(float floor_m = 0) {
   Scene scene = test::empty_room();
-  test::add_box(scene, "box", {6.5F, 4, 0}, {7, 6, 1});
+  test::add_box(scene, "box", {6.52F, 4, 0}, {7, 6, 1});
   for (Eigen::Vector3f& p : scene.positions_m) p.z() += floor_m;
   scene.floor.middle_m.z() = floor_m;
   return scene;
