@@ -4,7 +4,7 @@ import type { JSX } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type RunPaths, type Table, load } from "../data";
 import type { ReplayData, ReplayView } from "../replay_types";
-import { currentRoute, note } from "../route";
+import { currentRoute, note, useRoute } from "../route";
 import { colorOf, ink, useTheme } from "../theme";
 import type { WrittenViews } from "../views";
 import { LastKeyframe } from "./Views";
@@ -53,7 +53,8 @@ function Player({ run, queries, rows, piece, views, focus, onFail }: Props & { f
   const path = (run.truth ?? run.estimate)!;
   const end = path.ms[path.ms.length - 1] ?? 0;
   const clamp = (ms: number) => Math.min(end, Math.max(0, ms));
-  const [ms, setMs] = useState(() => clamp(Number(currentRoute().at.get("t") ?? 0) || 0));
+  const linked = () => clamp(Number(currentRoute().at.get("t") ?? 0) || 0);
+  const [ms, setMs] = useState(linked);
   const [playing, setPlaying] = useState(false);
   const [speed, setSpeed] = useState("4");
   const [layers, setLayers] = useState<Record<string, boolean>>({});
@@ -61,6 +62,13 @@ function Player({ run, queries, rows, piece, views, focus, onFail }: Props & { f
   const [cut, setCut] = useState("2.0");
   const [data, setData] = useState<ReplayData | null>(null);
   const places = useMemo(() => placesOf(queries, rows), [queries, rows]);
+
+  useEffect(() => {
+    // A link to another moment of a replay that is already open.
+    const follow = () => currentRoute().at.has("t") && (setPlaying(false), setMs(linked()));
+    addEventListener("hashchange", follow);
+    return () => removeEventListener("hashchange", follow);
+  }, [run]);
 
   // For the arrow keys; a page that opens with its replay stays where its reader is.
   useEffect(() => (focus ? canvas.current?.focus({ preventScroll: true }) : undefined), []);
@@ -184,8 +192,9 @@ function Player({ run, queries, rows, piece, views, focus, onFail }: Props & { f
 }
 
 export function Replay(props: Props): JSX.Element {
-  const [open, setOpen] = useState(currentRoute().at.has("t"));
+  const linked = useRoute().at.has("t");
   const [clicked, setClicked] = useState(false);
+  const open = linked || clicked;
   const [why, setWhy] = useState("");
   if (!props.run.truth && !props.run.estimate) return <Missing>Without a path there is nothing to replay.</Missing>;
   if (why) return <Missing>{why}</Missing>;
@@ -193,7 +202,7 @@ export function Replay(props: Props): JSX.Element {
     <Player {...props} focus={clicked} onFail={setWhy} />
   ) : (
     <p>
-      <button type="button" class="open" onClick={() => (setClicked(true), setOpen(true))}>
+      <button type="button" class="open" onClick={() => setClicked(true)}>
         Open the replay{props.piece ? "" : " (paths alone)"}
       </button>
     </p>
