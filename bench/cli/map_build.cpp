@@ -119,26 +119,12 @@ SE3 find_map_frame(const MapBuildArguments& options, const Source& source,
   return floor->floor_from_world;
 }
 
-/// What lasers saw from the keyframes: where the map has these, and where they truly were.
-struct Scans {
-  ScanGrid map, truth;
-};
-Scans scan(const SceneLasers& lasers, const Trajectory& map_from_camera, const Trajectory& truth,
-           double resolution_m) {
-  Trajectory true_poses;
-  for (const TimedPose& pose : map_from_camera)
-    if (const TimedPose* known = pose_at(truth, pose.stamp_ns)) true_poses.push_back(*known);
-  return {lasers.scans(map_from_camera, truth, resolution_m),
-          lasers.scans(true_poses, truth, resolution_m)};
-}
-
-/// @param scans  at the true poses; null: none
 void score(const MapBuildArguments& options, const Trajectory& truth, const Scene& scene,
-           const OccupancyMapper& mapper, const MapStudy& study, const ScanGrid* scans) {
+           const OccupancyMapper& mapper, const MapStudy& study, const SceneLasers* lasers) {
   const MapScores scores = score_map(
       scene, mapper, truth, study,
       {.resolution_m = options.resolution_m, .floor_z_m = 0, .robot_height_m = options.height_m},
-      scans);
+      lasers);
   const fs::path out = options.out;
   write_atomically(out / "score.json", scores_json(scores));
   write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores.plan));
@@ -193,14 +179,14 @@ void run(MapBuildArguments options) {
   mapper.update(posed.poses, map_from_world);
   mapper.associate_detections();
   for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
-  std::optional<Scans> scans;
+  std::optional<ScanGrid> scans;
   if (lasers) {
     Trajectory at = posed.poses;
     for (TimedPose& pose : at) pose.world_from_camera = map_from_world * pose.world_from_camera;
-    scans = scan(*lasers, at, *source.frames->truth(), options.resolution_m);
+    scans = lasers->scans(at, *source.frames->truth(), options.resolution_m);
   }
   const MapStudy study =
-      study_of(mapper.map(), {.robot_height_m = options.height_m}, scans ? &scans->map : nullptr);
+      study_of(mapper.map(), {.robot_height_m = options.height_m}, scans ? &*scans : nullptr);
   write_map_files(options.out, mapper.map(), study);
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
   write_image(fs::path(options.out) / "grid_classes.png",
@@ -210,7 +196,7 @@ void run(MapBuildArguments options) {
              static_cast<double>(mapper.map().memory_bytes()) * 1e-6, study.grid.cells.width(),
              study.grid.cells.height(), counted(study.objects.size(), "object"));
   if (options.score)
-    score(options, *source.frames->truth(), *scene, mapper, study, scans ? &scans->truth : nullptr);
+    score(options, *source.frames->truth(), *scene, mapper, study, lasers ? &*lasers : nullptr);
 }
 
 }  // namespace

@@ -20,9 +20,14 @@ bool is_share(const Comparison& c) {
   return c.what.unit.empty();
 }
 
+/// As it is shown: in percentage points or mm.
+double shown(const Comparison& c, double value) {
+  return (is_share(c) ? 100 : 1000) * value;
+}
+
 /// A signed amount with its unit: "+4.20 percentage points", "-3.10 mm".
 std::string amount(const Comparison& c, double value, bool with_unit = true) {
-  const double scaled = (is_share(c) ? 100 : 1000) * value;
+  const double scaled = shown(c, value);
   const char* unit = !with_unit ? "" : is_share(c) ? " percentage points" : " mm";
   // Nothing that is not zero is said to be zero.
   if (scaled != 0 && std::abs(scaled) < 0.005) return fmt::format("{:+.1g}{}", scaled, unit);
@@ -188,9 +193,7 @@ Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
     table.text({"first", "first"}, suite.systems[j.systems.first].name);
     table.text({"second", "second"}, suite.systems[j.systems.second].name);
     const bool over_scenes = j.environment.empty();
-    const auto scaled = [&](double value) {
-      return known((is_share(c) ? 100 : 1000) * value);  // points, mm
-    };
+    const auto scaled = [&](double value) { return known(shown(c, value)); };
     table.text({"over", "over"}, c.pairs > 0 ? pairs_text(c, over_scenes) : "");
     table.text({"unit", "unit"}, is_share(c) ? "points" : "mm");
     table.number({"difference", "difference", "", 2}, scaled(c.difference));

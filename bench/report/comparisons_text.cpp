@@ -17,7 +17,7 @@ struct PairNames {
       : first(suite.systems[pair.first].name), second(suite.systems[pair.second].name) {}
 };
 
-/// "0.0488"; no p is 0.
+/// "0.0488" or "< 0.0001": no p is 0.
 std::string p_text(double p) {
   return p < 0.00005 ? "< 0.0001" : fmt::format("{:.4f}", p);
 }
@@ -37,8 +37,9 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
           ? fmt::format("(outside the family; {} of {} as clusters)",
                         counted(c.pairs, "query", "queries"), counted(c.clusters, "scene"))
           : "(outside the family)";
+  const std::string p = p_text(c.p);
   return fmt::format("  {:<61} {:+.4f} {}  p {}{} {}\n", c.what.text(), c.difference, interval(c),
-                     c.p < 0.00005 ? "" : "= ", p_text(c.p), corrected);
+                     p.starts_with('<') ? "" : "= ", p, corrected);
 }
 
 /// The line of a comparison of success for a suite that states a margin.

@@ -88,18 +88,21 @@ std::optional<FloorFrame> floor_of(const OccupancyMapper& mapper,
 }
 
 MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Trajectory& truth,
-                    const MapStudy& study, const MapScoreConfig& config, const ScanGrid* scans) {
+                    const MapStudy& study, const MapScoreConfig& config,
+                    const SceneLasers* lasers) {
   const auto renderer = make_embree_renderer(scene);
   const DepthModel model{.resolution_m = config.resolution_m};
   MapScores scores;
   VoxelMap exact(config.resolution_m), true_poses(config.resolution_m);
   DetectionAssociation association;
   std::vector<Vector3d> seeds;
+  Trajectory seen_from;
   for (const Stamp stamp_ns : mapper.stamps()) {
     const TimedPose* pose = pose_at(truth, stamp_ns);
     if (pose == nullptr) continue;
     const SE3& at = pose->world_from_camera;
     seeds.push_back(at.translation());
+    seen_from.push_back(*pose);
     Grid2d<float> exact_m = renderer->render_depth(mapper.thin_camera(), at);
     const Grid2d<float>& sensed_m = *mapper.depth_of(stamp_ns);
     for (std::size_t i = 0; i < exact_m.size(); ++i)
@@ -118,7 +121,9 @@ MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Tra
                                 .robot_height_m = config.robot_height_m};
   scores.plan = space.floor_plan(config.floor_z_m + band.ground_m,
                                  config.floor_z_m + config.robot_height_m, seeds);
-  const MapStudy study_true = study_of(true_poses, band, scans);
+  std::optional<ScanGrid> scans;
+  if (lasers != nullptr) scans = lasers->scans(seen_from, truth, config.resolution_m);
+  const MapStudy study_true = study_of(true_poses, band, scans ? &*scans : nullptr);
   scores.voxels = score_voxels(mapper.map(), exact, space);
   scores.voxels_true_poses = score_voxels(true_poses, exact, space);
   scores.grid = score_grid(study.grid, scores.plan);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/studies/laser_scans.hpp"
 #include "bench/studies/map_score.hpp"
 #include "slam/core/trajectory.hpp"
 #include "slam/occupancy/floor_frame.hpp"
@@ -67,10 +68,10 @@ struct MapScoreConfig {
 
 /// @param mapper  holds the map of `study` and the depth of its keyframes; frame: the scene's
 /// @param truth   poses of the keyframes; those without one are left out
-/// @param scans   at the true poses, if the study's grid has some; may be null
+/// @param lasers  that the study's grid has scans of; may be null
 MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Trajectory& truth,
                     const MapStudy& study, const MapScoreConfig& config,
-                    const ScanGrid* scans = nullptr);
+                    const SceneLasers* lasers = nullptr);
 
 std::string scores_json(const MapScores& scores);
 std::string scores_text(const MapScores& scores);

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "slam/occupancy/objects.hpp"
-#include "slam/occupancy/voxel_map.hpp"
+#include "slam/occupancy/voxel_tree.hpp"
 
 namespace mh {
 namespace {
@@ -17,18 +17,6 @@ using Eigen::Vector3i;
 /// A detection tells of an object that had at least this share of its voxels before. From 0.2 to
 /// 0.33 the objects of the model house are the same.
 constexpr double kLeastShare = 0.25;
-
-/// Calls visit with place, class and detection of every voxel that a view gives to a thing.
-template <class Visit>
-void for_each_thing(const VoxelView& view, Visit visit) {
-  for (const VoxelBlock& block : view) {
-    if ((block.index.array().abs() >= 4096).any()) continue;  // beyond the octree
-    for (const VoxelVote& vote : block.votes)
-      if (is_thing(vote.class_id))
-        visit(8 * block.index + Vector3i(vote.place % 8, vote.place / 8 % 8, vote.place / 64),
-              vote);
-  }
-}
 
 }  // namespace
 
@@ -71,11 +59,16 @@ DetectionAssociation::Object DetectionAssociation::most_voted(const std::vector<
 std::vector<DetectionAssociation::Detection> DetectionAssociation::detections_of(
     const VoxelView& view) const {
   std::map<std::pair<ClassId, std::uint8_t>, Detection> by_number;
-  for_each_thing(view, [&](const Vector3i& voxel, const VoxelVote& vote) {
-    Detection& detection = by_number[{vote.class_id, vote.detection}];
-    detection.class_id = vote.class_id;
-    detection.voxels.push_back(key_of(voxel));
-  });
+  for (const VoxelBlock& block : view) {
+    if (!VoxelTree::holds(block.index)) continue;
+    for (const VoxelVote& vote : block.votes) {
+      if (!is_thing(vote.class_id)) continue;
+      Detection& detection = by_number[{vote.class_id, vote.detection}];
+      detection.class_id = vote.class_id;
+      detection.voxels.push_back(
+          key_of(8 * block.index + Vector3i(vote.place % 8, vote.place / 8 % 8, vote.place / 64)));
+    }
+  }
   std::vector<Detection> detections;
   for (auto& [number, detection] : by_number) {
     for (const std::uint64_t voxel : detection.voxels) {

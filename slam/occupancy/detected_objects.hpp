@@ -47,8 +47,8 @@ class DetectedObjects {
   std::unordered_map<std::uint64_t, Id> at_;  // only looked up, never walked
 };
 
-/// Recognizes objects from view to view: a detection is of the object that had most of its voxels
-/// before, or of a new one.
+/// Recognizes objects from view to view: a detection is of an object that had at least a quarter of
+/// its voxels before, or of a new one. Those that agree in the most voxels find each other first.
 class DetectionAssociation {
  public:
   /// Views in order of time: each is compared with what the earlier ones told.

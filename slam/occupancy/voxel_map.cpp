@@ -16,12 +16,6 @@ auto order_of(const Eigen::Vector3i& block) {
   return std::make_tuple(block.z(), block.y(), block.x());
 }
 
-/// Whether an octree has room for a block.
-bool fits(const Eigen::Vector3i& block) {
-  return (block.array() >= -VoxelTree::kMiddle / 8).all() &&
-         (block.array() < VoxelTree::kMiddle / 8).all();
-}
-
 /// Calls f(place) for each set bit.
 template <class F>
 void for_each_bit(const VoxelBlock::Bits& bits, F f) {
@@ -112,7 +106,7 @@ void VoxelMap::replace(const VoxelView* before, const VoxelView* after) {
         n != now.end() && (o == old.end() || order_of(n->index) <= order_of(o->index));
     VoxelBlock nothing;
     nothing.index = take_old ? o->index : n->index;
-    if (fits(nothing.index))
+    if (VoxelTree::holds(nothing.index))
       replace_block(impl_->tree, take_old ? *o : nothing, take_new ? *n : nothing);
     if (take_old) ++o;
     if (take_new) ++n;

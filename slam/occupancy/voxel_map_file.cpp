@@ -196,9 +196,7 @@ DetectedObjects read_detected(CountsReader& in) {
 
 void read_block(CountsReader& in, VoxelTree& tree) {
   const Eigen::Vector3i index = read_index(in);
-  if ((index.array() < -VoxelTree::kMiddle / 8).any() ||
-      (index.array() >= VoxelTree::kMiddle / 8).any())
-    in.fail("a block is outside of an octree");
+  if (!VoxelTree::holds(index)) in.fail("a block is outside of an octree");
   const auto known = in.get<VoxelBlock::Bits>();
   VoxelNode& block = tree.block(index);
   for (unsigned place = 0; place < 512; ++place) {

@@ -74,6 +74,11 @@ class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
   static constexpr unsigned kBlockLevels = 3;
   static constexpr int kMiddle = 32768;  ///< the key of voxel 0
 
+  /// Whether a block is inside of the tree.
+  static bool holds(const Eigen::Vector3i& block) {
+    return (block.array() >= -kMiddle / 8).all() && (block.array() < kMiddle / 8).all();
+  }
+
   /// The node of a block, made if it does not exist.
   VoxelNode& block(const Eigen::Vector3i& index);
   /// The voxel at a place of a block (bit x + 8 y + 64 z), made if it does not exist.

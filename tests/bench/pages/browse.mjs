@@ -257,6 +257,8 @@ async function links(page, go, report) {
     await page.reload();
     await settled(page);
     expect((await picked().inputValue()) === "1", `${report}: a picked run has no link`);
+    await picked().selectOption("0");
+    expect((await picked().inputValue()) === "0", `${report}: a choice of a link cannot be taken back`);
     measured.picked = (measured.picked ?? 0) + 1;
   }
   await page.evaluate(() => (location.hash = "#/runs"));

@@ -42,13 +42,13 @@ export function note(changes: Record<string, string>): void {
 /** A choice that stands in the address, as long as it is not the first one: so it has a link, and
  * the way back leads to it. @param key  unique on its page */
 export function useNoted(key: string, first: string): [string, (value: string) => void] {
-  const { at } = useRoute();
+  useRoute(); // drawn again when a link is followed
   const [, redraw] = useState(0);
   const set = (value: string) => {
     note({ [key]: value === first ? "" : value });
     redraw((n) => n + 1);
   };
-  return [currentRoute().at.get(key) ?? at.get(key) ?? first, set];
+  return [currentRoute().at.get(key) ?? first, set];
 }
 
 export function useRoute(): Route {

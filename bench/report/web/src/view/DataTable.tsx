@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A table that sorts, filters and copies. Its state stands in the address, so that it has a link.
 import type { JSX } from "preact";
-import { useEffect, useMemo, useState } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import { type Column, type Table, heading } from "../data";
-import { currentRoute, note } from "../route";
+import { useNoted } from "../route";
 import { type Format, tableText } from "./copy";
 
 const kFirst = 60; // rows at first: more are one click away
@@ -21,8 +21,8 @@ interface Sorting {
   down: boolean;
 }
 
-function sortingIn(text: string | null): Sorting | null {
-  if (!text) return null;
+function sortingIn(text: string): Sorting | null {
+  if (text === "") return null;
   return { key: text.replace(/^-/, ""), down: text.startsWith("-") };
 }
 
@@ -67,24 +67,13 @@ function unknownColumn(columns: Column[], filter: string): string | null {
 }
 
 export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element {
-  const at = currentRoute().at;
-  const [filter, setFilter] = useState(at.get(`${id}.q`) ?? "");
-  const [sorting, setSorting] = useState(sortingIn(at.get(`${id}.sort`)));
-  const [all, setAll] = useState(at.get(`${id}.all`) === "1");
+  const [filter, setFilter] = useNoted(`${id}.q`, "");
+  const [sorted, setSorted] = useNoted(`${id}.sort`, "");
+  const [every, setEvery] = useNoted(`${id}.all`, "");
+  const sorting = sortingIn(sorted);
+  const all = every === "1";
   const [most, setMost] = useState(kFirst);
   const [said, setSaid] = useState("");
-
-  useEffect(() => {
-    // A link to another state of a page that is already open.
-    const follow = () => {
-      const now = currentRoute().at;
-      setFilter(now.get(`${id}.q`) ?? "");
-      setSorting(sortingIn(now.get(`${id}.sort`)));
-      setAll(now.get(`${id}.all`) === "1");
-    };
-    addEventListener("hashchange", follow);
-    return () => removeEventListener("hashchange", follow);
-  }, [id]);
 
   const open = table.columns.filter((c) => !c.hidden);
   // A text that is the same in all rows is said once, above them.
@@ -97,19 +86,17 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
   const columns = all ? open : few;
   const unknown = unknownColumn(open, filter);
   const found = useMemo(() => {
-    const every = rows ?? Array.from({ length: table.rows }, (_, row) => row);
-    const kept = matching(table, open, every, filter);
+    const kept = matching(table, open, rows ?? Array.from({ length: table.rows }, (_, row) => row), filter);
     const by = sorting && table.column(sorting.key);
     return by ? [...kept].sort(compare(table, by, sorting.down)) : kept;
-  }, [table, rows, filter, sorting]);
+  }, [table, rows, filter, sorted]);
 
   const sortBy = (column: Column) => {
     const same = sorting?.key === column.key;
     // Numbers first from the largest; a third click ends the sorting.
     const first = !column.isText;
     const next = !same ? { key: column.key, down: first } : sorting.down === first ? { key: column.key, down: !first } : null;
-    setSorting(next);
-    note({ [`${id}.sort`]: next ? `${next.down ? "-" : ""}${next.key}` : "" });
+    setSorted(next ? `${next.down ? "-" : ""}${next.key}` : "");
   };
   // Names in the first column stand in one line, unless one of them is very long.
   const first = columns[0];
@@ -133,7 +120,6 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
               setFilter(event.currentTarget.value);
               setMost(kFirst);
               setSaid("");
-              note({ [`${id}.q`]: event.currentTarget.value });
             }}
           />
         </label>
@@ -145,10 +131,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
             <input
               type="checkbox"
               checked={all}
-              onChange={(event) => {
-                setAll(event.currentTarget.checked);
-                note({ [`${id}.all`]: event.currentTarget.checked ? "1" : "" });
-              }}
+              onChange={(event) => setEvery(event.currentTarget.checked ? "1" : "")}
             />
             all {open.length} columns
           </label>
