@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The replay of a run: play, step, scrub, speed; its moment stands in the address.
 import type { JSX } from "preact";
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type RunPaths, type Table, load } from "../data";
 import type { ReplayData, ReplayView } from "../replay_types";
 import { currentRoute, note, useRoute } from "../route";
@@ -100,7 +100,8 @@ function Player({ run, queries, rows, piece, views, focus, onFail }: Props & { f
     };
   }, [run, theme]);
 
-  useEffect(() => {
+  // With the picture, not after it: a link followed right after a step must not be overwritten.
+  useLayoutEffect(() => {
     view.current?.show(ms);
     if (!playing) note({ t: String(Math.round(ms)) });
   }, [ms, playing]);
