@@ -58,6 +58,7 @@ class Episode {
   }
 
   EpisodeScore run() {
+    if (place_.map.empty()) return failed("no_map");
     std::optional<NavigatorGoal> goal;
     try {
       goal = goal_named(place_.map, start_.goal);

@@ -23,8 +23,8 @@ struct EpisodeScore {
   std::string goal = {};
   double start_x_m = 0, start_y_m = 0, start_heading_deg = 0;
   bool success = false;  ///< it said "arrived", and was within arrival_m of such a thing
-  /// Empty for a success, else: never_relocalized, false_pose, object_not_in_map, no_path, stuck,
-  /// collision_stop, time_out, wrong_arrival.
+  /// Empty for a success, else: no_map, never_relocalized, false_pose, object_not_in_map, no_path,
+  /// stuck, collision_stop, time_out, wrong_arrival.
   std::string reason = {};
   bool said_arrived = false;
   bool wrong_arrival = false;                  ///< said so, and was not

@@ -140,10 +140,9 @@ MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapT
     map_now();
   }
   const Trajectory estimate = mapped.system->trajectory();
-  if (estimate.empty())
-    throw InputError(fmt::format("{}: tracked no frame of the mapping tour", spec.name));
   mapped.offered = offered_frames(frames.size(), spec.protocol).size();
   mapped.tracked = estimate.size();
+  if (estimate.empty()) return mapped;
   mapped.truth_from_estimate = frames_of(estimate, *frames.truth()).truth_from_estimate;
   const SimulatedPlace& simulated = *place.world.simulated;
   PlanarWorld seen(*simulated.scene, simulated.robot, Eigen::Vector2d::Zero(), 0);

@@ -97,8 +97,8 @@ std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory
 }
 
 RobotMap build_robot_map(const MapInput& input) {
-  if (input.estimate.empty()) throw InputError("the system tracked no frame: there is no map");
   RobotMap map;
+  if (input.estimate.empty()) return map;
   map.map_from_estimate =
       input.robot.base_from_camera * input.estimate.front().world_from_camera.inverse();
   OccupancyMapper mapper(input.frames.camera());
@@ -107,9 +107,8 @@ RobotMap build_robot_map(const MapInput& input) {
   mapper.update(input.estimate, map.map_from_estimate);
   mapper.associate_detections();
   map.grid = obstacle_grid(mapper.map(), {.robot_height_m = input.robot.height_m});
-  if (std::ranges::count(map.grid.cells, kFreeCell) == 0)
-    throw InputError("the map shows no free floor: its frames have no depth");
   add_lasers(input, chosen, map.map_from_estimate, map.grid);
+  if (std::ranges::count(map.grid.cells, kFreeCell) == 0) return {};
   map.objects = find_objects(mapper.map());
   map.footprints_m = footprints_of(mapper.map(), map.objects);
   map.known = known_map(map.grid);

@@ -22,6 +22,8 @@ struct RobotMap {
   std::vector<MapObject> objects;
   std::vector<std::vector<Eigen::Vector2d>> footprints_m;  ///< of each object: cells that it covers
   KnownMap known;                                          ///< the grid, as the navigator reads it
+
+  bool empty() const { return known.blocked.empty(); }
 };
 
 /// Frames that the map is made of: those of the trajectory after which the camera moved or turned
@@ -40,7 +42,7 @@ struct MapInput {
 
 /// Builds the map from depth, labels and lasers. Makes the frames again; what was seen in a second
 /// attempt after tracking failed is seen with the noise of the first.
-/// @throws InputError if nothing was tracked, or no free floor was seen.
+/// An empty map if nothing was tracked, or no free floor was seen.
 RobotMap build_robot_map(const MapInput& input);
 
 /// The object meant by a name, as a goal; the best-scored if several.

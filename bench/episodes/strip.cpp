@@ -168,6 +168,11 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
     canvas.text(fmt::format("{}  {}", i + 1, shots[i]->caption), {x, kTitle + kShotHeight + 18}, 9,
                 kDark);
   }
+  if (map_.empty()) {
+    canvas.text("it has no map: no frame was tracked, or no free floor was seen",
+                {kMargin, map_top + 14}, 10, kWrong);
+    return canvas.finish();
+  }
   const MapView view =
       view_of(map_.grid, kMargin, map_top, width - 3 * kMargin - kLegendWidth, kMapHeight);
   draw_grid(canvas, map_.grid, view);
@@ -231,7 +236,7 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
   for (const std::string& said : lines_) {
     if (said.size() > 11 && said.compare(9, 4, "    ") == 0) continue;  // one per second
     if (y > map_top + kMapHeight - 10) break;
-    line(said.size() > 58 ? said.substr(0, 57) + "..." : said, kPale);
+    line(said.size() > 100 ? said.substr(0, 99) + "..." : said, kPale);
   }
   return canvas.finish();
 }

@@ -21,8 +21,8 @@ using Eigen::Vector2d;
 constexpr double kReplan_s = 1.0;
 constexpr double kProgress_m = 0.10;
 constexpr double kBackOff_s = 1.5, kBackOff_m_per_s = 0.08;
-constexpr double kShown_m = 1.5;       // what is nearer is looked at for braking
-constexpr double kSamePlace_m = 0.10;  // places equally near to a thing: the nearest by way counts
+constexpr double kShown_m = 1.5;          // what is nearer is looked at for braking
+constexpr double kDetourPerNearness = 4;  // m of way that being 1 m nearer to a thing is worth
 constexpr double kFaced_rad = 0.1;
 constexpr double kBeforeThing_m = 0.1;
 constexpr double kReachSlack_m = 0.3;  // of the distances kept, beyond what counts as arrival
@@ -73,22 +73,16 @@ std::optional<Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>&
   const auto start = nearest_clear(grid, from_m, clearance_m, 0.5);
   if (!start) return std::nullopt;
   const Grid2d<float> lengths = way_lengths(grid, *start, clearance_m);
-  double nearest_m = reach_m;
-  const auto visit = [&](auto&& use) {
-    for (int y = 0; y < lengths.height(); ++y)
-      for (int x = 0; x < lengths.width(); ++x)
-        if (std::isfinite(lengths(x, y)))
-          use(grid.center_of({x, y}), static_cast<double>(away_m(x, y)),
-              static_cast<double>(lengths(x, y)));
-  };
-  visit([&](const Vector2d&, double away, double) { nearest_m = std::min(nearest_m, away); });
   std::optional<Vector2d> best;
-  double best_m = std::numeric_limits<double>::infinity();
-  visit([&](const Vector2d& place_m, double away, double length_m) {
-    if (away > std::min(reach_m, nearest_m + kSamePlace_m) || length_m >= best_m) return;
-    best_m = length_m;
-    best = place_m;
-  });
+  double least_m = std::numeric_limits<double>::infinity();
+  for (int y = 0; y < lengths.height(); ++y)
+    for (int x = 0; x < lengths.width(); ++x) {
+      const double away = static_cast<double>(away_m(x, y));
+      const double cost_m = static_cast<double>(lengths(x, y)) + kDetourPerNearness * away;
+      if (away > reach_m || cost_m >= least_m) continue;
+      least_m = cost_m;
+      best = grid.center_of({x, y});
+    }
   return best;
 }
 
@@ -252,6 +246,7 @@ FloorGrid Navigator::present_grid(const Pose2& map_from_base) const {
 
 bool Navigator::find_way(const Pose2& map_from_base) {
   const FloorGrid grid = present_grid(map_from_base);
+  bool found = false;
   for (const double margin_m : {config_.margin_m, config_.least_margin_m}) {
     const double clearance_m = robot_.footprint_radius_m + margin_m;
     const auto place_m =
@@ -259,10 +254,12 @@ bool Navigator::find_way(const Pose2& map_from_base) {
     if (!place_m) continue;
     const auto way = way_out(grid, map_from_base.place_m, *place_m, clearance_m);
     if (!way) continue;
-    path_ = smoothed(grid, *way, clearance_m);
-    return true;
+    std::vector<Vector2d> path = smoothed(grid, *way, clearance_m);
+    if (found && length_m(path) + config_.worth_margin_m > length_m(path_)) continue;
+    path_ = std::move(path);
+    found = true;
   }
-  return false;
+  return found;
 }
 
 Twist2d Navigator::plan(const Perception& now) {

@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "robots/navigation/smooth.hpp"
 #include "slam/core/error.hpp"
 #include "tests/sim/boxes.hpp"
 
@@ -128,6 +130,38 @@ TEST(Navigator, DrivesThroughTheGapAndSaysThatItHasArrived) {
   EXPECT_GT(driven.nearest_m, 0.27);
   EXPECT_NE(driven.said.find("knows its place"), std::string::npos);
   EXPECT_NE(driven.said.find("has arrived at box 1"), std::string::npos);
+}
+
+TEST(Navigator, TakesANarrowDoorInPlaceOfALongWay) {
+  Flat flat;
+  for (int x = 59; x < 62; ++x)  // 0.65 m: enough for the least margin, not for the wanted one
+    for (int y = 9; y < 22; ++y) flat.solid(x, y) = 0;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Driven driven(flat, robot, {{1, 0.6}, 0.0});
+  driven.run(navigator, 3);
+  EXPECT_LT(length_m(navigator.path()), 5.0) << driven.said;  // 8 m through the wide gap
+  driven.run(navigator, 60);
+  EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
+  EXPECT_GT(driven.nearest_m, 0.27);
+}
+
+TEST(PlaceBefore, BeingOneMeterNearerIsWorthFourMetersOfWay) {
+  const Flat flat;
+  const FloorGrid grid = flat.map().grid;
+  Grid2d<float> away_m(120, 80, std::numeric_limits<float>::infinity());
+  const Vector2d from_m(1.0, 3.2);
+  const auto place = [&](float first_m, float second_m) {
+    away_m(40, 64) = first_m;    // 1 m of way
+    away_m(100, 64) = second_m;  // 4 m of way
+    const auto best = place_before(grid, away_m, from_m, 0.3, 0.9);
+    return best ? best->x() : 0.0;
+  };
+  EXPECT_DOUBLE_EQ(place(0.30F, 0.20F), 2.0);  // a tenth of a meter is not worth 3 m
+  EXPECT_DOUBLE_EQ(place(0.89F, 0.05F), 5.0);
+  EXPECT_DOUBLE_EQ(place(0.95F, 0.50F), 5.0);  // the first is out of reach
+  EXPECT_DOUBLE_EQ(place(0.95F, 0.95F), 0.0);
 }
 
 TEST(Navigator, LostItLooksAroundElsewhere) {

@@ -10,6 +10,7 @@
 #include "bench/episodes/report.hpp"
 #include "bench/episodes/run_episodes.hpp"
 #include "bench/episodes/strip.hpp"
+#include "bench/run/run_one.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/temporary_folder.hpp"
@@ -67,6 +68,26 @@ TEST(Episodes, TheSameBitsAtOneAndAtTwoJobsAndResumed) {
   EXPECT_TRUE(std::ranges::any_of(once[0].scores, &EpisodeScore::success))
       << episodes_table(suite, once);
   EXPECT_NE(episodes_table(suite, once).find("semantic"), std::string::npos);
+}
+
+TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {
+  const Suite suite = small_suite();
+  const RunSpec run = labeled(episode_runs(suite).front(), suite);
+  const EpisodeWorld world = build_episode_world(run, *suite.episodes, 2, Cache(), {});
+  const Trajectory nothing;
+  MappedSystem mapped;  // as a system leaves it that tracked no frame
+  mapped.map = build_robot_map({.frames = *world.mapping,
+                                .estimate = nothing,
+                                .robot = world.world.simulated->robot,
+                                .noise = RandomStream(0)});
+  ASSERT_TRUE(mapped.map.empty());
+  mapped.system = make_system(run, world.world, {});
+  const EpisodeStart& start = world.variants.front().starts.front();
+  const EpisodeScore score = run_episode(episode_place(run, world, world.variants.front(), mapped),
+                                         *suite.episodes, start);
+  EXPECT_FALSE(score.success);
+  EXPECT_EQ(score.reason, "no_map");
+  EXPECT_GT(EpisodeRecord(mapped.map, start).strip("plain, start 0", score).total(), 0U);
 }
 
 TEST(Episodes, ARobotWithoutLasersIsRefused) {
