@@ -32,6 +32,8 @@ void run(AuditArguments options) {
   overrides.trials = options.trials;
   overrides.max_frames = options.frames;
   const Suite suite = load_suite(options.suite, overrides);
+  if (suite.episodes)
+    throw InputError(options.suite + ": a suite with `episodes` asks no queries to audit");
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / (suite.name + "-audit")
                                         : std::filesystem::path(options.out);

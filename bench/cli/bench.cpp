@@ -102,6 +102,8 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
     fmt::print("{}\n", episodes_json(suite, runs).dump(2));
   else
     fmt::print("{}\nresults in {}\n", table, episodes.out.string());
+  for (const EpisodeRun& run : runs)
+    if (!run.failure.empty()) throw MachineError(fmt::format("{}: {}", run.spec.name, run.failure));
 }
 
 /// The words of a text, as a shell splits and expands them.

@@ -50,20 +50,13 @@ RunSpec chosen_run(const Suite& suite, const EpisodeArguments& options) {
         words_of(suite.systems, [](const SystemSpec& s) { return s.name; }));
   check("--environment", options.environment,
         words_of(suite.environments, [](const Environment& e) { return e.name; }));
+  check("--variant", options.variant,
+        words_of(suite.episodes->variants, [](const EpisodeVariant& v) { return v.name; }));
   for (const RunSpec& run : runs)
     if ((options.system.empty() || run.system.name == options.system) &&
         (options.environment.empty() || run.environment.name == options.environment))
       return run;
   throw InputError(fmt::format("{}: has no such run", suite.file.string()));
-}
-
-const VariantPlace& chosen_variant(const EpisodeWorld& world, const EpisodeArguments& options) {
-  for (const VariantPlace& place : world.variants)
-    if (options.variant.empty() || place.variant.name == options.variant) return place;
-  throw InputError(fmt::format(
-      "--variant: there is no '{}'{}", options.variant,
-      hint(options.variant,
-           words_of(world.variants, [](const VariantPlace& v) { return v.variant.name; }))));
 }
 
 void run(EpisodeArguments options) {
@@ -76,7 +69,10 @@ void run(EpisodeArguments options) {
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / (suite.name + "-episode")
                                         : std::filesystem::path(options.out);
-  const OutputFolder folder(out, "episode", {"log.txt", "strip.png", "episode.json"});
+  const std::vector<std::string> names{"log.txt", "strip.png", "episode.json"};
+  const OutputFolder folder(out, "episode", names);
+  std::error_code none_yet;
+  for (const std::string& name : names) std::filesystem::remove(out / name, none_yet);
 
   Progress progress("episode");
   EpisodeOptions episodes;
@@ -86,7 +82,10 @@ void run(EpisodeArguments options) {
   episodes.progress = [&](double share) { progress.share(share, "mapping"); };
   const OneEpisode one = prepare_episode(suite, chosen, episodes);
   progress.end();
-  const VariantPlace& variant = chosen_variant(one.world, options);
+  const auto named = [&](const VariantPlace& place) {
+    return options.variant.empty() || place.variant.name == options.variant;
+  };
+  const VariantPlace& variant = *std::ranges::find_if(one.world.variants, named);
   const EpisodeStart& start = variant.starts[options.start];
   EpisodeRecord record(one.mapped.map, start);
   const EpisodeScore score =

@@ -17,6 +17,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/occupancy/cost_map.hpp"
+#include "slam/occupancy/map_image.hpp"
 #include "slam/occupancy/objects.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 
@@ -75,7 +76,14 @@ OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
   return grid;
 }
 
+/// Checks before the work that a pair of map image files can be written.
+void require_writable_map_image(const std::string& stem, const std::string& read) {
+  require_replaceable_map_image(stem);
+  for (const std::filesystem::path& file : map_image_files(stem)) require_writable(file, {read});
+}
+
 void run(const MapGridArguments& options) {
+  require_writable_map_image(options.out, options.map);
   const OccupancyGrid grid = grid_of(VoxelMap::load_ot(options.map), options.map, options.band);
   save_map_server(grid, options.out, options.raw ? GridMode::kRaw : GridMode::kTrinary);
   std::size_t free = 0, occupied = 0;
@@ -90,14 +98,22 @@ void run(const MapGridArguments& options) {
 }
 
 void run(const MapCostArguments& options) {
+  const std::string published = options.out + "_published";
+  require_writable_map_image(options.out, options.grid);
+  require_writable_map_image(published, options.grid);
+  if (options.config.inflation_radius_m < options.config.inscribed_radius_m)
+    throw InputError(
+        fmt::format("--inflation: {} m is less than the robot's radius, {} m (--radius)",
+                    options.config.inflation_radius_m, options.config.inscribed_radius_m));
   const CostMap costs = cost_map(load_map_server(options.grid), options.config);
   save_cost_map(costs, options.out);
-  save_map_server(as_published(costs), options.out + "_published", GridMode::kRaw);
+  save_map_server(as_published(costs), published, GridMode::kRaw);
   fmt::print("{} x {} cells of {} m\n", costs.costs.width(), costs.costs.height(),
              costs.resolution_m);
 }
 
 void run(const MapObjectsArguments& options) {
+  if (!options.out.empty()) require_writable(options.out, {options.map});
   const VoxelMap map = VoxelMap::load_ot(options.map);
   const std::vector<MapObject> objects = find_objects(map);
   if (!options.out.empty())
@@ -175,6 +191,7 @@ void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& gr
 void run(const MapPlanArguments& options) {
   if (options.to.empty() == options.thing.empty())
     throw InputError("plan: the goal is either --to or --to-object");
+  if (!options.out.empty()) require_writable(options.out, {options.map});
   const VoxelMap map = VoxelMap::load_ot(options.map);
   const OccupancyGrid grid = grid_of(map, options.map, options.band);
   const FloorGrid floor =
@@ -265,8 +282,13 @@ void add_plan(CLI::App& map) {
   auto options = std::make_shared<MapPlanArguments>();
   CLI::App* command = map.add_subcommand("plan", "A way over the floor of a saved octree.");
   command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
-  command->add_option("--from", options->from, "Start: x y, m")->expected(2)->required();
-  command->add_option("--to", options->to, "Goal: x y, m")->expected(2);
+  command->add_option("--from", options->from, "Start: x y, m")
+      ->expected(2)
+      ->check(number_between(-1e6, 1e6))
+      ->required();
+  command->add_option("--to", options->to, "Goal: x y, m")
+      ->expected(2)
+      ->check(number_between(-1e6, 1e6));
   command->add_option("--to-object", options->thing, "Goal: a place beside this object");
   command->add_option("--radius", options->radius_m, "Of the robot's disc, m")
       ->check(number_between(0.0, 10.0));

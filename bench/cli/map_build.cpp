@@ -113,9 +113,12 @@ SE3 find_map_frame(const MapBuildArguments& options, const Source& source,
   if (!floor)
     throw InputError(options.source +
                      ": no floor was found under the camera's path: no grid can be made");
-  fmt::print(stderr, "map: floor found by {}, {}, median distance {:.3f} m\n",
+  const SE3 first = floor->floor_from_world * poses.front().world_from_camera;
+  fmt::print(stderr,
+             "map: floor found by {}, {}, median distance {:.3f} m, {:.2f} m below the first "
+             "camera\n",
              floor->by_labels ? "labels" : "geometry", counted(floor->points, "point"),
-             floor->spread_m);
+             floor->spread_m, first.translation().z());
   return floor->floor_from_world;
 }
 

@@ -78,6 +78,9 @@ void SourceOptions::check() const {
     if (!value->empty())
       throw InputError(
           fmt::format("{} {}: is for scene:FILE, but the source is '{}'", name, *value, source));
+  if (frame.up || frame.floor_z_m)
+    throw InputError(fmt::format("{}: is for scene:FILE, but the source is '{}'",
+                                 frame.up ? "--up" : "--floor-z", source));
 }
 
 std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,

@@ -107,11 +107,6 @@ MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapT
   const RandomStream stream = RandomStream(spec.seed).fork(kTourStream);
   MappedSystem mapped;
   mapped.system = make_system(spec, place.world, tools.folder);
-  if (mapped.system == nullptr)
-    throw InputError(fmt::format(
-        "{}: a program that only returns a trajectory cannot be kidnapped: protocol: conversation "
-        "or a library can",
-        spec.system.name));
   const Unlabeled unlabeled(frames);
   double furthest = 0;
   const auto map_now = [&] {

@@ -70,8 +70,8 @@ struct MapTools {
 };
 
 /// Maps the tour with the system of a run, or takes its map from the cache, and makes the robot's
-/// map of it; that is empty if nothing was mapped. @throws InputError if the system only returns a
-/// trajectory; OutsideError.
+/// map of it; that is empty if nothing was mapped. @throws OutsideError.
+/// @pre the system answers queries: see episode_runs()
 MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapTools& tools);
 
 }  // namespace mh

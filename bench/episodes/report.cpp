@@ -176,6 +176,7 @@ Json episodes_json(const Suite& suite, const std::vector<EpisodeRun>& runs) {
                             {"system", run.spec.system.name},
                             {"key", run.key},
                             {"episodes", episodes}});
+    if (!run.failure.empty()) json["runs"].back()["failure"] = run.failure;
   }
   return json;
 }

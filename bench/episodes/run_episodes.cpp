@@ -15,12 +15,16 @@
 #include "bench/episodes/episode_store.hpp"
 #include "bench/inputs/inputs.hpp"
 #include "bench/inputs/run_key.hpp"
+#include "bench/plan/find_program.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/provenance/code_version.hpp"
 #include "bench/provenance/digest.hpp"
+#include "bench/systems/outside_error.hpp"
 #include "scenes/load.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/labels.hpp"
+#include "slam/occupancy/objects.hpp"
 
 namespace mh {
 namespace {
@@ -72,11 +76,9 @@ class Kidnapper {
             const std::function<void()>& done)
       : suite_(suite), run_(run), store_(store), done_(done) {}
 
-  /// @param slots  what to run: indices of variants and starts
-  std::vector<EpisodeScore> work(const EpisodeWorld& world, const MappedSystem& mapped,
-                                 const std::vector<std::pair<std::size_t, std::size_t>>& slots,
-                                 int jobs) {
-    std::vector<EpisodeScore> scores(slots.size());
+  /// Stores each score. @param slots  what to run: indices of variants and starts
+  void work(const EpisodeWorld& world, const MappedSystem& mapped,
+            const std::vector<std::pair<std::size_t, std::size_t>>& slots, int jobs) {
     std::atomic<std::size_t> next = 0;
     std::mutex storing;
     std::exception_ptr failure;
@@ -84,9 +86,10 @@ class Kidnapper {
       for (std::size_t k = next++; k < slots.size(); k = next++) try {
           const VariantPlace& variant = world.variants[slots[k].first];
           const EpisodePlace place = episode_place(run_.spec, world, variant, mapped);
-          scores[k] = run_episode(place, *suite_.episodes, variant.starts[slots[k].second]);
+          const EpisodeScore score =
+              run_episode(place, *suite_.episodes, variant.starts[slots[k].second]);
           const std::scoped_lock lock(storing);
-          store_.put(run_.key, run_.spec.name, scores[k]);
+          store_.put(run_.key, run_.spec.name, score);
           done_();
         } catch (...) {
           const std::scoped_lock lock(storing);
@@ -100,7 +103,6 @@ class Kidnapper {
       worker();
     }
     if (failure) std::rethrow_exception(failure);
-    return scores;
   }
 
  private:
@@ -126,6 +128,25 @@ std::vector<RunSpec> episode_runs(const Suite& suite) {
   if (!suite.episodes)
     throw InputError(fmt::format("{}: has no section `episodes`: nobody is kidnapped in it",
                                  suite.file.string()));
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format("{}: {}", suite.file.string(), what));
+  };
+  for (const std::string& goal : suite.episodes->goals)
+    if (!is_thing(class_by_name(goal).value()))
+      refuse(fmt::format("episodes.goals: '{}' is never an object of a map", goal));
+  if (suite.labels.front() == Labels())
+    refuse("labels: 'none' leaves maps without objects: episodes have no goals then");
+  if (suite.trials != 1)
+    refuse(fmt::format("trials: {}: episodes are repeated by their `starts`", suite.trials));
+  for (const SystemSpec& system : suite.systems)
+    if (system.is_outside()) {
+      require_program(system.outside);
+      if (system.outside.mode == OutsideMode::kTrajectory)
+        refuse(fmt::format(
+            "system '{}': a program that only returns a trajectory cannot be kidnapped: protocol: "
+            "conversation or a library can",
+            system.name));
+    }
   std::vector<RunSpec> runs;
   for (const RunSpec& run : expand(suite))
     if (run.trial == 0 && (run.labels == Labels() || run.labels == suite.labels.front()))
@@ -192,19 +213,32 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
       const std::filesystem::path folder = options.out / run.spec.name;
       if (run.spec.system.is_outside()) make_output_folder(folder);
       options.say(fmt::format("{}: maps the tour", run.spec.name));
-      MappedSystem mapped =
-          map_tour(run.spec, *world, {.folder = folder, .maps = cache, .key = map_keys[r]});
-      options.say(fmt::format("{}: {} of {} frames mapped, {} objects; {} kidnappings",
-                              run.spec.name, mapped.tracked, mapped.offered,
-                              mapped.map.objects.size(), todo.size()));
-      const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
-      for (EpisodeScore& score :
-           Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs))
+      try {
+        MappedSystem mapped =
+            map_tour(run.spec, *world, {.folder = folder, .maps = cache, .key = map_keys[r]});
+        options.say(fmt::format("{}: {} of {} frames mapped, {} objects; {} kidnappings",
+                                run.spec.name, mapped.tracked, mapped.offered,
+                                mapped.map.objects.size(), todo.size()));
+        const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
+        Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs);
+      } catch (const OutsideError& error) {
+        run.failure = error.what();
+        options.say(fmt::format("{}: {}", run.spec.name, run.failure));
+      }
+      for (EpisodeScore& score : store.load(run.key))
         known.insert_or_assign(Slot{score.variant, score.start}, std::move(score));
     }
-    for (const EpisodeVariant& variant : suite.episodes->variants)
-      for (std::size_t s = 0; s < suite.episodes->starts; ++s)
-        run.scores.push_back(known.at({variant.name, s}));
+    for (std::size_t v = 0; v < suite.episodes->variants.size(); ++v)
+      for (std::size_t s = 0; s < suite.episodes->starts; ++s) {
+        const std::string& variant = suite.episodes->variants[v].name;
+        const auto found = known.find({variant, s});
+        run.scores.push_back(found != known.end()
+                                 ? found->second
+                                 : EpisodeScore{.variant = variant,
+                                                .start = s,
+                                                .goal = world->variants[v].starts[s].goal,
+                                                .reason = "system_failed"});
+      }
   }
   return runs;
 }

@@ -18,6 +18,7 @@ struct EpisodeRun {
   RunSpec spec;
   std::string key;
   std::vector<EpisodeScore> scores;  ///< by variant as in the suite, then by start
+  std::string failure = {};  ///< of an outside system; the episodes that it missed are not stored
 };
 
 struct EpisodeOptions {

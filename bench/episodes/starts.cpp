@@ -26,6 +26,10 @@ constexpr double kClear_m = 0.05;     // around a robot that is put down
 constexpr double kSqueeze_m = 0.015;  // around one that takes the shortest way
 constexpr double kLeast_m = 0.5;      // a shorter way is no search
 
+bool is_search(double way_m) {
+  return std::isfinite(way_m) && way_m >= kLeast_m;
+}
+
 /// Shortest way (m) from each cell to a place where the robot has arrived.
 Grid2d<float> ways_to(const EpisodeStart& goal, double arrival_m, double clearance_m) {
   const FloorGrid& grid = *goal.floor;
@@ -89,6 +93,10 @@ std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& sce
   struct Goal {
     EpisodeStart start;  ///< without its place
     Grid2d<float> way_m;
+    double way_from(const Vector2d& place_m) const {
+      const auto cell = start.floor->cell_of(place_m);
+      return static_cast<double>(way_m(cell->first, cell->second));
+    }
   };
   std::vector<Goal> goals;
   for (const std::string& name : spec.goals) {
@@ -100,15 +108,14 @@ std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& sce
                                       instance.max_m.head<2>().cast<double>());
     if (goal.start.boxes.empty()) continue;
     goal.way_m = ways_to(goal.start, spec.arrival_m, robot.footprint_radius_m + kSqueeze_m);
-    if (std::ranges::any_of(cells, [&](const Vector2d& place) {
-          const auto cell = grid.cell_of(place);
-          return std::isfinite(goal.way_m(cell->first, cell->second));
-        }))
+    if (std::ranges::any_of(cells,
+                            [&](const Vector2d& at) { return is_search(goal.way_from(at)); }))
       goals.push_back(std::move(goal));
   }
   if (goals.empty())
-    throw InputError(fmt::format("{}: has none of the goals where the robot can reach it: {}",
-                                 scene.name, fmt::join(spec.goals, ", ")));
+    throw InputError(fmt::format(
+        "{}: has none of the goals where the robot can reach it and has {} m to drive: {}",
+        scene.name, kLeast_m, fmt::join(spec.goals, ", ")));
 
   std::vector<EpisodeStart> starts;
   const RandomStream stream = RandomStream(spec.seed).fork(0x73746172);
@@ -118,12 +125,11 @@ std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& sce
     EpisodeStart start = goal.start;
     start.index = i;
     start.heading_rad = draw.uniform(1, -std::numbers::pi, std::numbers::pi);
-    for (std::uint64_t k = 0; k < 1000; ++k) {  // the last one counts in a place that is too small
-      start.place_m = cells[draw.below(2 + k, cells.size())];
-      const auto cell = grid.cell_of(start.place_m);
-      start.shortest_m = static_cast<double>(goal.way_m(cell->first, cell->second));
-      if (std::isfinite(start.shortest_m) && start.shortest_m >= kLeast_m) break;
-    }
+    std::uint64_t k = 2;
+    do {
+      start.place_m = cells[draw.below(k++, cells.size())];
+      start.shortest_m = goal.way_from(start.place_m);
+    } while (!is_search(start.shortest_m));
     starts.push_back(std::move(start));
   }
   return starts;

@@ -50,7 +50,7 @@ EpisodesSpec read_episodes(YamlReader node, const SuitePaths& paths) {
       node.integer_or("starts", static_cast<std::int64_t>(spec.starts), 1, 100000));
   spec.seed = static_cast<std::uint64_t>(node.integer_or("seed", 0, 0, INT64_MAX));
   spec.limit_s = node.number_or("limit_s", spec.limit_s, 1, 3600);
-  spec.arrival_m = node.number_or("arrival_m", spec.arrival_m, 0.3, 10);
+  spec.arrival_m = node.number_or("arrival_m", spec.arrival_m, 0.5, 10);
   spec.ticks_per_frame =
       static_cast<int>(node.integer_or("ticks_per_frame", spec.ticks_per_frame, 1, 60));
   spec.dark_s = node.number_or("dark_s", spec.dark_s, 0, 60);

@@ -19,6 +19,8 @@ constexpr double kLeastHeight_m = 0.15;   // of a camera over the floor
 constexpr double kMostBelow = 0.05;       // share of all points well below the floor
 constexpr double kBelow_m = 0.15;         // well below
 constexpr std::size_t kLeastPoints = 20;  // that make a floor
+// Share of a floor's points in a layer of twice the thickness: half where a plane only cuts walls.
+constexpr double kLeastFlat = 0.65;
 constexpr ClassId kFloorClass = 2, kMatClass = 20;
 
 struct Plane {
@@ -34,9 +36,16 @@ struct Surroundings {
   Vector3d up;  ///< of the cameras, on average
 };
 
-std::size_t count_on(const Plane& plane, const std::vector<Vector3d>& points) {
+std::size_t count_on(const Plane& plane, const std::vector<Vector3d>& points,
+                     double within_m = kOnPlane_m) {
   return static_cast<std::size_t>(std::ranges::count_if(
-      points, [&](const Vector3d& p) { return std::abs(plane.height(p)) < kOnPlane_m; }));
+      points, [&](const Vector3d& p) { return std::abs(plane.height(p)) < within_m; }));
+}
+
+/// Whether the points on a plane form a surface, rather than being cut out of walls.
+bool is_surface(const Plane& plane, std::size_t on, const std::vector<Vector3d>& points) {
+  return static_cast<double>(on) >=
+         kLeastFlat * static_cast<double>(count_on(plane, points, 2 * kOnPlane_m));
 }
 
 /// Whether cameras can stand on a plane, and next to nothing is below it.
@@ -87,7 +96,7 @@ std::optional<Plane> best_plane(const std::vector<Vector3d>& points, const Surro
     if (plane.up.dot(around.up) < kSteepest) continue;
     plane.offset_m = plane.up.dot(a);
     const std::size_t on = count_on(plane, points);
-    if (on <= most || !can_be_floor(plane, around)) continue;
+    if (on <= most || !is_surface(plane, on, points) || !can_be_floor(plane, around)) continue;
     best = plane;
     most = on;
   }

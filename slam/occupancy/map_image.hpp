@@ -3,6 +3,7 @@
 
 // The file format under grids and costs: a PGM image beside a YAML file, as map_server reads them.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 
@@ -19,6 +20,13 @@ struct MapImage {
   double resolution_m = 0.05;
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
 };
+
+/// stem.pgm and stem.yaml.
+std::array<std::filesystem::path, 2> map_image_files(const std::filesystem::path& stem);
+
+/// @throws InputError if one of the two is there and not from write_map_image(), or if the stem
+/// names no file.
+void require_replaceable_map_image(const std::filesystem::path& stem);
 
 /// Writes stem.pgm (upper row = north) and stem.yaml. @throws InputError naming the file.
 void write_map_image(const MapImage& map, const std::filesystem::path& stem, const char* mode);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -22,6 +25,20 @@ constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 
 constexpr std::uint8_t kUnknownRaw = 255;
 
+constexpr std::string_view kOurs = "# Written by modelhouse";
+constexpr double kFurthest_m = 1e6;  // of an origin
+
+/// A word as YAML writes it: in quotes if it could be read as anything but itself.
+std::string yaml_word(const std::string& word) {
+  const bool plain = std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-';
+  });
+  if (plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
 std::uint8_t gray(std::int8_t cell, GridMode mode) {
   if (mode == GridMode::kRaw) return cell < 0 ? kUnknownRaw : static_cast<std::uint8_t>(cell);
   return cell == kUnknownCell ? kUnknownGray : cell == kFreeCell ? kFreeGray : kOccupiedGray;
@@ -39,9 +56,13 @@ Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file) {
     in >> number;
   }
   const auto [width, height, brightest] = numbers;
-  if (!in || magic != "P5" || width < 0 || height < 0 || width > 65536 || height > 65536 ||
-      brightest != 255)
-    throw InputError(fmt::format("{}: is not a binary 8-bit PGM image", file.string()));
+  if (!in || magic != "P5" || brightest != 255)
+    throw InputError(fmt::format(
+        "{}: is not a binary 8-bit PGM image (P5, maximum 255), the only kind that is read",
+        file.string()));
+  if (width < 1 || height < 1 || width > 65536 || height > 65536)
+    throw InputError(
+        fmt::format("{}: {} x {} pixels, not 1 to 65536 each", file.string(), width, height));
   in.get();
   const std::string_view pixels = std::string_view(content).substr(
       std::min(content.size(), static_cast<std::size_t>(in.tellg())));
@@ -69,21 +90,39 @@ void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& ste
                   mode == GridMode::kRaw ? "raw" : "trinary");
 }
 
+std::array<std::filesystem::path, 2> map_image_files(const std::filesystem::path& stem) {
+  std::array<std::filesystem::path, 2> files{stem, stem};
+  files[0] += ".pgm";
+  files[1] += ".yaml";
+  return files;
+}
+
+void require_replaceable_map_image(const std::filesystem::path& stem) {
+  if (!stem.has_filename())
+    throw InputError(
+        fmt::format("'{}': names no file: a path without extension is needed, to "
+                    "which .pgm and .yaml are added",
+                    stem.string()));
+  const auto [pgm, yaml] = map_image_files(stem);
+  if (is_file(yaml) ? read_file(yaml).starts_with(kOurs) : !is_there(pgm) && !is_there(yaml))
+    return;
+  throw InputError(fmt::format("{}: is there already, and not from modelhouse: name another",
+                               (is_there(yaml) ? yaml : pgm).string()));
+}
+
 void write_map_image(const MapImage& map, const std::filesystem::path& stem, const char* mode) {
-  std::filesystem::path pgm = stem, yaml = stem;
-  pgm += ".pgm";
-  yaml += ".yaml";
+  const auto [pgm, yaml] = map_image_files(stem);
   const int width = map.levels.width(), height = map.levels.height();
   std::string image = fmt::format("P5\n{} {}\n255\n", width, height);
   for (int y = height - 1; y >= 0; --y)
     for (const std::uint8_t level : map.levels.row(y)) image.push_back(static_cast<char>(level));
   write_atomically(pgm, image);
-  write_atomically(yaml,
-                   fmt::format("image: {}\nmode: {}\nresolution: {}\n"
-                               "origin: [{}, {}, 0]\nnegate: 0\noccupied_thresh: {}\n"
-                               "free_thresh: {}\n",
-                               pgm.filename().string(), mode, map.resolution_m, map.origin_m.x(),
-                               map.origin_m.y(), kOccupiedThreshold, kFreeThreshold));
+  write_atomically(
+      yaml, fmt::format("{}\nimage: {}\nmode: {}\nresolution: {}\n"
+                        "origin: [{}, {}, 0]\nnegate: 0\noccupied_thresh: {}\n"
+                        "free_thresh: {}\n",
+                        kOurs, yaml_word(pgm.filename().string()), mode, map.resolution_m,
+                        map.origin_m.x(), map.origin_m.y(), kOccupiedThreshold, kFreeThreshold));
 }
 
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file) {
@@ -94,6 +133,9 @@ MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file
   if (origin[2] != 0)
     yaml.at("origin").fail(fmt::format("a map turned by {} rad is not supported", origin[2]));
   map.origin_m = {origin[0], origin[1]};
+  if (map.origin_m.cwiseAbs().maxCoeff() > kFurthest_m)
+    yaml.at("origin").fail(
+        fmt::format("({}, {}) m is farther than {} m", origin[0], origin[1], kFurthest_m));
   const Grid2d<std::uint8_t> image =
       read_pgm(file.is_absolute() ? file : yaml_file.parent_path() / file);
   map.levels = Grid2d<std::uint8_t>(image.width(), image.height());
@@ -108,10 +150,14 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file) {
   if (mode != "trinary" && mode != "raw")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary and raw are");
   const MapImage map = read_map_image(yaml, yaml_file);
-  const bool negate = yaml.integer("negate", 0, 1) == 1;
+  const std::string negated = yaml.string("negate");  // map_server takes both spellings
+  const bool negate = negated == "1" || negated == "true";
+  if (!negate && negated != "0" && negated != "false")
+    yaml.at("negate").fail("'" + negated + "' is not 0, 1, true or false");
   const double occupied = yaml.number("occupied_thresh", 0, 1);
   const double free = yaml.number("free_thresh", 0, 1);
-  yaml.finish();
+  if (free > occupied)
+    yaml.at("free_thresh").fail(fmt::format("{} is above occupied_thresh, {}", free, occupied));
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(map.levels.width(), map.levels.height()),
                      .resolution_m = map.resolution_m,
                      .origin_m = map.origin_m};

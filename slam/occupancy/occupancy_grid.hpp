@@ -44,7 +44,8 @@ enum class GridMode {
 void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& stem,
                      GridMode mode = GridMode::kTrinary);
 
-/// Reads such a pair by its YAML file (trinary or raw, no rotation).
+/// Reads such a pair by its YAML file (trinary or raw, no rotation). Keys that map_server does not
+/// define are left alone, as it does.
 /// @throws InputError naming file, line, field and value.
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file);
 

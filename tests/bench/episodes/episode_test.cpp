@@ -21,7 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Suite small_suite(const std::string& robot = "pepper") {
+Suite small_suite(const std::string& robot = "pepper",
+                  const std::string& systems = "[semantic, plain]",
+                  const std::string& more = "labels: [exact]\n") {
   const std::string root = MH_SOURCE_DIR;
   return parse_suite("name: small\nrobot: " + root + "/robots/" + robot + "/" + robot + R"(.yaml
 environments:
@@ -30,11 +32,10 @@ environments:
                          R"(/bench/scenarios/tours/room.yaml}
 vocabulary: )" + root + R"(/assets/vocabulary.mhvoc
 levels: [)" + root + R"(/sim/sensors/levels/pepper.yaml]
-systems: [semantic, plain]
-labels: [exact]
 protocol: {test_interval: 0}
 episodes: {starts: 2, limit_s: 90, goals: [sofa]}
-)",
+systems: )" + systems + "\n" +
+                         more,
                      fs::path(root) / "small.yaml");
 }
 
@@ -68,6 +69,45 @@ TEST(Episodes, TheSameBitsAtOneAndAtTwoJobsAndResumed) {
   EXPECT_TRUE(std::ranges::any_of(once[0].scores, &EpisodeScore::success))
       << episodes_table(suite, once);
   EXPECT_NE(episodes_table(suite, once).find("semantic"), std::string::npos);
+}
+
+TEST(Episodes, AProgramThatEndsFailsAloneAndIsTriedAgain) {
+  const Suite suite =
+      small_suite("pepper", "[{name: broken, protocol: conversation, command: 'exit 7'}, plain]");
+  const TemporaryFolder work(fs::temp_directory_path());
+  EpisodeOptions options;
+  options.cache = work.path() / "cache";
+  options.out = work.path();
+  options.starts = 1;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const std::vector<EpisodeRun> runs = run_episodes(suite, options);
+    ASSERT_EQ(runs.size(), 2U);
+    EXPECT_NE(runs[0].failure.find("exited with code 7"), std::string::npos) << runs[0].failure;
+    ASSERT_EQ(runs[0].scores.size(), 1U);
+    EXPECT_EQ(runs[0].scores[0].reason, "system_failed");
+    EXPECT_EQ(runs[1].failure, "");
+    EXPECT_NE(runs[1].scores.at(0).digest, 0U);
+    EXPECT_NE(episodes_table(suite, runs).find("1 system_failed"), std::string::npos);
+  }
+}
+
+TEST(Episodes, WhatCanOnlyFailIsRefusedBeforeTheWork) {
+  const auto expect_refused = [](const Suite& suite, const char* why) {
+    try {
+      episode_runs(suite);
+      ADD_FAILURE() << "not refused: " << why;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  Suite suite = small_suite();
+  suite.episodes->goals = {"sofa", "wall"};
+  expect_refused(suite, "'wall' is never an object");
+  expect_refused(small_suite("pepper", "[plain]", "labels: [none]\n"), "labels: 'none'");
+  expect_refused(small_suite("pepper", "[plain]", "labels: [exact]\ntrials: 2\n"), "trials: 2");
+  expect_refused(
+      small_suite("pepper", "[{name: paths, protocol: trajectory, command: 'cp x {trajectory}'}]"),
+      "only returns a trajectory");
 }
 
 TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {

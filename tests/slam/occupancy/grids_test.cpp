@@ -7,6 +7,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/occupancy/cost_map.hpp"
+#include "slam/occupancy/map_image.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 #include "tests/slam/occupancy/box_room.hpp"
 #include "tests/slam/occupancy/made_map.hpp"
@@ -168,7 +169,8 @@ TEST(MapServer, RoundTripKeepsCellsAndPlace) {
             std::string("P5\n3 2\n255\n") + "\xCD\xCD\xFE" + std::string(1, '\0') + "\xCD\xCD");
   // Every field that nav2_map_server requires or documents, in its words.
   EXPECT_EQ(read_file(stem + ".yaml"),
-            "image: map.v1.pgm\nmode: trinary\nresolution: 0.05\norigin: [-1.25, 0.1, 0]\n"
+            "# Written by modelhouse\nimage: map.v1.pgm\nmode: trinary\nresolution: 0.05\norigin: "
+            "[-1.25, 0.1, 0]\n"
             "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   save_map_server(grid, stem, GridMode::kRaw);
   EXPECT_EQ(load_map_server(stem + ".yaml").cells, grid.cells);
@@ -205,8 +207,58 @@ TEST(MapServer, RefusesWhatItCannotRead) {
   expect_map_refused(yaml("0", "[0, 0, 0]"), "resolution");
   expect_map_refused(yaml("0.05", "[0, 0, 0.7]"), "turned");
   expect_map_refused(yaml("0.05", "[0, 0, 0]", "scale"), "scale");
+  expect_map_refused(yaml("0.05", "[1e300, 0, 0]"), "farther than");
+  expect_map_refused(
+      "image: bad_map.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n"
+      "occupied_thresh: 0.1\nfree_thresh: 0.9\n",
+      "free_thresh: 0.9 is above occupied_thresh, 0.1");
   write_atomically(testing::TempDir() + "bad_map.yaml", good);
   EXPECT_EQ(load_map_server(testing::TempDir() + "bad_map.yaml").cells.height(), 2);
+  for (const char* empty : {"P5\n0 0\n255\n", "P5\n40 0\n255\n", "P5\n-1 2\n255\nab"}) {
+    write_atomically(pgm, empty);
+    expect_map_refused(good, "pixels, not 1 to 65536 each");
+  }
+  write_atomically(pgm, "P2\n1 1\n255\n7\n");
+  expect_map_refused(good, "the only kind that is read");
+}
+
+TEST(MapServer, ReadsWhatOthersWrite) {
+  const std::string pgm = testing::TempDir() + "others.pgm", file = testing::TempDir() + "o.yaml";
+  write_atomically(pgm, std::string("P5\n2 1\n255\n") + "\xFE" + std::string(1, '\0'));
+  const auto cells = [&](const std::string& negate) {
+    write_atomically(file,
+                     "image: others.pgm\nmap_type: occupancy\nresolution: 1\n"
+                     "origin: [0, 0, 0]\nnegate: " +
+                         negate + "\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+    const OccupancyGrid grid = load_map_server(file);
+    return std::pair(int{grid.cells(0, 0)}, int{grid.cells(1, 0)});
+  };
+  EXPECT_EQ(cells("false"), std::pair(0, 100));
+  EXPECT_EQ(cells("true"), std::pair(100, 0));
+  EXPECT_EQ(cells("1"), std::pair(100, 0));
+  EXPECT_THROW(cells("yes"), InputError);
+}
+
+TEST(MapServer, NamesThatYamlWouldMisreadAreQuoted) {
+  const OccupancyGrid grid{.cells = Grid2d<std::int8_t>(1, 1, kFreeCell)};
+  const std::string stem = testing::TempDir() + "it's: odd #1";
+  save_map_server(grid, stem);
+  EXPECT_EQ(load_map_server(stem + ".yaml").cells, grid.cells);
+}
+
+TEST(MapServer, FilesOfOthersAreNotReplaced) {
+  const std::string stem = testing::TempDir() + "replaceable";
+  std::filesystem::remove(stem + ".pgm");
+  std::filesystem::remove(stem + ".yaml");
+  require_replaceable_map_image(stem);
+  save_map_server({.cells = Grid2d<std::int8_t>(1, 1, kFreeCell)}, stem);
+  require_replaceable_map_image(stem);
+  write_atomically(stem + ".yaml", "image: replaceable.pgm\n");
+  EXPECT_THROW(require_replaceable_map_image(stem), InputError);
+  std::filesystem::remove(stem + ".yaml");  // somebody's image
+  EXPECT_THROW(require_replaceable_map_image(stem), InputError);
+  EXPECT_THROW(require_replaceable_map_image(testing::TempDir() + "folder/"), InputError);
+  EXPECT_THROW(require_replaceable_map_image(""), InputError);
 }
 
 }  // namespace

@@ -127,6 +127,18 @@ TEST(FloorFrame, WithoutAPlaneThereIsNone) {
   EXPECT_FALSE(find_floor_frame(room.points, room.cameras));
   EXPECT_FALSE(find_floor_frame(room.points, {}));
 }
+TEST(FloorFrame, ASliceOfWallsIsNoFloor) {
+  MadeRoom room(kVoid, kVoid);
+  room.points.clear();  // a level camera sees walls from 0.4 m up, and no floor
+  const RandomStream draws(9);
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    const double along = draws.uniform(3 * i, -2, 2), z = draws.uniform(3 * i + 1, 0.4, 1.8);
+    const double side = i % 2 == 0 ? -2 : 2;
+    const Vector3d at = i % 4 < 2 ? Vector3d(side, along, z) : Vector3d(along, side, z);
+    room.points.push_back({room.world_from_room * at, kVoid});
+  }
+  EXPECT_FALSE(find_floor_frame(room.points, room.cameras));
+}
 
 }  // namespace
 }  // namespace mh
