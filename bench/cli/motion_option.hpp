@@ -22,7 +22,7 @@ struct MotionOption {
   void add_to(CLI::App& command) {
     command.add_option("tour", tour, "Tour (YAML); or --motion");
     command.add_option("--motion", motion,
-                       "TOUR.yaml, the name of a shipped tour, auto[:SEED], "
+                       "TOUR.yaml, the name of a shipped tour, auto[:SEED], survey[:SEED], "
                        "handheld[:SEED[:FRAMES]], replay:FILE.tum or "
                        "commands:FILE.yaml");
   }
@@ -32,7 +32,7 @@ struct MotionOption {
     if (motion.empty() == tour.empty())
       throw InputError("give the motion once: as TOUR or as --motion");
     const std::string& word = motion.empty() ? tour : motion;
-    const std::vector<std::string> kinds = {"auto", "handheld", "replay", "commands"};
+    const std::vector<std::string> kinds = {"auto", "survey", "handheld", "replay", "commands"};
     const std::string kind = word.substr(0, word.find(':'));
     if (std::ranges::find(kinds, kind) != kinds.end()) return word;
     if (is_bare_name(kind) && !shipped_or_there(word)) {

@@ -32,7 +32,7 @@ std::string with_index(std::string text, int index) {
   return text;
 }
 
-constexpr const char* kMotions[] = {"auto", "handheld"};
+constexpr const char* kMotions[] = {"auto", "survey", "handheld"};
 
 /// Suggests what a word that names no file may have meant; "" for a path.
 std::string what_is_known(const std::string& text, Shipped what) {

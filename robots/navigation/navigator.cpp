@@ -21,8 +21,8 @@ using Eigen::Vector2d;
 constexpr double kReplan_s = 1.0;
 constexpr double kProgress_m = 0.10;
 constexpr double kBackOff_s = 1.5, kBackOff_m_per_s = 0.08;
-constexpr double kShown_m = 1.5;          // what is nearer is looked at for braking
-constexpr double kDetourPerNearness = 4;  // m of way that being 1 m nearer to a thing is worth
+constexpr double kShown_m = 1.5;       // what is nearer is looked at for braking
+constexpr double kSamePlace_m = 0.10;  // places equally near to a thing: the nearest by way counts
 constexpr double kFaced_rad = 0.1;
 constexpr double kBeforeThing_m = 0.1;
 constexpr double kReachSlack_m = 0.3;  // of the distances kept, beyond what counts as arrival
@@ -73,16 +73,22 @@ std::optional<Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>&
   const auto start = nearest_clear(grid, from_m, clearance_m, 0.5);
   if (!start) return std::nullopt;
   const Grid2d<float> lengths = way_lengths(grid, *start, clearance_m);
+  double nearest_m = reach_m;
+  const auto visit = [&](auto&& use) {
+    for (int y = 0; y < lengths.height(); ++y)
+      for (int x = 0; x < lengths.width(); ++x)
+        if (std::isfinite(lengths(x, y)))
+          use(grid.center_of({x, y}), static_cast<double>(away_m(x, y)),
+              static_cast<double>(lengths(x, y)));
+  };
+  visit([&](const Vector2d&, double away, double) { nearest_m = std::min(nearest_m, away); });
   std::optional<Vector2d> best;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (int y = 0; y < lengths.height(); ++y)
-    for (int x = 0; x < lengths.width(); ++x) {
-      const double away = static_cast<double>(away_m(x, y));
-      const double cost_m = static_cast<double>(lengths(x, y)) + kDetourPerNearness * away;
-      if (away > reach_m || cost_m >= least_m) continue;
-      least_m = cost_m;
-      best = grid.center_of({x, y});
-    }
+  double best_m = std::numeric_limits<double>::infinity();
+  visit([&](const Vector2d& place_m, double away, double length_m) {
+    if (away > std::min(reach_m, nearest_m + kSamePlace_m) || length_m >= best_m) return;
+    best_m = length_m;
+    best = place_m;
+  });
   return best;
 }
 

@@ -152,8 +152,8 @@ bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls,
 Grid2d<float> distances_m(const KnownMap& map, std::span<const Eigen::Vector2d> places_m,
                           double reach_m);
 
-/// The place of a map that is best to stand at before a thing: to be 1 m nearer to it is worth 4 m
-/// of way. nullopt if no place that can be reached from `from_m` is within reach.
+/// The place of a map that is best to stand at before a thing: the nearest to it, the nearest by
+/// way among those; nullopt if no place that can be reached from `from_m` is within reach.
 /// @param away_m  of each cell from the thing
 std::optional<Eigen::Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>& away_m,
                                             const Eigen::Vector2d& from_m, double clearance_m,

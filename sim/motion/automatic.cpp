@@ -22,6 +22,7 @@ using Eigen::Vector2d;
 constexpr double kStray_m = 0.05;        // the robot stays within this distance of its path
 constexpr double kLeastStray_m = 0.015;  // the limit in narrow places
 constexpr double kSmallestFloor_m2 = 0.1;
+constexpr double kSurvey_m_per_s = 0.35, kSurvey_rad_per_s = 0.6;  // as the navigator drives
 
 bool keeps_clear(const FloorGrid& grid, std::span<const Vector2d> corners, double clearance_m) {
   const RoundedPath path(corners);
@@ -73,13 +74,19 @@ Tour automatic_tour(const Scene& scene, const Robot& robot, const AutomaticTourC
     const auto places = spread_places(grid, region, config.apart_m, config.places, config.seed);
     const auto order = round_trip(lengths_between(grid, places, clearance_m), places.size()).order;
     Tour tour;
-    tour.name = fmt::format("auto:{}", config.seed);
+    tour.name = fmt::format("{}:{}", config.survey ? "survey" : "auto", config.seed);
     tour.file = tour.name;
     tour.start_m = places.front();
+    if (config.survey) {  // so that a camera at 10 Hz can follow
+      tour.max_velocity_m_per_s = kSurvey_m_per_s;
+      tour.max_turn_rad_per_s = kSurvey_rad_per_s;
+    }
     tour.start_heading_rad = RandomStream(config.seed).uniform(1, -M_PI, M_PI);
-    tour.waypoints.push_back({.position_m = tour.start_m, .turn_rad = 2 * M_PI});
+    constexpr double kAround_rad = 2 * M_PI;
+    tour.waypoints.push_back({.position_m = tour.start_m, .turn_rad = kAround_rad});
     for (std::size_t i = 1; i < order.size(); ++i)
-      tour.waypoints.push_back({.position_m = places[order[i]]});
+      tour.waypoints.push_back(
+          {.position_m = places[order[i]], .turn_rad = config.survey ? kAround_rad : 0.0});
     if (order.size() > 1) tour.waypoints.push_back({.position_m = tour.start_m});
     // Continues past the start, so that what was seen first is seen again.
     tour.waypoints.push_back(

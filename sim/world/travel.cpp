@@ -32,6 +32,7 @@ struct Motion {
   std::filesystem::path file = {};
   std::uint64_t seed = 0;
   std::optional<std::size_t> frames = {};
+  bool survey = false;
 };
 
 std::uint64_t number(const std::string& motion, std::string_view text, const char* what) {
@@ -56,17 +57,17 @@ Motion parse(const std::string& motion) {
     if (colon == std::string_view::npos) break;
     rest.remove_prefix(colon + 1);
   }
-  const bool by_hand = parts[0] == "handheld";
-  if (!by_hand && parts[0] != "auto") {
+  const bool by_hand = parts[0] == "handheld", survey = parts[0] == "survey";
+  if (!by_hand && !survey && parts[0] != "auto") {
     if (text.size() != motion.size())
-      throw InputError(
-          fmt::format("motion '{}': '{}' is neither 'auto' nor 'handheld'", motion, parts[0]));
+      throw InputError(fmt::format("motion '{}': '{}' is neither 'auto', 'survey' nor 'handheld'",
+                                   motion, parts[0]));
     return {.file = motion};
   }
   if (parts.size() > (by_hand ? 3U : 2U))
     throw InputError(
         fmt::format("motion '{}': there is no such part as '{}'", motion, parts.back()));
-  Motion result{.kind = by_hand ? Motion::Kind::kHandheld : Motion::Kind::kAuto};
+  Motion result{.kind = by_hand ? Motion::Kind::kHandheld : Motion::Kind::kAuto, .survey = survey};
   if (parts.size() > 1) result.seed = number(motion, parts[1], "seed");
   if (parts.size() > 2) {
     result.frames = number(motion, parts[2], "number of frames");
@@ -80,7 +81,9 @@ DrivenPath travel_on_level(const Scene& scene, const Robot& robot, const Motion&
                            const std::vector<MovingObstacle>& others) {
   switch (motion.kind) {
     case Motion::Kind::kAuto:
-      return drive(scene, robot, automatic_tour(scene, robot, {.seed = motion.seed}), others);
+      return drive(scene, robot,
+                   automatic_tour(scene, robot, {.seed = motion.seed, .survey = motion.survey}),
+                   others);
     case Motion::Kind::kHandheld:
       return scan_by_hand(scene, robot.camera, {.seed = motion.seed, .frames = motion.frames});
     case Motion::Kind::kReplay:

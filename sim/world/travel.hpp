@@ -17,12 +17,13 @@ namespace mh {
 /// Moves the camera through a scene by a named motion:
 /// - a file: the tour in it (load_tour);
 /// - `auto[:SEED]`: a tour through all of the floor (automatic_tour);
+/// - `survey[:SEED]`: the same, looking around at every place;
 /// - `handheld[:SEED[:FRAMES]]`: a scan by hand (scan_by_hand), 300 to 1,500 frames by the size of
 ///   the place;
 /// - `replay:FILE`: a recorded trajectory in TUM's format (replay);
 /// - `commands:FILE`: a script of velocity commands (load_commands).
 /// Positions of tours and heights over the floor are in the floor's frame (world_from_floor). The
-/// second and third are also accepted as suites write them, `generated:auto:SEED`.
+/// generated ones are also accepted as suites write them, `generated:auto:SEED`.
 /// @param others  moving obstacles; only a driven motion meets them
 /// @throws InputError if there is no such motion, a file is bad or the path is blocked.
 DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& motion,

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -145,23 +144,6 @@ TEST(Navigator, TakesANarrowDoorInPlaceOfALongWay) {
   driven.run(navigator, 60);
   EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
   EXPECT_GT(driven.nearest_m, 0.27);
-}
-
-TEST(PlaceBefore, BeingOneMeterNearerIsWorthFourMetersOfWay) {
-  const Flat flat;
-  const FloorGrid grid = flat.map().grid;
-  Grid2d<float> away_m(120, 80, std::numeric_limits<float>::infinity());
-  const Vector2d from_m(1.0, 3.2);
-  const auto place = [&](float first_m, float second_m) {
-    away_m(40, 64) = first_m;    // 1 m of way
-    away_m(100, 64) = second_m;  // 4 m of way
-    const auto best = place_before(grid, away_m, from_m, 0.3, 0.9);
-    return best ? best->x() : 0.0;
-  };
-  EXPECT_DOUBLE_EQ(place(0.30F, 0.20F), 2.0);  // a tenth of a meter is not worth 3 m
-  EXPECT_DOUBLE_EQ(place(0.89F, 0.05F), 5.0);
-  EXPECT_DOUBLE_EQ(place(0.95F, 0.50F), 5.0);  // the first is out of reach
-  EXPECT_DOUBLE_EQ(place(0.95F, 0.95F), 0.0);
 }
 
 TEST(Navigator, LostItLooksAroundElsewhere) {

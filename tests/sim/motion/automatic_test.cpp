@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/motion/automatic.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -64,6 +65,30 @@ TEST(AutomaticTour, OtherSeedsGoElsewhereInEveryRoom) {
       test::expect_limits_kept(path.peaks, pepper().limits);
     }
   }
+}
+
+TEST(AutomaticTour, ASurveyLooksAroundAtEachOfItsPlaces) {
+  const Scene scene = load_house(MH_SOURCE_DIR "/scenes/rooms/office.yaml");
+  const Tour brief = automatic_tour(scene, pepper()),
+             survey = automatic_tour(scene, pepper(), {.survey = true});
+  ASSERT_EQ(survey.waypoints.size(), brief.waypoints.size());
+  const auto turns = [](const Tour& tour) {
+    return std::ranges::count_if(tour.waypoints,
+                                 [](const Waypoint& w) { return w.turn_rad == 2 * M_PI; });
+  };
+  EXPECT_EQ(turns(brief), 1);
+  EXPECT_GT(turns(survey), 2);
+  const auto turned = [](const DrivenPath& path) {
+    double sum_rad = 0;
+    for (std::size_t i = 1; i < path.base.size(); ++i)
+      sum_rad +=
+          angle_between_rad(path.base[i - 1].world_from_camera, path.base[i].world_from_camera);
+    return sum_rad;
+  };
+  const DrivenPath path = drive(scene, pepper(), survey);
+  EXPECT_LT(path.contact_time_s, 0.1);
+  EXPECT_GT(turned(path), turned(drive(scene, pepper(), brief)) +
+                              0.9 * 2 * M_PI * static_cast<double>(turns(survey) - 1));
 }
 
 TEST(Planned, GoesRoundWhatStandsInTheWay) {
