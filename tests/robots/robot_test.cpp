@@ -2,6 +2,7 @@
 #include "robots/model/robot.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <numbers>
@@ -16,6 +17,7 @@
 #include "robots/model/robot_keys.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
 #include "source_dir.hpp"
 
 namespace mh {
@@ -23,14 +25,11 @@ namespace {
 
 const std::string kPepper = MH_SOURCE_DIR "/robots/pepper/pepper.yaml";
 
-/// The message with which Pepper's file is refused after one edit.
-std::string refusal(const std::string& from, const std::string& to) {
-  std::string text = read_file(kPepper);
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-  const std::string file = testing::TempDir() + "robot_test.yaml";
-  write_atomically(testing::TempDir() + "pepper.urdf",
+/// What load_robot() says of a file in the place of Pepper's; "no error" if it is taken.
+std::string verdict_on(const std::string& text) {
+  const TemporaryFolder folder(testing::TempDir());  // tests run side by side
+  const std::filesystem::path file = folder.path() / "robot.yaml";
+  write_atomically(folder.path() / "pepper.urdf",
                    read_file(MH_SOURCE_DIR "/robots/pepper/pepper.urdf"));
   write_atomically(file, text);
   try {
@@ -39,6 +38,15 @@ std::string refusal(const std::string& from, const std::string& to) {
     return e.what();
   }
   return "no error";
+}
+
+/// The message with which Pepper's file is refused after one edit.
+std::string refusal(const std::string& from, const std::string& to) {
+  std::string text = read_file(kPepper);
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  return verdict_on(text);
 }
 
 TEST(LoadRobot, PepperHasItsPublishedFigures) {
@@ -92,20 +100,10 @@ YAML::Node node_at(YAML::Node node, const std::string& mapping) {
   return node;
 }
 
-/// What load_robot() says of Pepper's file after an edit; "no error" if it is taken.
 std::string verdict(const YAML::Node& edited) {
   std::ostringstream text;
   text << edited;
-  const std::string file = testing::TempDir() + "robot_keys.yaml";
-  write_atomically(testing::TempDir() + "pepper.urdf",
-                   read_file(MH_SOURCE_DIR "/robots/pepper/pepper.urdf"));
-  write_atomically(file, text.str());
-  try {
-    load_robot(file);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
+  return verdict_on(text.str());
 }
 
 TEST(RobotKeys, AreThoseThatTheLoaderKnows) {

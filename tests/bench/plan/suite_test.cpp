@@ -165,8 +165,9 @@ TEST_F(SuiteFile, AMisspeltMotionIsToldWhichOneWasMeant) {
     load_suite(folder_ / "suite.yaml");
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("did you mean 'handheld'? There are: auto, handheld, "),
-              std::string::npos)
+    EXPECT_NE(
+        std::string(e.what()).find("did you mean 'handheld'? There are: auto, survey, handheld, "),
+        std::string::npos)
         << e.what();
   }
 }
