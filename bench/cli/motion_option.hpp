@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/plan/shipped.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/suggest.hpp"
 
@@ -32,7 +33,8 @@ struct MotionOption {
     if (motion.empty() == tour.empty())
       throw InputError("give the motion once: as TOUR or as --motion");
     const std::string& word = motion.empty() ? tour : motion;
-    const std::vector<std::string> kinds = {"auto", "survey", "handheld", "replay", "commands"};
+    std::vector<std::string> kinds(kMadeMotions.begin(), kMadeMotions.end());
+    kinds.insert(kinds.end(), {"replay", "commands"});
     const std::string kind = word.substr(0, word.find(':'));
     if (std::ranges::find(kinds, kind) != kinds.end()) return word;
     if (is_bare_name(kind) && !shipped_or_there(word)) {

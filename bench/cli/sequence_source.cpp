@@ -73,14 +73,14 @@ void SourceOptions::check() const {
     if (!topics.empty()) throw InputError("--topics is for recordings, but the source is a scene");
     return;
   }
+  const auto refuse = [&](const std::string& option) {
+    throw InputError(fmt::format("{}: is for scene:FILE, but the source is '{}'", option, source));
+  };
   for (const auto& [name, value] :
        {std::pair("--tour", &tour), {"--robot", &robot}, {"--level", &level}})
-    if (!value->empty())
-      throw InputError(
-          fmt::format("{} {}: is for scene:FILE, but the source is '{}'", name, *value, source));
-  if (frame.up || frame.floor_z_m)
-    throw InputError(fmt::format("{}: is for scene:FILE, but the source is '{}'",
-                                 frame.up ? "--up" : "--floor-z", source));
+    if (!value->empty()) refuse(fmt::format("{} {}", name, *value));
+  if (frame.up) refuse("--up");
+  if (frame.floor_z_m) refuse("--floor-z");
 }
 
 std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,

@@ -4,7 +4,6 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -32,14 +31,12 @@ std::string with_index(std::string text, int index) {
   return text;
 }
 
-constexpr const char* kMotions[] = {"auto", "survey", "handheld"};
-
 /// Suggests what a word that names no file may have meant; "" for a path.
 std::string what_is_known(const std::string& text, Shipped what) {
   const std::string word = what == Shipped::kTour ? text.substr(0, text.find(':')) : text;
   if (!is_bare_name(word)) return "";
   std::vector<std::string> known = shipped_names(what);
-  if (what == Shipped::kTour) known.insert(known.begin(), std::begin(kMotions), std::end(kMotions));
+  if (what == Shipped::kTour) known.insert(known.begin(), kMadeMotions.begin(), kMadeMotions.end());
   return hint(word, known);
 }
 
@@ -72,7 +69,7 @@ fs::path read_scene(const YamlReader& node, const SuitePaths& paths, int index) 
 /// Reads a tour: a source, or just the name of a motion (sim/world/travel.hpp).
 fs::path read_tour(const YamlReader& node, const SuitePaths& paths, int index) {
   const std::string text = with_index(node.as_string(), index);
-  for (const char* motion : kMotions) {
+  for (const char* motion : kMadeMotions) {
     if (text != motion && !text.starts_with(motion + std::string(":"))) continue;
     try {
       check_motion(text);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +14,9 @@
 #include "sim/world/pedestrian.hpp"
 
 namespace mh {
+
+/// The motions that are made for a scene, as their names begin.
+inline constexpr std::array<const char*, 3> kMadeMotions{"auto", "survey", "handheld"};
 
 /// Moves the camera through a scene by a named motion:
 /// - a file: the tour in it (load_tour);

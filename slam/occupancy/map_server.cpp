@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -9,6 +8,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <yaml-cpp/emitter.h>
 
 #include "slam/core/files.hpp"
 #include "slam/core/yaml.hpp"
@@ -30,13 +30,9 @@ constexpr double kFurthest_m = 1e6;  // of an origin
 
 /// A word as YAML writes it: in quotes if it could be read as anything but itself.
 std::string yaml_word(const std::string& word) {
-  const bool plain = std::ranges::all_of(word, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-';
-  });
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  return quoted + "'";
+  YAML::Emitter yaml;
+  yaml << word;
+  return yaml.c_str();
 }
 
 std::uint8_t gray(std::int8_t cell, GridMode mode) {
