@@ -22,10 +22,10 @@ function(digest_of variable)
   set(${variable} ${digest} PARENT_SCOPE)
 endfunction()
 
-digest_of(LIGHT scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml sim/render/*.cpp sim/render/*.hpp slam/core/*.cpp
+digest_of(LIGHT scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml scenes/floors/*.yaml sim/render/*.cpp sim/render/*.hpp slam/core/*.cpp
           slam/core/*.hpp)
 digest_of(DETECT slam/detect/*.cpp slam/detect/*.hpp slam/core/*.cpp slam/core/*.hpp)
-digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml robots/*.cpp robots/*.hpp sim/*.cpp
+digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml scenes/floors/*.yaml robots/*.cpp robots/*.hpp sim/*.cpp
           sim/*.hpp bench/protocol/*.cpp bench/protocol/*.hpp bench/metrics/*.cpp
           bench/metrics/*.hpp bench/systems/*.cpp bench/systems/*.hpp bench/world/*.cpp
           bench/world/*.hpp bench/inputs/inputs.cpp bench/inputs/inputs.hpp bench/inputs/recorded_camera.*

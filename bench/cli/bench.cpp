@@ -102,8 +102,10 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
     fmt::print("{}\n", episodes_json(suite, runs).dump(2));
   else
     fmt::print("{}\nresults in {}\n", table, episodes.out.string());
+  std::vector<FailedRun> failed;
   for (const EpisodeRun& run : runs)
-    if (!run.failure.empty()) throw MachineError(fmt::format("{}: {}", run.spec.name, run.failure));
+    if (!run.failure.empty()) failed.push_back({run.spec, run.failure});
+  if (!failed.empty()) throw_failures(failed, failed.front().error, "");
 }
 
 /// The words of a text, as a shell splits and expands them.

@@ -221,6 +221,7 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
                                 mapped.map.objects.size(), todo.size()));
         const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
         Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs);
+        mapped.system->finish();
       } catch (const OutsideError& error) {
         run.failure = error.what();
         options.say(fmt::format("{}: {}", run.spec.name, run.failure));

@@ -328,7 +328,7 @@ std::string table_script(const PagesSource& source, const PlotOrder& order, cons
                                                      "labels",
                                                      "scenes",
                                                      "ate_rmse_m",
-                                                     "rpe_second_m",
+                                                     "rpe_second_rmse_m",
                                                      "held_out.success",
                                                      "held_out.correct",
                                                      "held_out.distance_mean_m",

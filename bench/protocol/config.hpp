@@ -45,7 +45,7 @@ constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> setting_words(Q
 /// What the attempts of one query differ in. RANSAC's draws differ in any case.
 enum class Attempts {
   kSameFrame,  ///< the same frame again, with its noise
-  kNewNoise,   ///< a frame of the same moment with another noise: more than a robot at rest has
+  kNewNoise,   ///< the same moment rendered with independent noise in every attempt
 };
 
 constexpr std::array<std::pair<std::string_view, Attempts>, 2> setting_words(Attempts) {
@@ -85,22 +85,24 @@ void fields(C& c, Visit& v) {
          query_attempts, attempts, max_blank_frames, correct_distance_m, correct_angle_deg, truth] =
       c;
   v("test_interval", test_interval, {0, 100000},
-    "every so many frames one is held out as a test frame; 0: none");
+    "hold out every n-th frame as a test frame; 0: none");
   v("on_failure", on_failure, {},
-    "where tracking is lost the feed goes back (rewind) or on (continue)");
+    "when tracking is lost, the feed goes back (rewind) or on (continue)");
   v("rewind_frames", rewind_frames, {1, 100000}, "how far the feed goes back after a failure");
   v("restarts_per_frame", restarts_per_frame, {0, 1000},
     "failed restarts after which the offending frame is dropped");
-  v("reset", reset, {}, "after a drop the count of restarts starts again (counter), or all (map)");
-  v("max_effort", max_effort, {1, 1000}, "mapping gives up after so many track calls per frame");
+  v("reset", reset, {},
+    "after a dropped frame: restart the count of restarts (counter), or discard the map too (map)");
+  v("max_effort", max_effort, {1, 1000},
+    "mapping stops after this many track calls per frame of the sequence");
   v("query_attempts", query_attempts, {1, 1000}, "times that a test frame is shown");
   v("attempts", attempts, {},
     "they repeat the same frame (same_frame), or show its moment with new noise (new_noise)");
   v("max_blank_frames", max_blank_frames, {1, 100000},
     "blank frames shown at most until the system is lost");
   v("correct_distance_m", correct_distance_m, setting::kLength_m,
-    "a correct answer is no farther off,");
-  v("correct_angle_deg", correct_angle_deg, {0, 180}, "nor turned by more");
+    "largest position error of a correct answer");
+  v("correct_angle_deg", correct_angle_deg, {0, 180}, "largest rotation error of a correct answer");
   v("truth", truth, {}, "what an answer is compared with: local or interpolated");
 }
 

@@ -13,7 +13,8 @@ struct QueryGrade {
   // NearestBy::kPlace): true poses, so that they are the same for every system.
   std::optional<double> mapped_m = {}, mapped_deg = {};
   std::optional<double> shown = {};  ///< share of the surface in sight that a mapped frame shows
-  std::optional<double> speed = {};  ///< of a scan by hand, as a multiple; absent: standing still
+  std::optional<double> speed = {};  ///< playback speed of a handheld scan, 1 = as
+                                     ///< recorded; absent: standing still
   friend bool operator==(const QueryGrade&, const QueryGrade&) = default;
 };
 

@@ -34,7 +34,7 @@ struct UnusableFrame : InputError {
   using InputError::InputError;
 };
 
-/// If none of this many frames at the start is usable, the recording is hopeless.
+/// If none of this many frames at the start is usable, the recording is rejected.
 inline constexpr std::size_t kHopeless = 10;
 
 /// Returns frame i. @throws UnusableFrame if it cannot be read or differs in size from the

@@ -39,11 +39,10 @@ struct PredictedShare {
   double predicted_s = 0;
 };
 
-/// Splits runs into consecutive shares of about equal predicted cost: those whose eighth powers
-/// have the least sum, so that the most expensive share counts most. A share that begins among runs
-/// of the same images makes these again, which keeps such runs together where that does not
-/// unbalance the shares. Every run is in exactly one share; with more parts than runs the last
-/// shares are empty.
+/// Splits runs into consecutive shares of about equal predicted cost. Minimizes the sum of the
+/// eighth powers of the shares' costs, which approximates minimizing the most expensive share. A
+/// share that starts in the middle of runs with the same images must render those images again.
+/// Every run is in exactly one share; with more parts than runs the last shares are empty.
 /// @param runs  those that see the same images follow one another, as expand() orders them
 /// @returns `parts` shares
 std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts);

@@ -50,7 +50,7 @@ class Log {
 };
 
 /// Scope of a call into the library. What the library prints goes to the log: our own output is
-/// read by the bench. Our floating-point mode is restored afterwards: code built with -ffast-math
+/// read by the bench. Our floating-point mode is restored afterward: code built with -ffast-math
 /// changes it when loaded, and frames would come out with different bits.
 class Visit {
  public:

@@ -23,7 +23,7 @@ Eigen::Matrix3d rims_from_twist(const OmniWheels& wheels) {
   return rows;
 }
 
-/// The largest acceleration towards a goal `distance` away (in velocity) such that reducing it by
+/// The largest acceleration toward a goal `distance` away (in velocity) such that reducing it by
 /// jerk * step in each step ends exactly at the goal: with n steps, distance = jerk step^2 n (n +
 /// 1)/2.
 double braking_acceleration(double distance, double jerk, double step_s) {

@@ -19,7 +19,7 @@ Eigen::Vector3d rim_speeds_m_per_s(const OmniWheels& wheels, const Twist2d& twis
 Twist2d twist_of_rims(const OmniWheels& wheels, const Eigen::Vector3d& rims_m_per_s);
 /// Follows a velocity command within limits of velocity, acceleration and jerk, with the base's
 /// motion over the floor (world frame) and its rotation treated independently. Each step changes
-/// the acceleration by at most jerk * step, towards the largest one that can still be reduced to
+/// the acceleration by at most jerk * step, toward the largest one that can still be reduced to
 /// zero by the time the command is reached.
 ///
 /// With wheels, no rim exceeds its limit: speed + reach * turn rate stays within the rims' limit,

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "scenes/generate/describe.hpp"
+#include "scenes/generate/floor.hpp"
 #include "scenes/generate/furnish.hpp"
 #include "scenes/generate/lamps.hpp"
 #include "scenes/generate/shape.hpp"
@@ -85,7 +86,7 @@ GeneratedReference parse_generated(std::string_view source) {
     const auto [end, error] =
         std::from_chars(number.data(), number.data() + number.size(), reference.seed);
     if (error == std::errc() && end == number.data() + number.size() && !number.empty()) {
-      category_by_name(reference.category);
+      if (floor_by_name(reference.category) == nullptr) category_by_name(reference.category);
       return reference;
     }
   }
@@ -100,6 +101,8 @@ std::string to_string(const GeneratedReference& reference) {
 }
 
 GeneratedPlan generate_plan(const GeneratedReference& reference) {
+  if (const FloorGrammar* const floor = floor_by_name(reference.category))
+    return generate_floor(*floor, reference.seed);
   const Category& category = category_by_name(reference.category);
   const RandomStream stream = RandomStream(name_key(category.name)).fork(reference.seed);
   const RoomGrammar& room = category.rooms[reference.seed % category.rooms.size()];

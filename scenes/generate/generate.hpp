@@ -12,7 +12,8 @@
 
 namespace mh {
 
-/// A generated environment by name: "generated:bathroom:3".
+/// A generated environment by name: "generated:bathroom:3", or a floor of like rooms:
+/// "generated:hotel:0".
 struct GeneratedReference {
   std::string category;
   std::uint64_t seed = 0;
@@ -29,7 +30,7 @@ std::string to_string(const GeneratedReference& reference);
 /// opened, and a robot 0.52 m wide can get from every place where it fits to every other.
 struct GeneratedPlan {
   std::string name;  ///< "bathroom-3"
-  std::string room;  ///< which of the category's rooms: "bathroom", "gym"
+  std::string room;  ///< which of the category's rooms: "bathroom", "gym"; a floor: "8 rooms"
   HouseFile house;
   double floor_area_m2 = 0;
   int objects = 0;        ///< pieces, doors and windows

@@ -149,21 +149,18 @@ ItemRule read_rule(YamlReader yaml, bool belongs) {
   return rule;
 }
 
-RoomGrammar read_room(YamlReader yaml) {
-  RoomGrammar room;
-  room.name = yaml.string("name");
-  room.area_m2 = as_range(yaml.at("area_m2"), 2.0, 400.0);
-  room.aspect = as_range(yaml.at("aspect"), 1.0, 12.0);
-  room.height_m = as_range(yaml.at("height_m"), 2.1, 8.0);
-  room.cut_chance = yaml.number_or("cut", 0.0, 0.0, 1.0);
-  room.cut_share = range_or(yaml, "cut_share", room.cut_share, 0.1, 0.8);
+std::vector<ItemRule> read_rules(const YamlReader& yaml) {
+  std::vector<ItemRule> rules;
+  for (YamlReader& rule : yaml.items()) rules.push_back(read_rule(rule, false));
+  return rules;
+}
+
+/// Everything of a room but its name and shape. Finishes the mapping.
+void read_interior(YamlReader& yaml, RoomGrammar& room) {
   room.windows = range_or(yaml, "windows", room.windows, 0, 12);
   room.window_width_m = range_or(yaml, "window_width_m", room.window_width_m, 0.3, 5.0);
   room.window_sill_m = range_or(yaml, "window_sill_m", room.window_sill_m, 0.05, 2.5);
   room.window_head_m = range_or(yaml, "window_head_m", room.window_head_m, 0.5, 6.0);
-  room.doors = range_or(yaml, "doors", room.doors, 1, 12);
-  const YamlReader density = yaml.at("density");
-  std::ranges::copy(density.as_numbers(4), room.density.begin());
   room.floors = palette_names(yaml.at("floors"));
   room.walls = palette_names(yaml.at("walls"));
   room.ceilings = palette_names(yaml.at("ceilings"));
@@ -176,13 +173,43 @@ RoomGrammar read_room(YamlReader yaml) {
   room.lamp_power = range_or(yaml, "lamp_power", room.lamp_power, 0.0, 100.0);
   room.warmth = range_or(yaml, "warmth", room.warmth, 0.0, 1.0);
   room.roles = read_roles(yaml, "roles");
-  for (const char* list : {"furniture", "extras"})
-    for (YamlReader& rule : yaml.at(list).items())
-      (list[0] == 'f' ? room.furniture : room.extras).push_back(read_rule(rule, false));
-  if (auto fittings = yaml.find("fittings"))
-    for (YamlReader& rule : fittings->items()) room.fittings.push_back(read_rule(rule, false));
+  room.furniture = read_rules(yaml.at("furniture"));
+  if (const auto extras = yaml.find("extras")) room.extras = read_rules(*extras);
+  if (const auto fittings = yaml.find("fittings")) room.fittings = read_rules(*fittings);
   yaml.finish();
+}
+
+RoomGrammar read_room(YamlReader yaml) {
+  RoomGrammar room;
+  room.name = yaml.string("name");
+  room.area_m2 = as_range(yaml.at("area_m2"), 2.0, 400.0);
+  room.aspect = as_range(yaml.at("aspect"), 1.0, 12.0);
+  room.height_m = as_range(yaml.at("height_m"), 2.1, 8.0);
+  room.cut_chance = yaml.number_or("cut", 0.0, 0.0, 1.0);
+  room.cut_share = range_or(yaml, "cut_share", room.cut_share, 0.1, 0.8);
+  room.doors = range_or(yaml, "doors", room.doors, 1, 12);
+  const YamlReader density = yaml.at("density");
+  std::ranges::copy(density.as_numbers(4), room.density.begin());
+  read_interior(yaml, room);
   return room;
+}
+
+FloorGrammar read_floor(YamlReader yaml) {
+  FloorGrammar floor;
+  floor.name = yaml.string("name");
+  floor.rooms_per_side = as_range(yaml.at("rooms_per_side"), 1, 20);
+  floor.corridor_width_m = as_range(yaml.at("corridor_width_m"), 1.3, 6.0);
+  floor.height_m = as_range(yaml.at("height_m"), 2.1, 8.0);
+  floor.objects_of_its_own = as_range(yaml.at("objects_of_its_own"), 0, 100);
+  YamlReader room = yaml.at("room"), corridor = yaml.at("corridor");
+  floor.room.name = "room";
+  floor.room.area_m2 = as_range(room.at("area_m2"), 5.0, 100.0);
+  floor.room.aspect = as_range(room.at("aspect"), 0.5, 3.0);
+  read_interior(room, floor.room);
+  floor.corridor.name = "corridor";
+  read_interior(corridor, floor.corridor);
+  yaml.finish();
+  return floor;
 }
 
 Category read_category(YamlReader yaml) {
@@ -213,12 +240,29 @@ const std::vector<Category>& categories() {
   return all;
 }
 
+const std::vector<FloorGrammar>& floors() {
+  static const std::vector<FloorGrammar> all = [] {
+    std::vector<FloorGrammar> list;
+    for (const std::string_view name : kFloorNames)
+      list.push_back(read_floor(
+          YamlReader::parse(std::string(generator_data(name)), fmt::format("{}.yaml", name))));
+    return list;
+  }();
+  return all;
+}
+
+const FloorGrammar* floor_by_name(std::string_view name) {
+  const auto found = std::ranges::find(floors(), name, &FloorGrammar::name);
+  return found == floors().end() ? nullptr : &*found;
+}
+
 const Category& category_by_name(std::string_view name) {
   const auto& all = categories();
   const auto found = std::ranges::find(all, name, &Category::name);
   if (found != all.end()) return *found;
-  throw InputError(
-      fmt::format("'{}' is not a category{}", name, hint(name, words_of(kCategoryNames))));
+  std::vector<std::string> known = words_of(kCategoryNames);
+  for (const std::string_view floor : kFloorNames) known.emplace_back(floor);
+  throw InputError(fmt::format("'{}' is not a category{}", name, hint(name, known)));
 }
 
 }  // namespace mh

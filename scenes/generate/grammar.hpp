@@ -97,6 +97,16 @@ struct RoomGrammar {
   std::vector<ItemRule> fittings;  ///< placed last and not counted as objects
 };
 
+/// How a floor of like rooms is generated: rooms of one design on both sides of a corridor, each
+/// with some objects of its own.
+struct FloorGrammar {
+  std::string name;
+  DrawRange rooms_per_side, corridor_width_m, height_m;
+  DrawRange objects_of_its_own;  ///< of each room, drawn from its extras
+  RoomGrammar room;              ///< furniture and fittings are the same in every room
+  RoomGrammar corridor;          ///< its size follows from the rooms
+};
+
 struct Category {
   std::string name;
   int count = 0;  ///< number of environments in the paper's Table 1
@@ -106,7 +116,11 @@ struct Category {
 /// The twelve categories in the order of the paper's Table 1. Parsed once.
 const std::vector<Category>& categories();
 const Palettes& palettes();
-/// @throws InputError listing the known categories
+/// Floors of like rooms, in the order of kFloorNames. Parsed once.
+const std::vector<FloorGrammar>& floors();
+/// nullptr if there is none of that name.
+const FloorGrammar* floor_by_name(std::string_view name);
+/// @throws InputError listing the known categories and floors
 const Category& category_by_name(std::string_view name);
 
 }  // namespace mh

@@ -77,6 +77,8 @@ class Layout {
   const std::vector<LayoutItem>& items() const { return items_; }
   const LayoutItem& item(std::size_t i) const { return items_[i]; }
 
+  /// Other rooms are beyond that wall: it gets no windows.
+  void close(Side side) { walls_[static_cast<std::size_t>(side)].outer = false; }
   /// Adds an opening if it fits into a stretch of wall, clear of the others. @returns whether it
   /// does
   bool add_opening(const WallRun& wall, WallOpening opening);

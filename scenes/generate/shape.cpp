@@ -37,7 +37,25 @@ Draft draw_shape(const RoomGrammar& grammar, Dice dice, int group) {
 }
 
 const WallRun& any_outer_wall(Draft& draft) {
-  return draft.layout.walls()[draft.dice.below(4)];
+  std::vector<const WallRun*> outer;
+  for (const WallRun& wall : draft.layout.walls())
+    if (wall.outer) outer.push_back(&wall);
+  return *outer[draft.dice.below(outer.size())];
+}
+
+bool add_door(Draft& draft, const WallRun& wall, const std::string& name, double width_m) {
+  Dice& dice = draft.dice;
+  if (wall.to_m - wall.from_m < width_m + 0.3) return false;
+  // Doors are mostly near a corner.
+  double from = dice.number(wall.from_m + 0.13, wall.to_m - 0.13 - width_m);
+  if (dice.chance(0.6)) from = dice.chance(0.5) ? wall.from_m + 0.2 : wall.to_m - 0.2 - width_m;
+  from = whole_mm(from);
+  return draft.layout.add_opening(wall, {.name = name,
+                                         .from_m = from,
+                                         .to_m = whole_mm(from + width_m),
+                                         .low_m = 0,
+                                         .high_m = whole_mm(dice.number(2.0, 2.1)),
+                                         .door = true});
 }
 
 bool add_doors(Draft& draft) {
@@ -48,17 +66,7 @@ bool add_doors(Draft& draft) {
     for (int t = 0; t < kTries && !placed; ++t) {
       const WallRun& wall = any_outer_wall(draft);
       const double width = whole_mm(dice.number(0.8, 0.95));
-      if (wall.to_m - wall.from_m < width + 0.3) continue;
-      // Doors are mostly near a corner.
-      double from = dice.number(wall.from_m + 0.13, wall.to_m - 0.13 - width);
-      if (dice.chance(0.6)) from = dice.chance(0.5) ? wall.from_m + 0.2 : wall.to_m - 0.2 - width;
-      from = whole_mm(from);
-      placed = draft.layout.add_opening(wall, {.name = fmt::format("door_{}", i + 1),
-                                               .from_m = from,
-                                               .to_m = whole_mm(from + width),
-                                               .low_m = 0,
-                                               .high_m = whole_mm(dice.number(2.0, 2.1)),
-                                               .door = true});
+      placed = add_door(draft, wall, fmt::format("door_{}", i + 1), width);
     }
     if (!placed && i == 0) return false;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "scenes/generate/draft.hpp"
 
 namespace mh::generate {
@@ -8,10 +10,13 @@ namespace mh::generate {
 /// An empty room of the grammar's size range, of a size suited to a density group.
 Draft draw_shape(const RoomGrammar& grammar, Dice dice, int group);
 
+/// Adds a door somewhere in a wall. @returns whether it fits there
+bool add_door(Draft& draft, const WallRun& wall, const std::string& name, double width_m);
 /// Adds doors. @returns whether there is at least one
 bool add_doors(Draft& draft);
 void add_windows(Draft& draft);
 
+/// @pre there is one: see Layout::close()
 const WallRun& any_outer_wall(Draft& draft);
 
 }  // namespace mh::generate

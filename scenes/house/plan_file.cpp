@@ -30,7 +30,7 @@ void read_lights(YamlReader yaml, HousePlan& house) {
     const YamlReader direction = sun->at("direction");
     const std::vector<double> n = direction.as_numbers(3);
     const Vector3d way(n[0], n[1], n[2]);
-    if (way.norm() < 1e-6 || way.z() >= 0) direction.fail("must point downwards");
+    if (way.norm() < 1e-6 || way.z() >= 0) direction.fail("must point down");
     house.sun = Light{.kind = Light::Kind::kSun,
                       .direction = way.normalized().cast<float>(),
                       .color = read_light_color(sun->at("color"))};

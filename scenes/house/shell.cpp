@@ -17,7 +17,7 @@ constexpr float kHullStep = 0.8F;
 constexpr float kJamb = 0.03F;     // thickness of the lining of a doorway or window
 constexpr float kCasing = 0.065F;  // visible width of the boards around it
 constexpr float kProud = 0.012F;   // how far they protrude from the wall
-constexpr float kSkirting = 0.07F;
+constexpr float kBaseboard = 0.07F;
 
 ClassId class_id(std::string_view name) {
   const auto id = class_by_name(name);
@@ -110,19 +110,20 @@ bool pierces(const HousePlan& house, const OpeningPlan& opening, std::size_t roo
   return false;
 }
 
-void build_skirting(MeshBuilder& mesh, MaterialId material, const WallFrame& wall, float from,
-                    float to, const std::vector<Hole>& holes) {
+void build_baseboard(MeshBuilder& mesh, MaterialId material, const WallFrame& wall, float from,
+                     float to, const std::vector<Hole>& holes) {
   // Walls along y stop short of the corner, where the other two meet them.
   const float corner = wall.along_x() ? 0.0F : kProud + 0.0005F;
   std::vector<std::pair<float, float>> gaps;
   for (const Hole& hole : holes)
-    if (hole.low < kSkirting) gaps.emplace_back(hole.from - kCasing, hole.to + kCasing);
+    if (hole.low < kBaseboard) gaps.emplace_back(hole.from - kCasing, hole.to + kCasing);
   std::ranges::sort(gaps);
   float start = from + corner;
   gaps.emplace_back(to - corner, to);
   for (const auto& [gap_from, gap_to] : gaps) {
     if (gap_from - start > 0.02F)
-      board(mesh, material, wall.at(start, 0.004F, -0.004F), wall.at(gap_from, -kProud, kSkirting));
+      board(mesh, material, wall.at(start, 0.004F, -0.004F),
+            wall.at(gap_from, -kProud, kBaseboard));
     start = gap_to;
   }
 }
@@ -166,12 +167,12 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
         mesh.begin_instance(fmt::format("{}/wall_inner_{}", room.name, side_name(side)),
                             class_id("wall"));
         wall_sheet(mesh, paint, across, {.extent = {a, b, 0.0F, top}});
-        build_skirting(mesh, trim, across, a, b, {});
+        build_baseboard(mesh, trim, across, a, b, {});
       }
     }
     mesh.begin_instance(fmt::format("{}/wall_{}", room.name, side_name(side)), class_id("wall"));
     wall_sheet(mesh, paint, wall, {.extent = {from, to, 0.0F, top}, .holes = holes});
-    build_skirting(mesh, trim, wall, from, to, holes);
+    build_baseboard(mesh, trim, wall, from, to, holes);
   }
 }
 

@@ -162,10 +162,10 @@ class Planner {
     // Tangential and centripetal acceleration share one limit: 0.7^2 + 0.7^2 < 1.
     const double share = 0.7 * limits_.max_acceleration_m_per_s2;
     const SpeedProfile profile(path, {limits_.max_velocity_m_per_s, share, share});
-    const Waypoint& towards = tour_.waypoints[first];
-    if (!towards.heading_rad && !towards.look_at_m) {
+    const Waypoint& toward = tour_.waypoints[first];
+    if (!toward.heading_rad && !toward.look_at_m) {
       // A robot that should face the direction of travel does not start sideways.
-      const double error_rad = heading_error(towards, path, 0, heading_rad_, 0);
+      const double error_rad = heading_error(toward, path, 0, heading_rad_, 0);
       if (std::abs(error_rad) > kFaceFirst_rad) turn(error_rad, first);
     }
 

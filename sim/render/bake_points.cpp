@@ -61,8 +61,8 @@ Eigen::Vector3f BakePoints::origin_m(std::size_t vertex, int i, float shift, flo
                                               s * (scene_.positions_m[t[(k + 2) % 3]] - v));
   // Faces that point away from the vertex's side are also lifted to that side.
   const Eigen::Vector3f& lift = lifts_[entry / 4];
-  const float towards = lift.dot(normals_[vertex]) < 0.0F ? -side : side;
-  return on_face + towards * lift;
+  const float toward = lift.dot(normals_[vertex]) < 0.0F ? -side : side;
+  return on_face + toward * lift;
 }
 
 VertexNeighbors::VertexNeighbors(const Scene& scene) {

@@ -26,8 +26,8 @@ Pedestrian load_pedestrian(const std::filesystem::path& file);
 /// Pose of the pedestrian, facing the direction of travel: x forward, z up, origin on the floor.
 SE3 world_from_pedestrian(const Pedestrian& pedestrian, Stamp stamp_ns);
 
-/// Builds the pedestrian's body in its own frame: 1.72 m high, at most 0.22 m from its axis; one
-/// instance of class `person`. A capsule with a head, trousers and a knitted pullover, no limbs.
+/// Builds the pedestrian's body in its own frame: 1.72 m tall, at most 0.22 m from its axis; one
+/// instance of class `person`. A capsule with a head, pants and a knitted sweater, no limbs.
 /// @param light  light on a vertical surface, irradiance / pi, linear RGB
 Scene build_pedestrian(const Eigen::Vector3f& light);
 inline constexpr double kPedestrianRadius_m = 0.22;

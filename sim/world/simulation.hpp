@@ -33,7 +33,7 @@ struct SimulationConfig {
   int ticks_per_frame = 3;
   LabelMode labels = LabelMode::kExact;
   std::uint64_t seed = 0;  ///< of all noise
-  bool reflex = false;     ///< the external-collision reflex is awake
+  bool reflex = false;     ///< the external-collision reflex is enabled
 };
 
 /// What the robot's sensors deliver after a step.

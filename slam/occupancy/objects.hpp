@@ -14,23 +14,23 @@
 
 namespace mh {
 
-/// A thing in a map: voxels of one class that hang together and that its views showed as one.
+/// An object in a map: connected voxels of one class that its views showed as one detection.
 struct MapObject {
   std::string name;  ///< class and number, e.g. "chair 2"; unique in a map
   ClassId class_id = kVoid;
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  ///< of its box, map frame
   Eigen::Vector3d min_m = Eigen::Vector3d::Zero(), max_m = Eigen::Vector3d::Zero();  ///< box
-  /// Share of the votes in its voxels that are for its class, times how much of a smallest object
-  /// was seen: 0 to 1.
+  /// Share of the votes in its voxels that are for its class, times min(1, voxels / (4 x
+  /// min_voxels)): 0 to 1.
   double score = 0;
   std::size_t voxels = 0;
 };
 
 struct ObjectsConfig {
-  int min_voxels = 6;  ///< smaller clusters are noise of labels
-  /// Voxels of one class that touch hang together, unless they are of objects that are apart
-  /// (DetectedObjects). A cluster of at most a quarter of another's voxels, not apart from it, is a
-  /// fragment of it if the gap of their boxes is at most this,
+  int min_voxels = 6;  ///< smaller clusters are label noise
+  /// Voxels of one class that touch are connected, unless they are of objects that are apart
+  /// (DetectedObjects). A cluster of at most a quarter of another's voxels, not apart from it, is
+  /// merged into it if the gap between their boxes is at most this,
   double gap_m = 0.10;
   /// or this where one is above the other: the legs below a seat, whose rim is thin.
   double stacked_gap_m = 0.25;

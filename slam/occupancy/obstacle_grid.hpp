@@ -55,9 +55,9 @@ class ScanGrid {
   void remove_scan(const SE3& map_from_sensor, const RangeScan& scan) {
     tell(map_from_sensor, scan, -1);
   }
-  /// Adds what the scans say to a grid, which grows as needed: occupied where the lasers hit more
-  /// than they saw through (log-odds of VoxelMap), free where they saw through and the grid knows
-  /// nothing. Occupied cells of the grid stay: the laser's plane passes below a table top.
+  /// Adds what the scans say to a grid, which grows as needed: occupied where the log-odds of hits
+  /// and misses (VoxelMap's increments) are not negative, free where they saw through and the grid
+  /// knows nothing. Occupied cells of the grid stay: the laser's plane passes below a table top.
   /// @pre the grid's origin is a multiple of its resolution, as of obstacle_grid()
   /// @throws InputError if the resolutions differ.
   void add_to(OccupancyGrid& grid) const;

@@ -83,7 +83,7 @@ class LocalizeMemo {
   std::unique_ptr<Content> content_;
 };
 
-/// localize() from a lost tracker that is discarded afterwards, reusing earlier results.
+/// localize() from a lost tracker that is discarded afterward, reusing earlier results.
 /// @param memo  of the same frame, stream, map and trial_key()
 StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStream stream,
                     LocalizeMemo& memo);

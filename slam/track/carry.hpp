@@ -23,8 +23,9 @@ struct Located {
 void weigh(Located& located, const Tracker& tracker, Stamp stamp_ns, const TrackConfig& config);
 
 /// Places a frame by motion alone when the last frame's points have left the image: for example a
-/// turn in so bare a corner that nothing seen before remains in view. The motion must be as certain
-/// as an image must be, and the frame itself must show enough to track the next one.
+/// turn in so bare a corner that nothing seen before remains in view. The predicted pose must
+/// satisfy the limits of TrackConfig::sure_position_m and sure_angle_rad, and the frame itself must
+/// show enough to track the next one.
 std::optional<Located> carry(const Tracker& tracker, Stamp stamp_ns, const Features& features,
                              const SlamContext& context);
 

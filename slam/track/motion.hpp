@@ -12,15 +12,15 @@ struct PoseSigma {
 /// Extracts it from a pose covariance (translation, rotation; of the camera, in its own frame).
 PoseSigma worst_sigma(const Matrix6d& covariance);
 
-/// Kalman filter of the camera's motion: a twist driven by white-noise acceleration, with each
-/// tracked pose as a measurement of the covariance that its image gives it. Twists and covariances
-/// are those of the camera in its own frame (translation, rotation), so that the map may move
-/// underneath. The rotation between frames is so small that covariances are not rotated.
+/// Kalman filter of the camera's motion: constant velocity with white-noise acceleration; each
+/// tracked pose is a measurement with the covariance computed from its image. Twists and
+/// covariances are those of the camera in its own frame (translation, rotation), so that the map
+/// may move underneath. The rotation between frames is so small that covariances are not rotated.
 struct Motion {
   Vector6d velocity_per_s;
   Matrix6d pose_covariance;           ///< m and rad
   Matrix6d pose_velocity_covariance;  ///< rows: pose, columns: velocity
-  Matrix6d velocity_covariance;       ///< 1/s
+  Matrix6d velocity_covariance;       ///< m/s and rad/s
 
   /// State after the first pose: velocity unknown.
   static Motion at_rest(const Matrix6d& pose_covariance);
@@ -29,8 +29,10 @@ struct Motion {
   SE3 predict(const SE3& camera_from_world, double elapsed_s) const {
     return SE3::exp(velocity_per_s * elapsed_s) * camera_from_world;
   }
-  /// Updates the state with a pose measured off the prediction by a twist of this covariance.
-  /// @pre *this is the motion after() the step.
+  /// Updates the state with a measured pose.
+  /// @param seen_off    twist from the predicted to the measured pose
+  /// @param covariance  of the measurement
+  /// @pre *this is the prediction that after() returned.
   /// @returns the twist from prediction to best estimate.
   Vector6d correct(const Vector6d& seen_off, const Matrix6d& covariance);
 };

@@ -56,7 +56,7 @@ struct LocalMap {
 KeyframeId reference_of(const TrackedPose& tracked, const Map& map);
 
 /// Keyframes that share landmarks with the frame, their neighbors, and those nearby with a similar
-/// view direction, whatever they share: so a place seen long ago is found again directly.
+/// view direction, even if they share no landmarks, so that revisited places are matched at once.
 LocalMap local_map(const TrackedPose& tracked, const SlamContext& context);
 
 struct LocalMapResult {

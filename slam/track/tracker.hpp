@@ -24,7 +24,8 @@ struct LastFrame {
 /// the last two poses predicts where to search, since it follows a start or a stop at once; the
 /// filter over all frames gives the prediction's uncertainty, and is fused with an uncertain pose.
 struct Tracker {
-  std::optional<LastFrame> last;           ///< none = permanently lost (or nothing mapped yet)
+  std::optional<LastFrame> last;  ///< none: nothing mapped yet, or lost for longer than coast_s
+                                  ///< (relocalization may still recover)
   std::optional<Vector6d> velocity_per_s;  ///< twist of the camera, in its own frame
   std::optional<Motion> motion;            ///< over all frames since tracking began
   KeyframeId reference;                    ///< keyframe that shares the most landmarks

@@ -364,5 +364,61 @@ TEST(Generate, CutCornerMakesAnLShapedRoom) {
   }
 }
 
+std::vector<GeneratedReference> sample_floors() {
+  std::vector<GeneratedReference> list;
+  for (const FloorGrammar& floor : floors())
+    for (std::uint64_t seed = 0; seed < 4; ++seed) list.push_back({floor.name, seed});
+  return list;
+}
+
+TEST(GenerateFloor, EveryRoomHasTheSameFurnitureAndThingsOfItsOwn) {
+  for (const GeneratedReference& reference : sample_floors()) {
+    const GeneratedPlan plan = generate_plan(reference);
+    EXPECT_EQ(plan.yaml(), generate_plan(reference).yaml());
+    const std::vector<RoomEntry>& rooms = plan.house.rooms;
+    ASSERT_GE(rooms.size(), 7U) << plan.name;
+    EXPECT_EQ(rooms.front().name, "corridor");
+    const RoomEntry& first = rooms[1];
+    std::size_t common = 0, own = 0;
+    for (std::size_t k = 2; k < rooms.size(); ++k) {
+      EXPECT_EQ(rooms[k].floor, first.floor);
+      EXPECT_EQ(rooms[k].walls, first.walls);
+      EXPECT_NEAR(rooms[k].rect.x1 - rooms[k].rect.x0, first.rect.x1 - first.rect.x0, 1e-9);
+      const bool turned = rooms[k].rect.y0 < rooms.front().rect.y0;
+      bool same = true;  // until the first piece of its own, rooms have the same pieces
+      for (std::size_t i = 0; i < std::min(rooms[k].items.size(), first.items.size()); ++i) {
+        const ItemEntry &a = first.items[i], &b = rooms[k].items[i];
+        same = same && a.name == b.name && a.size_m == b.size_m && a.materials == b.materials;
+        if (!same) {
+          ++own;
+          continue;
+        }
+        ++common;
+        if (!a.on.empty()) continue;
+        const Eigen::Vector2d in_first = a.at_m - Eigen::Vector2d(first.rect.x0, first.rect.y0);
+        const Eigen::Vector2d here =
+            turned ? Eigen::Vector2d(rooms[k].rect.x1, rooms[k].rect.y1) - b.at_m
+                   : b.at_m - Eigen::Vector2d(rooms[k].rect.x0, rooms[k].rect.y0);
+        EXPECT_LT((in_first - here).norm(), 0.0015) << plan.name << " " << b.name;
+      }
+    }
+    EXPECT_GT(common, 10 * (rooms.size() - 2)) << plan.name;
+    EXPECT_GT(own, 0U) << plan.name;
+  }
+  EXPECT_NE(generate_plan({"hotel", 0}).yaml(), generate_plan({"hotel", 1}).yaml());
+}
+
+TEST(GenerateFloor, CountsAreThoseOfThePlan) {
+  for (const GeneratedReference& reference : sample_floors()) {
+    const GeneratedPlan plan = generate_plan(reference);
+    const HousePlan house = read_house_plan(YamlReader::parse(with_detail(plan), plan.name));
+    EXPECT_EQ(static_cast<int>(house.items.size() + house.doorways.size() + house.windows.size()),
+              plan.objects + plan.fittings)
+        << plan.name;
+    EXPECT_NEAR(generate_scene(reference).floor_area_m2(), plan.floor_area_m2, 1e-6) << plan.name;
+    EXPECT_GT(plan.free_share, 0.15) << plan.name;
+  }
+}
+
 }  // namespace
 }  // namespace mh

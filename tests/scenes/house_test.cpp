@@ -360,7 +360,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"WindowInInnerWall", "room: living, side: west", "room: living, side: east",
                  "outer wall"},
         BadInput{"SunFromBelow", "direction: [0.42, 0.70, -0.58]", "direction: [0, 0, 1]",
-                 "downwards"}),
+                 "must point down"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(House, MissingFileIsNamed) {

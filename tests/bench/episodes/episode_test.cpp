@@ -91,6 +91,22 @@ TEST(Episodes, AProgramThatEndsFailsAloneAndIsTriedAgain) {
   }
 }
 
+TEST(Episodes, AnExitCodeAtTheEndOfAConversationIsReported) {
+  // Lost in every frame, and not content with that in the end.
+  const Suite suite = small_suite("pepper", R"y([{name: sulking, protocol: conversation, command: "
+    sed -u -E 's/^.\"id\":([0-9]+),\"do\":\"hello.*/{\"id\":\\1,\"protocol\":1}/; t;
+    s/^.\"id\":([0-9]+),\"do\":\"(freeze|rewind|reset).*/{\"id\":\\1}/; t;
+    s/^.\"id\":([0-9]+).*/{\"id\":\\1,\"pose\":null}/'; exit 5"}])y");
+  const TemporaryFolder work(fs::temp_directory_path());
+  EpisodeOptions options;
+  options.out = work.path();
+  const std::vector<EpisodeRun> runs = run_episodes(suite, options);
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_NE(runs[0].failure.find("exited with code 5"), std::string::npos) << runs[0].failure;
+  ASSERT_EQ(runs[0].scores.size(), 2U);
+  for (const EpisodeScore& score : runs[0].scores) EXPECT_EQ(score.reason, "no_map");
+}
+
 TEST(Episodes, WhatCanOnlyFailIsRefusedBeforeTheWork) {
   const auto expect_refused = [](const Suite& suite, const char* why) {
     try {

@@ -445,6 +445,7 @@ TEST_F(Plotted, TablesAreThoseOfThePages) {
     for (const char* word : {"'semantic'", "'plain'", table == 1 ? "'ATE m'" : "'success, %'"})
       EXPECT_NE(text.find(word), std::string::npos) << table << word;
   }
+  EXPECT_NE(script({.table = 1}).find("'RPE m/s'"), std::string::npos);
   EXPECT_NE(script({.table = 2}).find("'published, other data'"), std::string::npos);
   EXPECT_NE(script({.table = 2}).find("'79.25'"), std::string::npos);
 }

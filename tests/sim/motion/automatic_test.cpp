@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/generate/generate.hpp"
 #include "scenes/house/house.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/error.hpp"
@@ -30,6 +31,19 @@ Tour tour_to(const Eigen::Vector2d& start, const Eigen::Vector2d& goal) {
   return tour;
 }
 
+/// The rooms that a path leads through; they are rectangles.
+std::set<std::string> rooms_of(const DrivenPath& path, const Scene& scene) {
+  std::set<std::string> rooms;
+  for (const TimedPose& pose : path.base)
+    for (const Room& room : scene.rooms) {
+      const Eigen::Vector2d p = pose.world_from_camera.translation().head<2>();
+      if (((p - room.polygon_m[0]).array() > 0).all() &&
+          ((room.polygon_m[2] - p).array() > 0).all())
+        rooms.insert(room.name);
+    }
+  return rooms;
+}
+
 TEST(AutomaticTour, LeadsThroughTheWholeHouseWithoutTouchingAnything) {
   const Scene house = load_house(MH_SOURCE_DIR "/scenes/model_house/house.yaml");
   const Tour tour = automatic_tour(house, pepper());
@@ -41,15 +55,17 @@ TEST(AutomaticTour, LeadsThroughTheWholeHouseWithoutTouchingAnything) {
   EXPECT_LT(
       angle_between_rad(path.base.front().world_from_camera, path.base.back().world_from_camera),
       0.05);
-  std::set<std::string> rooms;
-  for (const TimedPose& pose : path.base)
-    for (const Room& room : house.rooms) {  // rectangles
-      const Eigen::Vector2d p = pose.world_from_camera.translation().head<2>();
-      if (((p - room.polygon_m[0]).array() > 0).all() &&
-          ((room.polygon_m[2] - p).array() > 0).all())
-        rooms.insert(room.name);
+  EXPECT_EQ(rooms_of(path, house).size(), house.rooms.size());
+}
+
+TEST(AutomaticTour, LeadsIntoEveryRoomOfAGeneratedFloor) {
+  for (const char* floor : {"hotel", "office_floor"})
+    for (std::uint64_t seed : {0, 1}) {
+      const Scene scene = generate_scene({floor, seed});
+      const DrivenPath path = drive(scene, pepper(), automatic_tour(scene, pepper()));
+      EXPECT_LT(path.contact_time_s, 0.1) << floor << seed;
+      EXPECT_EQ(rooms_of(path, scene).size(), scene.rooms.size()) << floor << seed;
     }
-  EXPECT_EQ(rooms.size(), house.rooms.size());
 }
 
 TEST(AutomaticTour, OtherSeedsGoElsewhereInEveryRoom) {

@@ -39,7 +39,7 @@ class FeatureWorld {
   }
 
   /// A walk through the rooms [first, first + rooms), a look around in each, and back: closed where
-  /// it began. Rooms are walked towards -x where `rooms` is negative.
+  /// it began. Rooms are walked toward -x where `rooms` is negative.
   static std::vector<SE3> there_and_back(int first, int rooms) {
     constexpr int kSteps = 150, kTurn = 150;  // frames per room and per look around
     const double side = rooms < 0 ? -1 : 1;

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "scenes/generate/generate.hpp"
+#include "scenes/generate/grammar.hpp"
+
+namespace mh::generate {
+
+/// Rooms of one design on both sides of a corridor, those on one side turned by 180 degrees. Shape,
+/// surfaces, furniture and fittings are the same in every room; what is drawn from the extras is
+/// each room's own.
+GeneratedPlan generate_floor(const FloorGrammar& grammar, std::uint64_t seed);
+
+}  // namespace mh::generate
