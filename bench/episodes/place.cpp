@@ -77,6 +77,8 @@ EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episod
   place.world.mapping = place.mapping;  // systems are made for a camera of that rate
   for (const EpisodeVariant& variant : episodes.variants)
     place.variants.push_back(variant_place(variant, episodes, place.world, threads, cache, say));
+  for (VariantPlace& variant : place.variants)
+    variant.level = with_dials(variant.level, spec.labels);
   return place;
 }
 

@@ -17,7 +17,7 @@ nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDig
   nlohmann::ordered_json json = to_json(spec);
   if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
   for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
-  if (spec.labels.detector)
+  if (json["labels"].is_object())
     for (const char* named : {"name", "network", "config", "classes", "boxes"})
       json["labels"].erase(named);
   for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);

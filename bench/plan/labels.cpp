@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "bench/plan/names.hpp"
+#include "slam/core/settings_io.hpp"
 
 namespace mh {
 namespace {
@@ -22,11 +23,12 @@ std::string_view name(LabelMode labels) {
 }
 
 std::string name(const Labels& labels) {
-  return labels.detector ? labels.called : std::string(name(labels.mode));
+  return labels.called.empty() ? std::string(name(labels.mode)) : labels.called;
 }
 
 std::string with_labels(const Labels& labels) {
   if (labels.detector) return fmt::format("labels from {}", labels.called);
+  if (labels.dials) return fmt::format("{}, {}", with_labels(labels.mode), labels.called);
   switch (labels.mode) {
     case LabelMode::kExact:
       return "exact labels";
@@ -44,16 +46,45 @@ std::string with_labels(const Labels& labels) {
   return "no labels";
 }
 
-Labels read_label_source(YamlReader node, const std::filesystem::path& folder) {
-  if (!node.is_map()) return one_of(node, kLabels);
-  DetectorSpec spec;
-  read_detector(node, folder, spec);
-  const std::string called = node.string("name", source_of(spec).stem().string());
-  node.finish();
+namespace {
+
+/// A name that is no kind of labels.
+std::string own_name(const YamlReader& node, const std::string& called) {
   check_folder_name(node, called);
   if (value_of(called, kLabels))
-    node.fail(fmt::format("'{}' is a kind of labels: name the detector by another", called));
+    node.fail(fmt::format("'{}' is a kind of labels: use another name", called));
+  return called;
+}
+
+/// `{of: exact, name: confused_25, confusion: 0.25}`
+Labels read_dose(YamlReader node) {
+  const YamlReader of = node.at("of");
+  const LabelMode kind = one_of(of, kLabels);
+  if (kind == LabelMode::kNone || kind == LabelMode::kRecorded)
+    of.fail(fmt::format("'{}' labels have no dials", name(kind)));
+  const std::string called = own_name(node, node.string("name"));
+  LabelNoiseConfig dials{.enabled = true};
+  MappingReader read(node);
+  fields(dials, read);
+  node.finish();
+  return {kind, dials, called};
+}
+
+}  // namespace
+
+Labels read_label_source(YamlReader node, const std::filesystem::path& folder) {
+  if (!node.is_map()) return one_of(node, kLabels);
+  if (node.find("of")) return read_dose(node);
+  DetectorSpec spec;
+  read_detector(node, folder, spec);
+  const std::string called = own_name(node, node.string("name", source_of(spec).stem().string()));
+  node.finish();
   return {std::move(spec), called};
+}
+
+SensorConfig with_dials(SensorConfig level, const Labels& labels) {
+  if (labels.dials) level.labels.noise = *labels.dials;
+  return level;
 }
 
 const std::filesystem::path& source_of(const DetectorSpec& spec) {

@@ -179,6 +179,9 @@ Environment environment_from_json(const Json& json) {
 }
 
 Json labels_json(const Labels& labels) {
+  if (labels.dials)
+    return {
+        {"name", labels.called}, {"of", name(labels.mode)}, {"dials", section_json(*labels.dials)}};
   if (!labels.detector) return name(labels.mode);
   const DetectorSpec& d = *labels.detector;
   return {{"name", labels.called},       {"network", d.network.string()},
@@ -187,9 +190,14 @@ Json labels_json(const Labels& labels) {
 }
 
 Labels labels_from_json(const Json& json) {
-  if (!json.is_object())
-    return named(json, {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated,
+  const auto kind_of = [](const Json& word) {
+    return named(word, {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated,
                         LabelMode::kBoxes, LabelMode::kDetector, LabelMode::kRecorded});
+  };
+  if (!json.is_object()) return kind_of(json);
+  if (json.contains("of"))
+    return {kind_of(json.at("of")), section_from<LabelNoiseConfig>(json.at("dials")),
+            json.at("name")};
   const auto path = [&](const char* key) { return json.at(key).get<std::string>(); };
   return {{.network = path("network"),
            .config = path("config"),

@@ -158,6 +158,9 @@ std::vector<Factor> label_factors() {
       {"eroded borders (exact labels)",
        {"off", "3 px", "12 px"},
        {kOff, noise(&N::erosion_px, 3), noise(&N::erosion_px, 12)}},
+      {"classes (exact labels)",
+       {"all", "thirteen", "two"},
+       {kOff, noise(&N::class_set, ClassSet::kThirteen), noise(&N::class_set, ClassSet::kTwo)}},
   };
 }
 

@@ -168,6 +168,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   if (environment.sensors)
     world.sensors = input("sensors", *environment.sensors,
                           [&] { return load_sensor_config(*environment.sensors); });
+  world.sensors = with_dials(world.sensors, spec.labels);
   world.robot.camera = with_lens(world.robot.camera, world.sensors);
   if (environment.kidnapped_tour)
     input("kidnapped_tour", *environment.kidnapped_tour,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <map>
 #include <tuple>
 #include <vector>
 
@@ -91,6 +92,16 @@ SemanticImage exact_image(const RenderedFrame& truth, const std::vector<VisibleO
   return image;
 }
 
+/// Replaces each class by the one that stands for it in a set; entries stay apart.
+void group_classes(SemanticImage& image, ClassSet set) {
+  if (set == ClassSet::kAll) return;
+  for (ClassDistribution& labels : image.palette) {
+    std::map<ClassId, float> shares;
+    for (const auto& [class_id, share] : labels.entries) shares[class_in(set, class_id)] += share;
+    labels.entries.assign(shares.begin(), shares.end());
+  }
+}
+
 /// Labels of pixels or boxes, an entry of the palette for each class.
 SemanticImage without_faults(const RenderedFrame& truth, LabelMode mode) {
   return is_per_pixel(mode) ? SemanticImage{truth.classes, one_hot_palette()}
@@ -156,6 +167,7 @@ SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const Labe
   }
   erode(image.index, noise.erosion_px);
   if (is_per_pixel(mode)) name_objects(image, truth.instances);
+  group_classes(image, noise.class_set);
   return image;
 }
 

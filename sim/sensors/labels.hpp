@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/render/renderer.hpp"
+#include "sim/sensors/class_sets.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/setting.hpp"
 
@@ -74,22 +75,25 @@ struct LabelNoiseConfig {
                            ///< nearest neighbor in the image
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
+  ClassSet class_set = ClassSet::kAll;
   /// Whether labels are left unchanged.
   bool none() const {
-    return !enabled || (confusion == 0 && swap == 0 && dropout == 0 && erosion_px == 0);
+    return !enabled || (confusion == 0 && swap == 0 && dropout == 0 && erosion_px == 0 &&
+                        class_set == ClassSet::kAll);
   }
   friend bool operator==(const LabelNoiseConfig&, const LabelNoiseConfig&) = default;
 };
 
 template <Either<LabelNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [enabled, confusion, swap, dropout, erosion_px] = c;
-  v("enabled", enabled, setting::kSwitch, "the four faults below; what follows them holds anyway");
+  auto& [enabled, confusion, swap, dropout, erosion_px, class_set] = c;
+  v("enabled", enabled, setting::kSwitch, "the five dials below; what follows them holds anyway");
   v("confusion", confusion, setting::kShare, "of instances that carry a wrong class");
   v("swap", swap, setting::kShare,
     "of instances that exchange classes with their nearest neighbor");
   v("dropout", dropout, setting::kShare, "of instances that carry no label");
   v("erosion_px", erosion_px, {0, 1000}, "pixels so near to a border between labels become void");
+  v("class_set", class_set, {}, "classes that are distinguished: all, thirteen, five or two");
 }
 
 /// Label faults depend on what is seen and from where, as a network's do: each is decided by a

@@ -696,6 +696,26 @@ TEST_F(SuiteFile, TakesDetectorsAsLabels) {
   EXPECT_NE(run_key(other, inputs), run_key(runs[1], inputs));
 }
 
+TEST_F(SuiteFile, TakesDosesOfFaultsAsLabels) {
+  const Suite suite = load("", "[pepper.yaml]",
+                           "[exact, {of: exact, name: confused_25, confusion: 0.25}, "
+                           "{of: boxes, name: coarse, class_set: five}]");
+  ASSERT_EQ(suite.labels.size(), 3U);
+  EXPECT_EQ(with_labels(suite.labels[1]), "exact labels, confused_25");
+  EXPECT_EQ(with_dials({}, suite.labels[1]).labels.noise.confusion, 0.25);
+  EXPECT_EQ(with_dials({}, suite.labels[2]).labels.noise.class_set, ClassSet::kFive);
+  EXPECT_EQ(with_dials({}, suite.labels[0]), SensorConfig());
+  const std::vector<RunSpec> runs = expand(suite);
+  EXPECT_EQ(runs[1].name, "semantic-confused_25-pepper-0");
+  EXPECT_EQ(run_spec_from_json(to_json(runs[1])).labels, runs[1].labels);
+  RunSpec other = runs[1];
+  other.labels.called = "another";
+  EXPECT_EQ(run_key(other, {}), run_key(runs[1], {}));
+  other.labels.dials->confusion = 0.3;
+  EXPECT_NE(run_key(other, {}), run_key(runs[1], {}));
+  EXPECT_NE(run_key(runs[0], {}), run_key(runs[1], {}));
+}
+
 TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
   const auto says = [&](const char* labels, const char* part) {
     const std::string text = error("", "[pepper.yaml]", labels);
@@ -707,6 +727,12 @@ TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
   says("[{network: a.onnx, fil: box}]", "fil");
   says("[{network: a.onnx, fill: boxes}]", "'boxes' is not one of box, foreground");
   says("[{network: a.onnx, name: exact}]", "'exact' is a kind of labels");
+  says("[{of: exact, confusion: 0.2}]", "name");
+  says("[{of: none, name: a, confusion: 0.2}]", "'none' labels have no dials");
+  says("[{of: exact, name: boxes, confusion: 0.2}]", "'boxes' is a kind of labels");
+  says("[{of: exact, name: a, confusion: 1.2}]", "1.2");
+  says("[{of: exact, name: a, confused: 0.2}]", "confused");
+  says("[{of: exact, name: a}, {of: boxes, name: a}]", "'a' stands twice");
   says("[{network: a.onnx}, {network: b/a.onnx}]", "'a' stands twice");
 }
 

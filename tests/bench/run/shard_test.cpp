@@ -170,6 +170,15 @@ double imbalance(const std::vector<std::string>& tours, int runs_of_each, std::s
 }
 
 // Where the runs allow it: images cost as much as four runs, and shares are whole runs.
+TEST(PredictedCost, ImagesAreThoseOfThePlaceWhateverTheLabels) {
+  const RunSpec exact = run_along("handheld:3");
+  RunSpec dose = exact;
+  dose.labels = {LabelMode::kExact, LabelNoiseConfig{.enabled = true, .confusion = 0.25}, "dose"};
+  EXPECT_EQ(images_of(dose), images_of(exact));
+  dose.level = "another.yaml";
+  EXPECT_NE(images_of(dose), images_of(exact));
+}
+
 TEST(Shares, OfTwentyFourRunsDifferByLessThanATenth) {
   for (const std::size_t parts : {2, 3, 4, 6, 8, 12})
     EXPECT_LT(imbalance({"handheld"}, 24, parts), 1.1) << parts;

@@ -315,6 +315,37 @@ TEST(LabelImage, EachVisibleObjectHasAnEntryOfItsOwn) {
   EXPECT_EQ(eroded.at(11, 30).most_probable(), kVoid);
 }
 
+TEST(LabelImage, FewerClassesAreDistinguishedOnDemand) {
+  RenderedFrame truth = blank_frame(2.0F);
+  const auto id = [](const char* name) { return class_by_name(name).value(); };
+  const std::vector<const char*> names = {"bed",  "night stand", "lamp",  "wall",   "door",
+                                          "desk", "floor mat",   "books", "window", "cup"};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    paint_box(truth, static_cast<int>(20 * i), 0, static_cast<int>(20 * i) + 19, 50, id(names[i]),
+              static_cast<InstanceId>(i + 1));
+  const auto seen = [&](ClassSet set) {
+    LabelConfig config;
+    config.noise = {.enabled = true, .class_set = set};
+    const SemanticImage image =
+        label_image(truth, LabelMode::kExact, config, SE3(), RandomStream(1));
+    std::vector<std::string_view> classes_seen;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      classes_seen.push_back(
+          classes()[image.at(static_cast<int>(20 * i) + 5, 20).most_probable()].name);
+    EXPECT_NE(image.index(25, 20), image.index(45, 20));  // objects stay apart
+    return classes_seen;
+  };
+  using Names = std::vector<std::string_view>;
+  EXPECT_EQ(seen(ClassSet::kAll), Names(names.begin(), names.end()));
+  EXPECT_EQ(seen(ClassSet::kThirteen), (Names{"bed", "otherfurniture", "otherprop", "wall", "wall",
+                                              "table", "floor", "books", "window", "otherprop"}));
+  EXPECT_EQ(seen(ClassSet::kFive),
+            (Names{"otherfurniture", "otherfurniture", "otherprop", "wall", "wall",
+                   "otherfurniture", "floor", "otherprop", "wall", "otherprop"}));
+  EXPECT_EQ(seen(ClassSet::kTwo), (Names{"otherprop", "otherprop", "otherprop", "wall", "wall",
+                                         "otherprop", "wall", "otherprop", "wall", "otherprop"}));
+}
+
 TEST(LabelImage, MoreObjectsThanAPaletteHoldsShareTheEntryOfTheirClass) {
   RenderedFrame truth = blank_frame(2.0F);
   for (int i = 0; i < 400; ++i) {
@@ -616,6 +647,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   third_line("dropped_frames: {rate: 0.1}", "share");
   third_line("label_noise: {confusion: -0.1}", "-0.1");
   third_line("label_noise: {erosion_px: 2.5}", "2.5");
+  third_line("label_noise: {class_set: six}", "six");
   third_line("label_noise: {persistent_share: 0.8, frame_share: 0.4}", "frame_share");
   third_line("detector: {recall: 1}", "recall");
   third_line("fog: {enabled: true}", "fog");
