@@ -13,7 +13,7 @@ enum Group : ClassId {
   kSofa = 6,
   kTable = 7,
   kWindow = 9,
-  kPicture = 11,
+  kPainting = 11,
   kCeiling = 22,
   kBooks = 23,
   kTelevision = 25,
@@ -25,7 +25,7 @@ constexpr std::array<Group, 41> kGroupOfNyu40 = {
     kObjects,                                         // 0: never asked
     kWall,       kFloor,     kFurniture, kBed,        // wall, floor, cabinet, bed
     kChair,      kSofa,      kTable,     kWall,       // chair, sofa, table, door
-    kWindow,     kFurniture, kPicture,   kFurniture,  // window, bookshelf, picture, counter
+    kWindow,     kFurniture, kPainting,  kFurniture,  // window, bookshelf, painting, counter
     kWindow,     kTable,     kFurniture, kWindow,     // blinds, desk, shelves, curtain
     kFurniture,  kObjects,   kObjects,   kFloor,      // dresser, pillow, mirror, floor mat
     kObjects,    kCeiling,   kBooks,     kFurniture,  // clothes, ceiling, books, refrigerator
