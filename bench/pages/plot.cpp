@@ -352,7 +352,9 @@ std::string table_script(const PagesSource& source, const PlotOrder& order, cons
     if (std::ranges::all_of(cells, &std::string::empty)) continue;
     const std::string unit = column.value("unit", "");
     std::string title = column.at("title");
-    if (!unit.empty() && !title.ends_with(" " + unit)) title += ", " + unit;
+    const std::string last_word = title.substr(title.rfind(' ') + 1);  // "RPE m/s" has its unit
+    if (!unit.empty() && last_word != unit && !last_word.starts_with(unit + "/"))
+      title += ", " + unit;
     std::size_t longest = title.size() + title.size() / 5;  // bold letters are wider
     for (const std::string& cell : cells) longest = std::max(longest, cell.size());
     const double column_cm = kLetter_cm * static_cast<double>(longest);
