@@ -99,7 +99,9 @@ inline CameraFrameTerm camera_frame_term(const Eigen::Vector3d& point_in_camera,
 }
 
 /// hat(p) * m: each column of m crossed from the left.
-inline Eigen::Matrix3d cross_columns(const Eigen::Vector3d& p, const Eigen::Matrix3d& m) {
+// Where several sources are compiled as one, GCC leaves it out of line: 1 % of SLAM.
+[[gnu::always_inline]] inline Eigen::Matrix3d cross_columns(const Eigen::Vector3d& p,
+                                                            const Eigen::Matrix3d& m) {
   Eigen::Matrix3d result;
   result.row(0) = p.y() * m.row(2) - p.z() * m.row(1);
   result.row(1) = p.z() * m.row(0) - p.x() * m.row(2);

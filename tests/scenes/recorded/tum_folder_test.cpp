@@ -12,6 +12,7 @@
 
 #include "bench/inputs/recorded_camera.hpp"
 #include "scenes/image_file.hpp"
+#include "scenes/images/write_image.hpp"
 #include "scenes/recorded/open_sequence.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
@@ -74,6 +75,23 @@ TEST_F(TumFolder, ReadsBackWhatItWrote) {
   EXPECT_EQ(read.semantics.at(0, 0).most_probable(), 5);
   EXPECT_EQ(read.semantics.at(2, 1).most_probable(), kVoid);
   EXPECT_EQ(read_tum(folder_ / "groundtruth.txt").size(), 2u);
+}
+
+TEST_F(TumFolder, EveryDepthIsTheQuotientOfTwoDoublesRounded) {
+  camera_.width_px = camera_.height_px = 256;
+  fs::create_directories(folder_);
+  cv::Mat units(256, 256, CV_16UC1);
+  for (int i = 0; i < 65536; ++i)
+    units.at<std::uint16_t>(i / 256, i % 256) = static_cast<std::uint16_t>(i);
+  write_image(folder_ / "depth.png", units);
+  write_image(folder_ / "color.png", cv::Mat(256, 256, CV_8UC3, cv::Scalar(1, 2, 3)));
+  for (const double per_meter : {5000.0, 1000.0, 5208.3, 6553.6, 999.99}) {
+    const RgbdFrame read =
+        read_frame({0, folder_ / "color.png", folder_ / "depth.png", {}}, {camera_, per_meter});
+    for (int i = 0; i < 65536; ++i)
+      ASSERT_EQ(read.depth_m(i % 256, i / 256), static_cast<float>(i / per_meter))
+          << i << " at " << per_meter;
+  }
 }
 
 // Lossy compression makes classes that nobody wrote.
