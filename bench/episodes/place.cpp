@@ -75,10 +75,10 @@ EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episod
   place.mapping = std::make_shared<EveryNth>(place.world.mapping,
                                              static_cast<std::size_t>(episodes.ticks_per_frame));
   place.world.mapping = place.mapping;  // systems are made for a camera of that rate
-  for (const EpisodeVariant& variant : episodes.variants)
+  for (const EpisodeVariant& variant : episodes.variants) {
     place.variants.push_back(variant_place(variant, episodes, place.world, threads, cache, say));
-  for (VariantPlace& variant : place.variants)
-    variant.level = with_dials(variant.level, spec.labels);
+    place.variants.back().level = with_dials(place.variants.back().level, spec.labels);
+  }
   return place;
 }
 

@@ -200,8 +200,8 @@ GeneratedPlan generate_floor(const FloorGrammar& grammar, std::uint64_t seed) {
     return draw_corridor(grammar, doors, length, width, height, Dice(stream.fork(2).fork(k)));
   });
 
-  HouseFile floor = describe(corridor, name);
-  HouseFile hall = std::exchange(floor, {});
+  const HouseFile hall = describe(corridor, name);
+  HouseFile floor;
   floor.comment = hall.comment;
   floor.name = name;
   floor.extent = {0, 0, length, whole_mm(corridor_y + width + kWall_m + rect.y1)};

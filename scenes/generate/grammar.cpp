@@ -221,6 +221,16 @@ Category read_category(YamlReader yaml) {
   return category;
 }
 
+/// Reads the embedded files of these names, in their order.
+template <class Names, class Read>
+auto read_all(const Names& names, const Read& read) {
+  std::vector<decltype(read(YamlReader::parse("", "")))> list;
+  for (const std::string_view name : names)
+    list.push_back(
+        read(YamlReader::parse(std::string(generator_data(name)), fmt::format("{}.yaml", name))));
+  return list;
+}
+
 }  // namespace
 
 const Palettes& palettes() {
@@ -230,24 +240,12 @@ const Palettes& palettes() {
 }
 
 const std::vector<Category>& categories() {
-  static const std::vector<Category> all = [] {
-    std::vector<Category> list;
-    for (const std::string_view name : kCategoryNames)
-      list.push_back(read_category(
-          YamlReader::parse(std::string(generator_data(name)), fmt::format("{}.yaml", name))));
-    return list;
-  }();
+  static const std::vector<Category> all = read_all(kCategoryNames, read_category);
   return all;
 }
 
 const std::vector<FloorGrammar>& floors() {
-  static const std::vector<FloorGrammar> all = [] {
-    std::vector<FloorGrammar> list;
-    for (const std::string_view name : kFloorNames)
-      list.push_back(read_floor(
-          YamlReader::parse(std::string(generator_data(name)), fmt::format("{}.yaml", name))));
-    return list;
-  }();
+  static const std::vector<FloorGrammar> all = read_all(kFloorNames, read_floor);
   return all;
 }
 
