@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole system on one page: observe, locate, decide on a keyframe, map, look for loops,
 // remember.
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,6 +31,13 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
            {frame.stamp_ns, SE3(), std::move(frame.features), state.map.at(id).landmarks}, id,
            std::nullopt);
   return report;
+}
+
+/// After a rewind, frames come again. A second keyframe of one image would count each of its
+/// measurements twice, as if they agreed, and the map would grow with every rewind.
+bool is_keyframe(const Map& map, Stamp stamp_ns) {
+  return std::any_of(map.keyframes().begin(), map.keyframes().end(),
+                     [&](const Keyframe& k) { return !k.erased && k.stamp_ns == stamp_ns; });
 }
 
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
@@ -78,7 +86,8 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   KeyframeId reference = located->reference;
   ++state.tracker.frames_since_keyframe;
-  if (needs_keyframe(tracked, frame.features, reference, state.tracker.frames_since_keyframe,
+  if (!is_keyframe(state.map, stamp_ns) &&
+      needs_keyframe(tracked, frame.features, reference, state.tracker.frames_since_keyframe,
                      context)) {
     reference = add_keyframe(state, frame, tracked, stream.fork(1), observers, report);
     const Keyframe& keyframe = state.map.at(reference);

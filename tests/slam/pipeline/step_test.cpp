@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -498,6 +499,22 @@ TEST(Rewind, TracksAgainOnTheMapAsItIsAndKeepsEachFrameOnce) {
   for (int i = 21; i < 60; ++i) step(r.state, frame(i), RandomStream(99).fork(i));
   EXPECT_EQ(trajectory(r.state).size(), 60U);
   r.state.map.check_invariants();
+}
+
+TEST(Rewind, AFrameIsAKeyframeOnce) {
+  SlamConfig config = settings({});
+  config.keyframe.max_interval = 1;
+  config.keyframe.min_close_new = 1;  // nearly every frame
+  config.keyframe.redundant_share = 1;
+  SlamState state = make_slam(BoxRoom::camera(), config, vocabulary());
+  for (int i = 0; i < 20; ++i) step(state, frame(i), RandomStream(1).fork(i));
+  const std::size_t before = state.map.keyframes().size();
+  EXPECT_GT(before, 15U);
+  rewind(state);
+  for (int i = 5; i < 24; ++i) step(state, frame(i), RandomStream(99).fork(i));
+  std::set<Stamp> stamps;
+  for (const Keyframe& k : state.map.keyframes()) EXPECT_TRUE(stamps.insert(k.stamp_ns).second);
+  EXPECT_GT(state.map.keyframes().size(), before) << "new frames still become keyframes";
 }
 
 TEST(Step, RefusesStampsThatDoNotGrowAndFramesOfAnotherSize) {
