@@ -279,8 +279,8 @@ class RunAuditor {
 void require_auditable(const RunSpec& spec) {
   if (!spec.system.takes_settings())
     throw InputError(
-        fmt::format("{}: '{}' is an outside system, which gives no match traces: an "
-                    "audit takes `semantic` and `plain` alone",
+        fmt::format("{}: '{}' gives no match traces: an audit takes `semantic`, `plain` and "
+                    "their variants alone",
                     spec.name, spec.system.name));
   if (spec.environment.is_recorded())
     throw InputError(

@@ -54,10 +54,9 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
       source.views_of[run.spec.name] = std::move(replay.views);
     }
   if (without > 0)
-    fmt::print(
-        stderr,
-        "report: {} of recordings or outside systems, which cannot be run again for a replay\n",
-        counted(without, "run is", "runs are"));
+    fmt::print(stderr,
+               "report: {} of recordings or of systems other than ours, which have no replay\n",
+               counted(without, "run is", "runs are"));
   for (const std::string& word : options.replay)
     if (std::ranges::count(names, word) == 0)
       throw InputError(fmt::format("--replay: no run is named '{}'{}", word, hint(word, names)));

@@ -5,14 +5,18 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "bench/audit/ask_again.hpp"
 #include "bench/audit/true_map.hpp"
 #include "bench/protocol/usable_frame.hpp"
+#include "bench/provenance/digest.hpp"
 #include "bench/replay/packed.hpp"
+#include "bench/run/run_one.hpp"
 #include "scenes/image_file.hpp"
 #include "sim/sensors/lens.hpp"
+#include "slam/core/error.hpp"
 
 namespace mh {
 namespace {
@@ -50,26 +54,33 @@ class ViewsOf {
 
  private:
   Json keyframes() const {
-    const std::vector<Stamp> stamps = stamps_of(*world_.mapping);
-    std::map<std::size_t, int> restart_of;  // frames that were shown again: the last time counts
-    for (const auto& call : run_.mapping.calls) restart_of[call.index] = call.restart;
+    std::map<Stamp, const MappedFrame*>
+        call_of;  // that made the keyframe; the last if it was culled
+    for (const MappedFrame& call : run_.mapping.calls)
+      if (call.keyframe_added) call_of[call.stamp_ns] = &call;
     Json list = Json::array();
     for (const KeyframeId k : truth_.live) {
       const Keyframe& keyframe = frozen_.map.at(k);
-      const auto index =
-          static_cast<std::size_t>(std::ranges::find(stamps, keyframe.stamp_ns) - stamps.begin());
-      const auto restart = restart_of.find(index);
-      const RandomStream noise = mapping_noise(RandomStream(run_.spec.seed),
-                                               restart == restart_of.end() ? 0 : restart->second);
+      const MappedFrame& call = *call_of.at(keyframe.stamp_ns);
       const auto flag_of = [&](std::size_t i) -> std::uint32_t {
         return keyframe.landmarks[i].valid() ? kHasLandmark : 0U;
       };
-      list.push_back({{"frame", index},
+      list.push_back({{"frame", call.index},
                       {"ms", (keyframe.stamp_ns - run_.truth.front().stamp_ns) / 1'000'000},
-                      {"jpeg", image(usable_frame(*world_.mapping, index, noise))},
+                      {"jpeg", image(shown(call))},
                       {"keypoints", keypoints(keyframe.features, flag_of)}});
     }
     return list;
+  }
+
+  /// The image that the run mapped, noise included.
+  RgbdFrame shown(const MappedFrame& call) const {
+    RgbdFrame frame = usable_frame(*world_.mapping, call.index,
+                                   mapping_noise(mapping_stream(run_.spec), call.restart));
+    if (digest(frame) != call.image_digest)
+      throw MachineError(fmt::format("{}: mapping frame {}: the replay's image is not the run's",
+                                     run_.spec.name, call.index));
+    return frame;
   }
 
   Json queries_of_first_point() {

@@ -226,6 +226,10 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
   return make_our_system(world.mapping->camera(), spec.slam, world.vocabulary);
 }
 
+RandomStream mapping_stream(const RunSpec& spec) {
+  return RandomStream(spec.seed).fork(kMapping);
+}
+
 RandomStream query_stream(const RunSpec& spec, QuerySet set) {
   return RandomStream(spec.seed).fork(set == QuerySet::kHeldOut      ? kHeldOut
                                       : set == QuerySet::kSecondTour ? kSecondTour
@@ -233,7 +237,6 @@ RandomStream query_stream(const RunSpec& spec, QuerySet set) {
 }
 
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
-  const RandomStream stream(spec.seed);
   const RunTamper& tamper = tools.tamper;
   const Sequence& mapping = *world.mapping;
   const Camera& camera = mapping.camera();
@@ -256,7 +259,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       tools.system ? tools.system(spec, world) : make_system(spec, world, tools.folder);
   if (inner == nullptr) {  // a program that only returns a trajectory: no queries
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
-    run.estimate = run_recorded(spec, frames, stream.fork(kMapping), tools.folder, tools.status,
+    run.estimate = run_recorded(spec, frames, mapping_stream(spec), tools.folder, tools.status,
                                 run.mapping.skipped);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
     run.frames = frames_of(run.estimate, run.truth);
@@ -273,7 +276,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     };
     const auto map_now = [&] {
       run.mapping = map_sequence(
-          system, frames, spec.protocol, stream.fork(kMapping),
+          system, frames, spec.protocol, mapping_stream(spec),
           [&](const MappedFrame& call, const RgbdFrame& frame, const SystemReport& report) {
             const ProcessorTimer timer(run.products_s);
             if (call.keyframe_added && tools.occupancy) mapper.keep(frame);

@@ -26,6 +26,9 @@ struct RunTamper {
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder);
 
+/// The stream that mapping draws from (bench/protocol/mapping.hpp).
+RandomStream mapping_stream(const RunSpec& spec);
+
 /// The stream that the queries of a set draw from (bench/protocol/query.hpp).
 RandomStream query_stream(const RunSpec& spec, QuerySet set);
 

@@ -28,7 +28,8 @@ inline Trajectory tour(int first, int last,
 /// The room is mapped over a third of a turn. The second tour is another path through it, or
 /// through `elsewhere`.
 inline World world(Trajectory second = tour(10, 70, {0.15, -0.1, 0.05}),
-                   std::shared_ptr<const Renderer> elsewhere = nullptr) {
+                   std::shared_ptr<const Renderer> elsewhere = nullptr,
+                   const SensorConfig& sensors = exact_sensors()) {
   World made;
   SimulatedPlace& place = made.simulated.emplace();
   place.scene = std::make_shared<Scene>();
@@ -37,7 +38,7 @@ inline World world(Trajectory second = tour(10, 70, {0.15, -0.1, 0.05}),
   place.robot.camera = BoxRoom::camera();
   place.mapping.camera = tour(0, 80);
   place.second.emplace().camera = std::move(second);
-  place.sensors = exact_sensors();
+  place.sensors = sensors;
   made.vocabulary = testing_support::vocabulary();
   simulate(made, LabelMode::kExact);
   return made;

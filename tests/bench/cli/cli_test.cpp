@@ -364,7 +364,7 @@ TEST_F(CommandLine, AnAuditTakesOurOwnSystemsInSimulatedScenes) {
   const std::string out = (folder_ / "audit").string();
   const std::string theirs = "[semantic, {name: theirs, protocol: conversation, command: cat}]";
   expect_refused("audit " + suite_with("systems", theirs).string() + " --out " + out,
-                 "'theirs' is an outside system, which gives no match traces");
+                 "'theirs' gives no match traces");
   fs::create_directories(folder_ / "desk");
   write("desk/rgb.txt", "# none\n");
   const fs::path recorded = write(

@@ -52,7 +52,12 @@ TEST(Base64, IsThatOfTheRfc) {
 
 class Views : public testing::Test {
  protected:
-  World in_ = world();
+  static SensorConfig noisy() {
+    SensorConfig sensors = exact_sensors();
+    sensors.color_noise.enabled = true;
+    return sensors;
+  }
+  World in_ = world(tour(10, 70, {0.15, -0.1, 0.05}), nullptr, noisy());
   Audited a_ = audited(spec(), in_);
   Json json_ = views_json(a_.run, in_, a_.frozen);
 };
