@@ -152,7 +152,7 @@ TEST(RequireAuditable, RefusesOutsideSystemsAndRecordings) {
   EXPECT_EQ(why_refused(spec()), "");
   RunSpec outside = spec();
   outside.system = {SystemKind::kOutside, "theirs", {}};
-  EXPECT_NE(why_refused(outside).find("'theirs' is an outside system"), std::string::npos);
+  EXPECT_NE(why_refused(outside).find("'theirs' gives no match traces"), std::string::npos);
   RunSpec recorded = spec();
   recorded.environment.sequence = "tum:desk";
   EXPECT_NE(why_refused(recorded).find("'room' is a recording"), std::string::npos);
