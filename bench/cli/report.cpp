@@ -144,11 +144,14 @@ void add_plot(CLI::App& app) {
   command->callback([options, command, figure] {
     if (figure->empty() && command->get_option("--table")->empty())
       throw InputError("plot: either --figure or --table says what to draw");
-    const int number = options->order.figure;
+    const int number = figure->empty() ? 0 : options->order.figure;
     if (!options->order.run.empty() && number != 2 && number != 5)
       throw InputError(fmt::format("--run {}: is for figures 2 and 5", options->order.run));
     if (!command->get_option("--measure")->empty() && number != 3)
       throw InputError(fmt::format("--measure {}: is for figure 3", options->order.measure));
+    if (!command->get_option("--width")->empty() && number == 0)
+      throw InputError(
+          fmt::format("--width {}: a table is as wide as its columns", options->order.width_cm));
     draw(*options);
   });
 }

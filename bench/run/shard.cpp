@@ -92,6 +92,13 @@ class SplitTable {
   std::vector<std::size_t> begin_;       // of the last part, by the number of runs
 };
 
+/// As many as are drawn if every bin is filled: none is known before the drive.
+double graded_queries(const RunSpec& run) {
+  if (!run.graded) return 0;
+  const GradedSpec& g = *run.graded;
+  return static_cast<double>(bins(g.distance_m) * bins(g.angle_deg) * g.per_bin * g.speed.size());
+}
+
 }  // namespace
 
 Shard parse_shard(const std::string& text) {
@@ -117,9 +124,11 @@ PredictedCost predicted_cost(const RunSpec& run) {
                             : frames_of(e.mapping_tour, run) + frames_of(e.kidnapped_tour, run);
   const double second = e.is_recorded() ? frames_of(e.queries, run) : frames_of(e.query_tour, run);
   const double share = run.protocol.test_interval > 0 ? 1.0 / run.protocol.test_interval : 0;
-  const double asked = share * static_cast<double>(run.points.size()) * (mapped + second);
+  const double graded = graded_queries(run);
+  const double asked =
+      static_cast<double>(run.points.size()) * (share * (mapped + second) + graded);
   return {.images = images_of(run),
-          .images_s = e.is_recorded() ? 0 : kImage_s * (mapped + share * second),
+          .images_s = e.is_recorded() ? 0 : kImage_s * (mapped + share * second + graded),
           .own_s = kFrame_s * (mapped + asked)};
 }
 

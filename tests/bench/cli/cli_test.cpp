@@ -290,6 +290,8 @@ TEST_F(CommandLine, PrintedSettingsAreReadBackEqual) {
   EXPECT_EQ(parse_sensor_config(out_, "printed"),
             load_sensor_config(fs::path(MH_SOURCE_DIR) / "sim/sensors/levels/handheld.yaml"));
   expect_refused("sensors --level handheld plot --out x", "--level");
+  expect_refused("plot x --table 1 --measure held_out.success --out y.png", "--measure");
+  expect_refused("plot x --table 1 --width 5 --out y.png", "--width");
 
   ASSERT_EQ(run("bench --print-settings"), 0);
   YamlReader suite = YamlReader::parse(out_, "printed");

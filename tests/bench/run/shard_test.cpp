@@ -153,6 +153,10 @@ TEST(Shares, FollowTheLengthsOfTheTours) {
   RunSpec cut = run_along("handheld:3:400");
   cut.max_frames = 100;
   EXPECT_NEAR(predicted_cost(cut).own_s, whole.own_s / 4, 1e-9);
+  RunSpec graded = run_along("handheld:3:400");
+  graded.graded = GradedSpec{.distance_m = {0, 1, 2}, .angle_deg = {0, 30}, .per_bin = 100};
+  EXPECT_NEAR(predicted_cost(graded).images_s, 1.5 * whole.images_s, 1e-9) << "200 of them";
+  EXPECT_GT(predicted_cost(graded).own_s, whole.own_s);
   RunSpec recorded = run_along("");
   recorded.environment.sequence = "tum:somewhere";
   EXPECT_EQ(predicted_cost(recorded).images_s, 0);
