@@ -124,10 +124,11 @@ SE3 find_map_frame(const MapBuildArguments& options, const Source& source,
 
 void score(const MapBuildArguments& options, const Trajectory& truth, const Scene& scene,
            const OccupancyMapper& mapper, const MapStudy& study, const SceneLasers* lasers) {
-  const MapScores scores = score_map(
-      scene, mapper, truth, study,
-      {.resolution_m = options.resolution_m, .floor_z_m = 0, .robot_height_m = options.height_m},
-      lasers);
+  const MapScores scores = score_map(scene, mapper, truth, study,
+                                     {.resolution_m = options.resolution_m,
+                                      .floor_z_m = scene.floor.middle_m.z(),
+                                      .robot_height_m = options.height_m},
+                                     lasers);
   const fs::path out = options.out;
   write_atomically(out / "score.json", scores_json(scores));
   write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores.plan));
@@ -147,7 +148,7 @@ void run(MapBuildArguments options) {
   resolve(options.settings, Shipped::kSettings);
   const Source source = open_source(options);
   std::optional<Scene> scene;
-  if (options.lasers || options.score)
+  if (options.is_scene())
     scene = load_scene(find_scene(options.source.substr(kSceneSource.size())), nullptr,
                        options.frame.frame());
   std::optional<SceneLasers> lasers;
@@ -188,8 +189,10 @@ void run(MapBuildArguments options) {
     for (TimedPose& pose : at) pose.world_from_camera = map_from_world * pose.world_from_camera;
     scans = lasers->scans(at, *source.frames->truth(), options.resolution_m);
   }
+  const double floor_z_m = scene ? scene->floor.middle_m.z() : 0;  // a recording's frame is on it
   const MapStudy study =
-      study_of(mapper.map(), {.robot_height_m = options.height_m}, scans ? &*scans : nullptr);
+      study_of(mapper.map(), {.floor_z_m = floor_z_m, .robot_height_m = options.height_m},
+               scans ? &*scans : nullptr);
   write_map_files(options.out, mapper.map(), study);
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
   write_image(fs::path(options.out) / "grid_classes.png",
