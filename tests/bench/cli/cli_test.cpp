@@ -850,5 +850,20 @@ TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
                  "tolerances");
 }
 
+TEST_F(CommandLine, AMapOfARaisedFloorHasItsGridAboveThatFloor) {
+  const std::string room = (folder_ / "room.ply").string(), out = (folder_ / "map").string();
+  ASSERT_EQ(run("scene convert generated:bathroom:0 --out " + room), 0) << err_;
+  const fs::path raised = write("raised.yaml",
+                                "name: raised\nfloor_z_m: 2\n"
+                                "objects:\n- {file: room.ply, position_m: [0, 0, 2]}\n");
+  ASSERT_EQ(run("map build scene:" + raised.string() +
+                " --tour auto:0 --level ideal --score --frames 60 --out " + out),
+            0)
+      << err_;
+  const auto score = nlohmann::json::parse(content(out + "/score.json")).at("map");
+  EXPECT_GT(score.at("grid_iou_seen").at("value"), 0.95);
+  EXPECT_GT(score.at("grid_iou_seen").at("of"), 50);
+}
+
 }  // namespace
 }  // namespace mh
