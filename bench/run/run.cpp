@@ -206,10 +206,13 @@ void execute_run(const SingleRunOptions& order) {
     };
     return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, order.images);
   }();
-  if (run_key(spec, world.inputs) != order.key)
-    throw InputChanged(fmt::format(
-        "{}: a file that it reads was changed after the suite was begun: start the suite again",
-        spec.name));
+  const auto require_key = [&](std::span<const InputDigest> inputs) {
+    if (run_key(spec, inputs) != order.key)
+      throw InputChanged(fmt::format(
+          "{}: a file that it reads was changed after the suite was begun: start the suite again",
+          spec.name));
+  };
+  require_key(world.inputs);
   const fs::path folder = order.folder / spec.name;
   make_output_folder(folder);
   if (!order.metrics_only) remove_run(folder);
@@ -220,6 +223,11 @@ void execute_run(const SingleRunOptions& order) {
                                  .system = {},
                                  .tamper = {},
                                  .occupancy = !order.metrics_only,
+                                 .require_unchanged =
+                                     [&] {  // a scene was read once, images are read as they come
+                                       if (spec.environment.is_recorded())
+                                         require_key(InputReader().inputs_of(spec));
+                                     },
                                  .maps = Cache(order.maps)});
   if (!order.metrics_only) {
     const ProcessorTimer timer(products_s);

@@ -401,6 +401,37 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
   EXPECT_EQ(key(), before);
 }
 
+TEST_F(Recorded, AFileThatChangesUnderARunLeavesNeitherAMapNorAResult) {
+  record(room(), "tum", 0, 40);
+  const std::string before = key();
+  const auto image = [&](int i) {
+    auto files = std::vector<fs::path>(fs::directory_iterator(room() / "rgb"), {});
+    std::ranges::sort(files);
+    return files.at(static_cast<std::size_t>(i));
+  };
+  const World place = world();
+  const fs::path maps = folder_ / "maps";
+  RunTools tools{.folder = folder_, .maps = Cache(maps)};
+  tools.system = [](const RunSpec& spec, const World& in) {
+    return make_our_system(in.mapping->camera(),
+                           testing_support::box_room_settings(spec.points.front()), vocabulary());
+  };
+  tools.require_unchanged = [&] {
+    if (key() != before) throw InputError("changed");
+  };
+  const std::string first = read_file(image(0));
+  tools.status = [&](std::string_view status) {
+    if (status.starts_with("frame 20 ")) write(image(30), first);
+  };
+  EXPECT_THROW(run_one(spec_, place, tools), InputError);
+  bool made = false;
+  Cache(maps).get("map", map_key(spec_, place.inputs), [&] {
+    made = true;
+    return std::string();
+  });
+  EXPECT_TRUE(made) << "a map of these images was kept";
+}
+
 // A folder that is of two layouts is two recordings, whichever is looked at first.
 TEST_F(Recorded, OneFolderReadAsTwoLayoutsIsTwoRecordings) {
   record(room(), "tum", 0, 2);
