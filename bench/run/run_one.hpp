@@ -46,7 +46,7 @@ struct RunTools {
   std::size_t first = 0;         ///< frames before it were already mapped, by this same system
   RunTamper tamper = {};
   bool occupancy = true;  ///< false: RunResult::volume stays null and its grid empty
-  /// Called before a map or a result is handed on; throws if a file was changed since the run
+  /// Called before a map or a result is kept; throws if a file was changed since the run
   /// began.
   std::function<void()> require_unchanged = [] {};
   Cache maps = Cache();  ///< finished maps of the same mapping are loaded from and stored here
