@@ -86,9 +86,9 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   KeyframeId reference = located->reference;
   ++state.tracker.frames_since_keyframe;
-  if (!is_keyframe(state.map, stamp_ns) &&
-      needs_keyframe(tracked, frame.features, reference, state.tracker.frames_since_keyframe,
-                     context)) {
+  if (needs_keyframe(tracked, frame.features, reference, state.tracker.frames_since_keyframe,
+                     context) &&
+      !is_keyframe(state.map, stamp_ns)) {
     reference = add_keyframe(state, frame, tracked, stream.fork(1), observers, report);
     const Keyframe& keyframe = state.map.at(reference);
     tracked.camera_from_world = keyframe.camera_from_world;

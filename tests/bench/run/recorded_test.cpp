@@ -100,13 +100,13 @@ class Recorded : public testing::Test {
     return build_world(spec_, 1, Cache(), [](std::string_view) {});
   }
   RunResult run() const { return run(world()); }
-  RunResult run(const World& world) const {
-    return run_one(spec_, world,
-                   {.folder = folder_, .system = [](const RunSpec& spec, const World& place) {
-                      return make_our_system(
-                          place.mapping->camera(),
-                          testing_support::box_room_settings(spec.points.front()), vocabulary());
-                    }});
+  RunResult run(const World& world) const { return run_one(spec_, world, tools()); }
+  RunTools tools() const {
+    return {.folder = folder_, .system = [](const RunSpec& spec, const World& place) {
+              return make_our_system(place.mapping->camera(),
+                                     testing_support::box_room_settings(spec.points.front()),
+                                     vocabulary());
+            }};
   }
   std::string key() const {
     const std::vector<InputDigest> inputs = InputReader().inputs_of(spec_);
@@ -411,19 +411,16 @@ TEST_F(Recorded, AFileThatChangesUnderARunLeavesNeitherAMapNorAResult) {
   };
   const World place = world();
   const fs::path maps = folder_ / "maps";
-  RunTools tools{.folder = folder_, .maps = Cache(maps)};
-  tools.system = [](const RunSpec& spec, const World& in) {
-    return make_our_system(in.mapping->camera(),
-                           testing_support::box_room_settings(spec.points.front()), vocabulary());
-  };
-  tools.require_unchanged = [&] {
+  RunTools watched = tools();
+  watched.maps = Cache(maps);
+  watched.require_unchanged = [&] {
     if (key() != before) throw InputError("changed");
   };
   const std::string first = read_file(image(0));
-  tools.status = [&](std::string_view status) {
+  watched.status = [&](std::string_view status) {
     if (status.starts_with("frame 20 ")) write(image(30), first);
   };
-  EXPECT_THROW(run_one(spec_, place, tools), InputError);
+  EXPECT_THROW(run_one(spec_, place, watched), InputError);
   bool made = false;
   Cache(maps).get("map", map_key(spec_, place.inputs), [&] {
     made = true;
