@@ -40,6 +40,7 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   TrajectoryScore score;
   score.offered = static_cast<double>(offered);
   score.tracked = static_cast<double>(estimate.size());
+  score.scored = static_cast<double>(e.pairs);
   score.completeness = offered == 0 ? 0 : score.tracked / score.offered;
   score.ate_rmse_m = rmse(e.ape_translation_m);
   if (score.ate_rmse_m &&

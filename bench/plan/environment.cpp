@@ -102,38 +102,49 @@ EntryNames read_names(YamlReader& node) {
 }
 
 /// Reads a recording by its name, with its path relative to the suite.
-std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int index) {
+/// @param topics  of its messages; absent: none are named
+std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int index,
+                          const std::optional<YamlReader>& topics) {
   const auto [layout, path] = split_sequence(with_index(node.as_string(), index));
-  const std::string source = join_sequence(layout, (paths.folder / path).lexically_normal());
+  if (path.empty()) node.fail("names a layout, and no recording");
+  const fs::path found = (paths.folder / path).lexically_normal();
+  const std::string source = join_sequence(layout, found);
   if (!paths.must_exist) return source;
-  try {
-    reader_of(source);
-  } catch (const InputError& error) {
-    node.fail(error.what());
-  }
-  const fs::path found = split_sequence(source).second;
+  const SequenceReader& reader = [&]() -> const SequenceReader& {
+    try {
+      return reader_of(source);
+    } catch (const InputError& error) {
+      node.fail(error.what());
+    }
+  }();
   if (!is_there(found)) node.fail(fmt::format("'{}' is not there", found.string()));
+  if (reader.is_of_folders() && !is_folder(found))
+    node.fail(fmt::format("'{}' is not a folder", found.string()));
+  if (topics && !reader.has_topics)
+    topics->fail(
+        fmt::format("'{}': a recording of layout '{}' has none", topics->as_string(), reader.name));
   return source;
+}
+
+void check_topics(const YamlReader& topics) {
+  try {
+    parse_topic_names(topics.as_string());
+  } catch (const InputError& error) {
+    topics.fail(error.what());
+  }
 }
 
 /// Files of a recording other than its frames, shared by all environments of an entry.
 struct BesideFrames {
-  std::optional<YamlReader> queries;
+  std::optional<YamlReader> queries, topics;
   std::optional<fs::path> settings, classes;
-  std::string topics;
 
-  BesideFrames(YamlReader& node, const SuitePaths& paths) : queries(node.find("queries")) {
+  BesideFrames(YamlReader& node, const SuitePaths& paths)
+      : queries(node.find("queries")), topics(node.find("topics")) {
     if (const auto file = node.find("settings"))
       settings = named_file(*file, paths, Shipped::kSettings);
     if (const auto file = node.find("classes")) classes = named_file(*file, paths);
-    if (const auto named = node.find("topics")) {
-      topics = named->as_string();
-      try {
-        parse_topic_names(topics);
-      } catch (const InputError& error) {
-        named->fail(error.what());
-      }
-    }
+    if (topics) check_topics(*topics);
     for (const char* key : {"scene", "robot", "mapping_tour", "query_tour", "query_scene",
                             "kidnapped_tour", "sensors", "pedestrian", "up", "floor_z_m"})
       if (const auto other = node.find(key))
@@ -147,10 +158,10 @@ Environment recorded_environment(std::string name, std::string category, std::st
   e.name = std::move(name);
   e.category = std::move(category);
   e.sequence = std::move(sequence);
-  if (beside.queries) e.queries = read_sequence(*beside.queries, paths, index);
+  if (beside.queries) e.queries = read_sequence(*beside.queries, paths, index, beside.topics);
   e.settings = beside.settings;
   e.classes = beside.classes;
-  e.topics = beside.topics;
+  if (beside.topics) e.topics = beside.topics->as_string();
   return e;
 }
 
@@ -161,8 +172,9 @@ std::vector<Environment> read_recorded_entry(YamlReader node, const SuitePaths& 
   node.finish();
   std::vector<Environment> environments;
   for (int i = first; i < end; ++i) {
-    environments.push_back(recorded_environment(
-        with_index(name, i), category, read_sequence(sequence, paths, i), beside, paths, i));
+    environments.push_back(recorded_environment(with_index(name, i), category,
+                                                read_sequence(sequence, paths, i, beside.topics),
+                                                beside, paths, i));
     check_folder_name(node, environments.back().name);
   }
   return environments;
@@ -299,6 +311,21 @@ std::vector<fs::path> matching_files(const YamlReader& pattern, const fs::path& 
   return files;
 }
 
+/// What an environment is of, whatever it is called and however its recordings are written.
+Environment place_of(Environment e, const SuitePaths& paths) {
+  e.name.clear();
+  e.category.clear();
+  for (std::string* source : {&e.sequence, e.queries ? &*e.queries : nullptr}) {
+    if (source == nullptr || source->empty()) continue;
+    fs::path path = split_sequence(*source).second;
+    if (!path.has_filename()) path = path.parent_path();  // "room/"
+    std::error_code error;
+    if (paths.must_exist) path = fs::weakly_canonical(path, error);
+    *source = path.string();
+  }
+  return e;
+}
+
 }  // namespace
 
 bool is_generated(const fs::path& source) {
@@ -313,10 +340,18 @@ Environments read_environments(const YamlReader& list, const SuitePaths& paths,
                                const std::optional<fs::path>& default_robot) {
   Environments all;
   std::set<std::string> names;
+  std::vector<Environment> places;
   const auto add = [&](std::vector<Environment> some, const YamlReader& node) {
     for (Environment& e : some) {
       if (!names.insert(e.name).second)
         node.fail(fmt::format("two environments are named '{}'", e.name));
+      Environment place = place_of(e, paths);
+      if (const auto same = std::ranges::find(places, place); same != places.end())
+        node.fail(fmt::format(
+            "'{}' is '{}' once more: statistics take environments for independent (`trials` "
+            "repeats a run; `count` needs an {{i}} in the scene, the sequence or a tour)",
+            e.name, all.list[static_cast<std::size_t>(same - places.begin())].name));
+      places.push_back(std::move(place));
       all.list.push_back(std::move(e));
     }
   };

@@ -37,6 +37,7 @@ struct Environment {
   std::optional<std::filesystem::path> classes = {};   ///< class map for the labels of both
   std::string topics = {};  ///< of both, where they are ROS messages: "color=/a,depth=/b"
   bool is_recorded() const { return !sequence.empty(); }
+  friend bool operator==(const Environment&, const Environment&) = default;
 };
 
 /// A recording that a pattern of a suite found.
@@ -79,7 +80,7 @@ struct Environments {
 ///   the path), sorted by name, contains one such mapping, with paths relative to its own folder.
 /// Names default to the category; `robot` to the given default.
 /// @throws InputError naming file, line, field and value: an empty list, two environments of one
-///         name, a missing file.
+///         name or of one place, a missing file.
 Environments read_environments(const YamlReader& list, const SuitePaths& paths,
                                const std::optional<std::filesystem::path>& default_robot);
 

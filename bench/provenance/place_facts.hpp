@@ -11,16 +11,19 @@
 
 namespace mh {
 
-/// Reported facts of a driven path. NaN: unknown, since the path was cut.
+/// Reported facts of a path. NaN: unknown, since the path was cut or recorded.
 struct PathFacts {
   std::size_t frames = 0;
+  std::size_t true_poses = 0;  ///< frames whose true pose is known
   double length_m = 0, turned_in_place_rad = 0, contact_time_s = 0, max_penetration_m = 0;
 };
 
 template <Either<PathFacts> P, class Visit>
 void fields(P& path, Visit& v) {
-  auto& [frames, length_m, turned_in_place_rad, contact_time_s, max_penetration_m] = path;
+  auto& [frames, true_poses, length_m, turned_in_place_rad, contact_time_s, max_penetration_m] =
+      path;
   v("frames", frames);
+  v("true_poses", true_poses);
   v("length_m", length_m);
   v("turned_in_place_rad", turned_in_place_rad);
   v("contact_time_s", contact_time_s);

@@ -56,7 +56,9 @@ std::string paper_table(const Block& block) {
     for (const Row* row : block.rows) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = is_saturated(block.system(row), s);
-      const std::string missing = incomplete(block.suite, *row);
+      std::string missing = incomplete(block.suite, *row);
+      if (missing.empty() && s.queries > 0 && s.queries < most_queries(block, set))
+        missing = fmt::format("{:.0f} of them", s.queries);
       table.add(
           {"  " + block.system(row).name,
            s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", meters(s.distance_mean_m)},

@@ -2,7 +2,6 @@
 #include "bench/report/table.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +10,7 @@
 #include "bench/plan/runs.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/place_table.hpp"
+#include "bench/report/recordings_text.hpp"
 #include "bench/report/scenes_table.hpp"
 #include "bench/report/sweep_table.hpp"
 #include "slam/config/slam.hpp"
@@ -26,20 +26,6 @@ std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) 
   return fmt::format(
       "\nSHORTENED to the first {} of each tour: a quick look, no result of this suite\n",
       counted(*suite.max_frames, "frame"));
-}
-
-/// Notes on recordings: their single noise, and frames that were not shown to any system.
-std::string recordings_text(const Suite& suite, std::span<const RunResult> runs) {
-  if (std::ranges::none_of(suite.environments, &Environment::is_recorded)) return "";
-  std::string text = "\nrecordings have one noise: trials differ in RANSAC's draws alone\n";
-  std::set<std::string> named;
-  for (const RunResult& run : runs) {
-    const SkippedFrames& skipped = run.mapping.skipped;
-    if (skipped.count == 0 || !named.insert(run.spec.environment.name).second) continue;
-    text += fmt::format("  {}: {} skipped, the first: {}\n", run.spec.environment.name,
-                        counted(skipped.count, "frame"), skipped.reasons.front());
-  }
-  return text;
 }
 
 std::string base_text(const Suite& suite) {

@@ -58,7 +58,8 @@ std::string incomplete(const CategoryRow& row) {
 }
 
 bool is_saturated(const SystemSpec& system, const QuerySummary& queries) {
-  return !system.sees_labels() && queries.success > kSaturated;
+  return !system.sees_labels() && queries.success > kSaturated &&
+         queries.correct.value_or(1) > kSaturated;
 }
 
 bool already_shown(const Suite& suite, const Row& row) {

@@ -11,10 +11,11 @@ namespace mh {
 
 // Text that the tables of results share.
 
-/// From this share of answered queries on nothing is left to gain.
+/// From this share of answered queries on nothing is left to gain, if the answers are correct.
 inline constexpr double kSaturated = 0.97;
 
-/// Whether a system without labels answers so many queries that labels have nothing left to gain.
+/// Whether a system without labels answers so many queries, correctly as far as is
+/// known, that labels have nothing left to gain.
 bool is_saturated(const SystemSpec& system, const QuerySummary& queries);
 
 /// "held out", "2nd tour", "graded"

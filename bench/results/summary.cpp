@@ -48,32 +48,28 @@ Row fill_in(Row row) {
   return row;
 }
 
-/// Per query, the median of a value over trials; absent if no trial has one.
+/// By the query's frame, the median of a value over trials; absent if no trial has one.
 template <class Get>
-std::vector<PairedDifference> per_query(const Row& row, QuerySet set, Get get) {
-  std::map<std::size_t, std::vector<double>> values;
+std::map<std::size_t, std::optional<double>> per_query(const Row& row, QuerySet set, Get get) {
+  std::map<std::size_t, std::vector<std::optional<double>>> values;
   for (const Trial& trial : row.trials)
-    for (const QueryScore& q : queries(*trial.point, set)) {
-      auto& of_query = values[q.answer.index];
-      if (const std::optional<double> value = get(q)) of_query.push_back(*value);
-    }
-  std::vector<PairedDifference> result;
-  for (auto& [index, v] : values) {
-    const bool present = !v.empty();
-    result.push_back({median(std::move(v)), present});
-  }
-  return result;
+    for (const QueryScore& q : queries(*trial.point, set))
+      values[q.answer.index].push_back(get(q));
+  std::map<std::size_t, std::optional<double>> medians;
+  for (const auto& [index, of_trials] : values) medians[index] = median_of_known(of_trials);
+  return medians;
 }
 
+/// Of the queries that both were asked: one of them may have been skipped for a system that needs
+/// its labels.
 template <class Get>
 std::vector<PairedDifference> differences(const Row& first, const Row& second, QuerySet set,
                                           Get get) {
-  std::vector<PairedDifference> result = per_query(first, set, get);
-  const std::vector<PairedDifference> other = per_query(second, set, get);
-  for (std::size_t i = 0; i < result.size() && i < other.size(); ++i) {
-    result[i].difference -= other[i].difference;
-    result[i].present = result[i].present && other[i].present;
-  }
+  const std::map<std::size_t, std::optional<double>> other = per_query(second, set, get);
+  std::vector<PairedDifference> result;
+  for (const auto& [index, value] : per_query(first, set, get))
+    if (const auto same = other.find(index); same != other.end())
+      result.push_back(paired_difference(value, same->second));
   return result;
 }
 

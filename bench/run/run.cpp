@@ -153,7 +153,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     if (options.cache)
       if (const std::string why = Cache(cache).why_unwritable(); !why.empty())
         options.say(fmt::format(
-            "warning: the cache keeps nothing, light is baked anew in each run: {}", why));
+            "warning: the cache keeps nothing, light and maps are made anew in each run: {}", why));
     const fs::path images = work.path() / "images";
     const std::uint64_t images_limit = limit_of_images(mine, options);
     const std::string session_start = utc_now();

@@ -19,20 +19,35 @@
 #include "sim/world/sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/interpolate.hpp"
 #include "slam/core/path_length.hpp"
 
 namespace mh {
 namespace {
 
 PathFacts facts(const DrivenPath& path) {
-  return {path.camera.size(), path.length_m, path.turned_in_place_rad, path.contact_time_s,
+  const std::size_t frames = path.camera.size();
+  return {frames,
+          frames,
+          path.length_m,
+          path.turned_in_place_rad,
+          path.contact_time_s,
           path.max_penetration_m};
 }
 
 PathFacts recorded_path(const Sequence& sequence) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  return {sequence.size(), sequence.truth() ? path_length_m(*sequence.truth()) : kUnknown, kUnknown,
-          kUnknown, kUnknown};
+  PathFacts path{.frames = sequence.size(),
+                 .length_m = kUnknown,
+                 .turned_in_place_rad = kUnknown,
+                 .contact_time_s = kUnknown,
+                 .max_penetration_m = kUnknown};
+  const Trajectory* truth = sequence.truth();
+  if (truth == nullptr) return path;
+  path.length_m = path_length_m(*truth);
+  for (std::size_t i = 0; i < sequence.size(); ++i)
+    if (interpolated_pose(*truth, sequence.stamp_ns(i), kMaxTruthGap_ns)) ++path.true_poses;
+  return path;
 }
 
 /// Facts that simulated places and recordings have in common.

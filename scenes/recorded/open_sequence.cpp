@@ -16,6 +16,7 @@
 #include "scenes/recorded/scannet_folder.hpp"
 #include "scenes/recorded/seven_scenes.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/interpolate.hpp"
 #include "slam/core/read_record.hpp"
@@ -81,6 +82,7 @@ std::string join_sequence(const std::string& layout, const fs::path& path) {
 
 const SequenceReader& reader_of(const std::string& source) {
   const auto [layout, path] = split_sequence(source);
+  require_open(path);
   for (const SequenceReader* reader : kReaders) {
     if (layout.empty() ? !reader->recognizes(path) : layout != reader->name) continue;
     if (layout.empty() && reader == &kBagReader && kMcapReader.recognizes(path))

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,8 @@ struct SequenceReader {
   /// layouts that never have one.
   std::string (*scene_type)(const std::filesystem::path&);
   bool has_topics = false;  ///< RecordingConfig::topics means something
+  /// Whether a recording is always a folder.
+  bool is_of_folders() const { return std::string_view(place) == "FOLDER"; }
 };
 
 /// Every layout, in the order in which they are tried on a path.

@@ -53,4 +53,10 @@ void require_readable(const fs::path& file) {
     throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
 }
 
+void require_open(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder, error) && access(folder.c_str(), R_OK | X_OK) != 0)
+    throw InputError(fmt::format("{}: cannot be read: no permission", folder.string()));
+}
+
 }  // namespace mh

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/core/text_file.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
@@ -18,6 +20,7 @@ std::string_view without_mark(std::string_view text, const std::filesystem::path
 std::string read_text(const std::filesystem::path& file) {
   std::string text = read_file(file);
   text.erase(0, text.size() - without_mark(text, file).size());
+  if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
   return text;
 }
 

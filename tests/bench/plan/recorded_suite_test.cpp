@@ -134,7 +134,33 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
             "no environment is one");
   expect_in(error("- {category: desk, sequence: 'tum:nowhere'}"), "is not there");
   expect_in(error("- {category: desk, sequence: scans}"), "name its layout: " + sequence_forms());
+  expect_in(error("- {category: desk, sequence: 'tum:'}"),
+            "suite.yaml:2: environments[0].sequence");
+  expect_in(error("- {category: desk, sequence: 'tum:words'}"), "is not a folder");
+  expect_in(error("- {category: desk, sequence: 'tum:desk', topics: 'color=/a'}"),
+            "topics: 'color=/a': a recording of layout 'tum' has none");
   expect_in(error(kDesk, "[recorded]", "", {.scene = folder_ / "house.yaml"}), "is a recording");
+}
+
+// Statistics over scenes would count it twice.
+TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
+  fs::create_directory_symlink(folder_ / "desk", folder_ / "link");
+  for (const char* other : {"tum:desk", "desk", "tum:desk/", "tum:scans/../desk", "tum:link"})
+    expect_in(error(fmt::format("{}\n- {{category: table, sequence: '{}'}}", kDesk, other)),
+              "suite.yaml:3: environments[1]: 'table' is 'desk' once more");
+  expect_in(error("- {category: desk, count: 2, sequence: 'tum:desk'}"),
+            "'desk-1' is 'desk-0' once more");
+  // Queries of another recording make another environment.
+  EXPECT_EQ(load(std::string(kDesk) +
+                 "\n- {category: table, sequence: 'tum:desk', queries: 'tum:desk_again'}")
+                .environments.size(),
+            2U);
+  const std::string house =
+      "- {category: house, scene: house.yaml, robot: robot.yaml, mapping_tour: 'handheld:0'}";
+  expect_in(error(house + "\n- {category: home, scene: ./house.yaml, robot: robot.yaml, "
+                          "mapping_tour: 'handheld:0'}",
+                  "[exact]", "levels: [pepper.yaml]\n"),
+            "'home' is 'house' once more");
 }
 
 TEST_F(RecordedSuite, MixedWithScenesEachTakesTheLabelsAndLevelsThatFitIt) {

@@ -307,7 +307,8 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
   EXPECT_EQ(semantic["system"], "semantic");
   EXPECT_EQ(semantic["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875,
       "ate_rmse_m": 0.0111, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
-      "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0})"));
+      "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0,
+      "scored": 874.125})"));
   EXPECT_EQ(semantic["mapping"], nlohmann::json::parse(R"({"failures": 0.0, "restarts": 6.0,
       "dropped": 7.0, "penalized": null})"));
   EXPECT_EQ(semantic["held_out"], nlohmann::json::parse(R"({"queries": 8.0, "success": 0.75,
@@ -331,7 +332,8 @@ TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   const nlohmann::json run = rounded(results_json(suite_, runs_)["runs"][0]);
   EXPECT_EQ(run["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875,
       "ate_rmse_m": 0.0111, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
-      "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0})"));
+      "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0,
+      "scored": 874.125})"));
   EXPECT_EQ(run["points"][0]["held_out"].size(), 8u);
   EXPECT_EQ(run["points"][0]["second_tour"].size(), 5u);
   nlohmann::json query = run["points"][0]["held_out"][5];  // a false one

@@ -13,6 +13,7 @@
 
 #include "bench/inputs/inputs.hpp"
 #include "bench/inputs/run_key.hpp"
+#include "bench/plan/runs.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
@@ -107,6 +108,15 @@ class Recorded : public testing::Test {
                                      testing_support::box_room_settings(spec.points.front()),
                                      vocabulary());
             }};
+  }
+  /// The run's environment, system and labels.
+  Suite suite() const {
+    Suite all;
+    all.environments = {spec_.environment};
+    all.levels = {kRecordedLevel};
+    all.systems = {spec_.system};
+    all.labels = {LabelMode::kRecorded};
+    return all;
   }
   std::string key() const {
     const std::vector<InputDigest> inputs = InputReader().inputs_of(spec_);
@@ -251,14 +261,82 @@ TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
   Store store(folder_ / "results.sqlite");
   store.put("key", result, {});
   EXPECT_EQ(store.load("key", spec_).mapping.skipped, result.mapping.skipped);
-  Suite suite;
-  suite.environments = {spec_.environment};
-  suite.levels = {kRecordedLevel};
-  suite.systems = {spec_.system};
-  suite.labels = {LabelMode::kRecorded};
-  const std::string table = results_table(suite, std::span(&result, 1));
+  const std::string table = results_table(suite(), std::span(&result, 1));
   EXPECT_NE(table.find("room: 9 frames skipped, the first: "), std::string::npos) << table;
   EXPECT_NE(table.find("differ in RANSAC's draws alone"), std::string::npos);
+}
+
+// Only a system that sees labels loses the frame. Queries are paired by their frame, not by their
+// place in the list.
+TEST_F(Recorded, AFrameWithADamagedLabelImageIsSkippedForTheSystemsThatSeeIt) {
+  record(room(), "tum", 0, 125);
+  write(load_tum_folder(room())[29].classes, "no image");  // the first test frame
+  Suite both = suite();
+  both.systems.push_back({SystemKind::kPlain, "plain", {}});
+  both.compare = {{0, 1}};
+  std::vector<RunResult> results;
+  for (const RunSpec& spec : expand(both)) {
+    spec_ = spec;
+    results.push_back(run());
+  }
+  ASSERT_EQ(results.size(), 2U);
+  ASSERT_EQ(results[0].points.front().held_out.size(), 3U);
+  ASSERT_EQ(results[1].points.front().held_out.size(), 4U);
+
+  const std::string table = results_table(both, results);
+  EXPECT_NE(table.find("4 queries"), std::string::npos) << table;
+  EXPECT_NE(table.find("3 of them"), std::string::npos) << table;
+  EXPECT_NE(table.find("room, semantic (recorded labels): 1 frame skipped"), std::string::npos)
+      << table;
+  EXPECT_EQ(table.find("room, plain"), std::string::npos) << table;
+
+  QueryScore& other = results[0].points.front().held_out[0];  // frame 59
+  other.success = other.correct = false;
+  const std::vector<Row> rows = make_rows(both, results);
+  ASSERT_EQ(rows.size(), 2U);
+  const std::vector<PairedDifference> pairs = paired_success(rows[0], rows[1], QuerySet::kHeldOut);
+  ASSERT_EQ(pairs.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(pairs[i].present);
+    EXPECT_EQ(pairs[i].difference, i == 0 ? -1 : 0);
+  }
+}
+
+TEST_F(Recorded, HalfATruthIsSaid) {
+  record(room(), "tum", 0, 60);
+  Trajectory truth = read_trajectory(room() / "groundtruth.txt");
+  truth.resize(25);
+  write_tum(room() / "groundtruth.txt", truth);
+  const RunResult result = run();
+  EXPECT_EQ(result.trajectory.tracked, 58);
+  EXPECT_EQ(result.trajectory.scored, 25);
+  EXPECT_EQ(result.place.mapping.true_poses, 25U);
+  const std::string table = results_table(suite(), std::span(&result, 1));
+  EXPECT_NE(table.find("room: 25 of 60 frames have a true pose; the others are not scored"),
+            std::string::npos)
+      << table;
+}
+
+TEST_F(Recorded, QueriesInAnotherFrameOfReferenceAreAskedFor) {
+  record(room(), "tum", 0, 90);
+  record(folder_ / "again", "tum", 0, 100);
+  Trajectory moved = read_trajectory(folder_ / "again" / "groundtruth.txt");
+  for (TimedPose& pose : moved)
+    pose.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {5, 0, 0}) * pose.world_from_camera;
+  write_tum(folder_ / "again" / "groundtruth.txt", moved);
+  spec_.environment.queries = "tum:" + (folder_ / "again").string();
+  spec_.system = {SystemKind::kPlain, "plain", {}};
+  const Suite plain = suite();
+  spec_ = expand(plain).front();
+  const RunResult result = run();
+  const std::string table = results_table(plain, std::span(&result, 1));
+  EXPECT_NE(table.find("warning: room: all 3 answers to `queries` are wrong, by 5.0"),
+            std::string::npos)
+      << table;
+  const std::size_t second = table.find("second tour");
+  ASSERT_NE(second, std::string::npos) << table;
+  EXPECT_EQ(table.find("saturated", second), std::string::npos)
+      << "nothing is left to gain, though all is wrong: " << table;
 }
 
 TEST_F(Recorded, ARecordingOfWhichNothingCanBeReadIsOneError) {
