@@ -53,8 +53,7 @@ template <class Get>
 std::map<std::size_t, std::optional<double>> per_query(const Row& row, QuerySet set, Get get) {
   std::map<std::size_t, std::vector<std::optional<double>>> values;
   for (const Trial& trial : row.trials)
-    for (const QueryScore& q : queries(*trial.point, set))
-      values[q.answer.index].push_back(get(q));
+    for (const QueryScore& q : queries(*trial.point, set)) values[q.answer.index].push_back(get(q));
   std::map<std::size_t, std::optional<double>> medians;
   for (const auto& [index, of_trials] : values) medians[index] = median_of_known(of_trials);
   return medians;
