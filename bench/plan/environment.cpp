@@ -106,7 +106,7 @@ EntryNames read_names(YamlReader& node) {
 std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int index,
                           const std::optional<YamlReader>& topics) {
   const auto [layout, path] = split_sequence(with_index(node.as_string(), index));
-  if (path.empty()) node.fail("names a layout, and no recording");
+  if (path.empty()) node.fail("names no recording");
   const fs::path found = (paths.folder / path).lexically_normal();
   const std::string source = join_sequence(layout, found);
   if (!paths.must_exist) return source;
@@ -189,6 +189,11 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
        list_folder(full.parent_path().empty() ? "." : full.parent_path(), full.filename())) {
     const fs::path place = full.parent_path() / name;
     const std::string source = join_sequence(layout, place);
+    try {
+      require_open(place);
+    } catch (const InputError& error) {
+      pattern.fail(error.what());
+    }
     const auto readers = sequence_readers();
     const auto reader = std::ranges::find_if(readers, [&](const SequenceReader* r) {
       return (layout.empty() || layout == r->name) && r->recognizes(place);
@@ -315,6 +320,11 @@ std::vector<fs::path> matching_files(const YamlReader& pattern, const fs::path& 
 Environment place_of(Environment e, const SuitePaths& paths) {
   e.name.clear();
   e.category.clear();
+  if (e.is_recorded()) {  // with another calibration it is the same place
+    e.settings.reset();
+    e.classes.reset();
+    e.topics.clear();
+  }
   for (std::string* source : {&e.sequence, e.queries ? &*e.queries : nullptr}) {
     if (source == nullptr || source->empty()) continue;
     fs::path path = split_sequence(*source).second;

@@ -36,6 +36,8 @@ struct SystemSpec {
   bool takes_settings() const {
     return kind == SystemKind::kSemantic || kind == SystemKind::kPlain;
   }
+  /// Answers queries: all but programs that return a trajectory.
+  bool is_asked() const { return !is_outside() || outside.mode != OutsideMode::kTrajectory; }
   /// Its finished map is kept for later runs: it implements System::save() and restore().
   bool saves_map() const { return takes_settings(); }
   /// Labels affect its matching: equation 2.

@@ -57,7 +57,7 @@ std::string paper_table(const Block& block) {
       const QuerySummary& s = summary(*row, set);
       const bool saturated = is_saturated(block.system(row), s);
       std::string missing = incomplete(block.suite, *row);
-      if (missing.empty() && s.queries > 0 && s.queries < most_queries(block, set))
+      if (missing.empty() && block.system(row).is_asked() && s.queries < most_queries(block, set))
         missing = fmt::format("{:.0f} of them", s.queries);
       table.add(
           {"  " + block.system(row).name,

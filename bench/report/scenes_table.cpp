@@ -27,7 +27,7 @@ std::string categories_text(const Suite& suite, std::span<const CategoryRow> row
     std::ranges::move(trajectory_cells(row), std::back_inserter(cells));
     for (const QuerySet set : kQuerySets)
       if (was_asked(all, set)) std::ranges::move(query_cells(row, set), std::back_inserter(cells));
-    const bool saturated = is_saturated(system, row.held_out);
+    const bool saturated = is_saturated(system, row);
     const std::string missing = incomplete(row);
     table.add(std::move(cells), !missing.empty() ? missing : saturated ? "saturated" : "");
   }

@@ -62,6 +62,16 @@ bool is_saturated(const SystemSpec& system, const QuerySummary& queries) {
          queries.correct.value_or(1) > kSaturated;
 }
 
+bool is_saturated(const SystemSpec& system, const CategoryRow& row) {
+  bool asked = false;
+  for (const QuerySet set : kQuerySets) {
+    if (summary(row, set).queries == 0) continue;
+    if (!is_saturated(system, summary(row, set))) return false;
+    asked = true;
+  }
+  return asked;
+}
+
 bool already_shown(const Suite& suite, const Row& row) {
   const auto first = std::ranges::find_if(suite.labels, [&](const Labels& labels) {
     return fits(suite.environments[row.environment], labels);

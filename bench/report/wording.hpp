@@ -17,6 +17,8 @@ inline constexpr double kSaturated = 0.97;
 /// Whether a system without labels answers so many queries, correctly as far as is
 /// known, that labels have nothing left to gain.
 bool is_saturated(const SystemSpec& system, const QuerySummary& queries);
+/// The same of all sets of queries that were asked.
+bool is_saturated(const SystemSpec& system, const CategoryRow& row);
 
 /// "held out", "2nd tour", "graded"
 std::string_view short_title(QuerySet set);

@@ -67,8 +67,17 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
       if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
         say(warning);
   std::vector<Job> jobs;
-  for (const RunSpec& spec : specs)
+  std::map<std::string, std::string> environment_of;  // by key
+  for (const RunSpec& spec : specs) {
     jobs.push_back({spec, run_key(spec, inputs.inputs_of(spec)), images_of(spec)});
+    const std::string& name = spec.environment.name;
+    const auto [known, is_new] = environment_of.try_emplace(jobs.back().key, name);
+    if (known->second != name)
+      throw InputError(fmt::format(
+          "{}: environments '{}' and '{}' are equal in every byte that a run reads: statistics "
+          "take environments for independent",
+          suite.file.string(), known->second, name));
+  }
   return jobs;
 }
 

@@ -101,11 +101,10 @@ OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
   opened.notes = std::move(notes);
   // Read even where labels are left out: what is read depends on the recording alone.
   if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
-  for (RecordedFrame& frame : listed.frames) {
+  for (const RecordedFrame& frame : listed.frames) {
     for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})
       if (!file->empty()) opened.files.push_back(*file);
     opened.has_labels = opened.has_labels || !frame.classes.empty();
-    if (!config.labels) frame.classes.clear();
   }
   if (!config.classes.empty() && !opened.has_labels)
     opened.notes.push_back(no_labels_note(config.classes));
@@ -118,6 +117,8 @@ OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
                           },
                       .place = [&](std::size_t i) { return listed.frames[i].classes.string(); }},
                      *listed.classes, config.classes, opened.notes);
+  if (!config.labels)
+    for (RecordedFrame& frame : listed.frames) frame.classes.clear();
   opened.sequence = std::make_unique<ListedSequence>(std::move(listed));
   return opened;
 }

@@ -148,6 +148,9 @@ TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
   for (const char* other : {"tum:desk", "desk", "tum:desk/", "tum:scans/../desk", "tum:link"})
     expect_in(error(fmt::format("{}\n- {{category: table, sequence: '{}'}}", kDesk, other)),
               "suite.yaml:3: environments[1]: 'table' is 'desk' once more");
+  expect_in(error(std::string(kDesk) +
+                  "\n- {category: table, sequence: 'tum:desk', settings: camera.yaml}"),
+            "'table' is 'desk' once more");
   expect_in(error("- {category: desk, count: 2, sequence: 'tum:desk'}"),
             "'desk-1' is 'desk-0' once more");
   // Queries of another recording make another environment.

@@ -18,6 +18,7 @@
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/summary.hpp"
+#include "bench/run/plan_runs.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/store/store.hpp"
@@ -337,6 +338,13 @@ TEST_F(Recorded, QueriesInAnotherFrameOfReferenceAreAskedFor) {
   ASSERT_NE(second, std::string::npos) << table;
   EXPECT_EQ(table.find("saturated", second), std::string::npos)
       << "nothing is left to gain, though all is wrong: " << table;
+  std::vector<RunResult> of_two(2, result);
+  of_two[1].spec.environment.name = "other";
+  Suite two = plain;
+  two.environments.push_back(of_two[1].spec.environment);
+  const std::string means = results_table(two, of_two);
+  EXPECT_NE(means.find("2nd tour: success"), std::string::npos) << means;
+  EXPECT_EQ(means.find("saturated"), std::string::npos) << means;
 }
 
 TEST_F(Recorded, ARecordingOfWhichNothingCanBeReadIsOneError) {
@@ -505,6 +513,43 @@ TEST_F(Recorded, AFileThatChangesUnderARunLeavesNeitherAMapNorAResult) {
     return std::string();
   });
   EXPECT_TRUE(made) << "a map of these images was kept";
+}
+
+// The key of a run is made of all that lies there before anything runs, and of what the run read.
+TEST_F(Recorded, TheKeyIsTheSameWhetherLabelsAreLeftOutOrNot) {
+  write(folder_ / "classes.yaml", "1: chair\n");
+  spec_.environment.classes = folder_ / "classes.yaml";
+  for (const char* layout : {"tum", "scannet-frames"}) {
+    const fs::path folder = folder_ / layout;
+    record(folder, layout, 0, 2);
+    spec_.environment.sequence = folder.string();
+    for (const LabelMode labels : {LabelMode::kRecorded, LabelMode::kNone}) {
+      spec_.labels = labels;
+      EXPECT_EQ(run_key(spec_, world().inputs), key()) << layout << " " << name(labels);
+    }
+  }
+}
+
+TEST_F(Recorded, ACopyUnderAnotherNameIsRefused) {
+  record(room(), "tum", 0, 2);
+  fs::copy(room(), folder_ / "copy", fs::copy_options::recursive);
+  Suite two = suite();
+  two.environments.push_back(spec_.environment);
+  two.environments[1].name = "copy";
+  two.environments[1].sequence = "tum:" + (folder_ / "copy").string();
+  InputReader reader;
+  const auto plan = [&] { return plan_runs(two, reader, [](std::string_view) {}); };
+  try {
+    plan();
+    ADD_FAILURE() << "one recording would count twice";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'room' and 'copy' are equal in every byte"),
+              std::string::npos)
+        << error.what();
+  }
+  write(folder_ / "copy" / "rgb.txt", read_file(room() / "rgb.txt") + "# another\n");
+  reader = InputReader();
+  EXPECT_EQ(plan().size(), 2U);
 }
 
 // A folder that is of two layouts is two recordings, whichever is looked at first.
