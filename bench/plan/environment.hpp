@@ -19,15 +19,16 @@ namespace mh {
 /// (sim/world/travel.hpp); the mapping tour defaults to `auto`.
 struct Environment {
   std::string name;      ///< unique in its suite, valid as a folder name
-  std::string category;  ///< means are taken per category: "bathroom"
+  std::string category;  ///< "bathroom": means are taken per category
   std::filesystem::path scene, robot, mapping_tour;
   SceneFrame frame = {};                            ///< of the scene files
   std::optional<std::filesystem::path> query_tour;  ///< the second tour; none: held-out frames only
   // What a scenario may change.
   std::optional<std::filesystem::path> query_scene = {};  ///< of the second tour; none: the scene
-  /// Between two frames the robot is moved to the start of this tour, and keeps mapping.
+  /// After the mapping tour the robot is moved, from one frame to the next, to the start of this
+  /// tour and continues mapping.
   std::optional<std::filesystem::path> kidnapped_tour = {};
-  std::optional<std::filesystem::path> sensors = {};     ///< replace the level's settings
+  std::optional<std::filesystem::path> sensors = {};     ///< replaces the level's settings
   std::optional<std::filesystem::path> pedestrian = {};  ///< present while the robot maps
   /// A recording ("tum:FOLDER", scenes/recorded/open_sequence.hpp) in place of all of the above
   /// except name and category; empty: a scene.
@@ -58,7 +59,7 @@ bool is_generated(const std::filesystem::path& source);
 struct SuitePaths {
   std::filesystem::path folder;
   bool must_exist = true;
-  FoundRecordings found = {};  ///< of patterns that need no search
+  FoundRecordings found = {};  ///< what patterns found before: these are not searched for again
 };
 
 /// The environments of a suite.
@@ -68,10 +69,10 @@ struct Environments {
   std::vector<std::string> notes;  ///< recordings that were left out, one line each
 };
 
-/// Reads the list `environments` of a suite. Each entry is a mapping with the fields of Environment
-/// that apply to a scene, or those that apply to a recording, and optionally one of these:
-/// - `count: N` creates N environments, {i} in name, scene and tours replaced by `first`, default
-///   0, and those after it; the name defaults to CATEGORY-{i}.
+/// Reads the list `environments` of a suite. Each entry is a YAML map with the fields of
+/// Environment that apply to a scene, or those that apply to a recording, and at most one of these:
+/// - `count: N` creates N environments: {i} in name, scene and tours is replaced by N consecutive
+///   numbers from the key `first` on (default 0); the name defaults to CATEGORY-{i}.
 /// - `sequences: PATTERN` instead of `sequence` creates an environment for each recording that
 ///   matches (* and ? in the last part of the path), sorted by name, named after its folder or
 ///   file. Its category is the given one, or what the mapping `categories` assigns to the scene

@@ -21,7 +21,7 @@ enum class NearestBy {
 /// the estimate at the query's own time.
 struct Anchor {
   SE3 estimate;  ///< world_from_camera of the system
-  SE3 truth;     ///< world_from_camera, true
+  SE3 truth;     ///< world_from_camera, true; the identity if unknown (interpolated)
   Stamp stamp_ns = 0;
 };
 
@@ -48,9 +48,10 @@ std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajector
 /// @param truth  may be null: unknown
 QueryMoment moment_of(Stamp stamp_ns, const Trajectory* truth);
 
-/// Returns the anchor that config.truth prescribes. Interpolation applies to held-out frames: a
-/// query of another tour has no neighbors in time and is scored as by kLocal. Interpolation works
-/// without truth, kLocal does not.
+/// Returns the anchor that config.truth prescribes. With kInterpolated, that of a held-out query is
+/// the estimate interpolated at its time, which needs no truth. If there is none, for a query of
+/// another tour (which has no neighbors in time) and with kLocal, it is the nearest mapped frame,
+/// which needs the query's true pose.
 std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
                                   const QueryMoment& query, NearestBy by,
                                   const ProtocolConfig& config);
@@ -65,7 +66,8 @@ struct QueryScore {
   bool correct = false;  ///< returned, and within the protocol's limits
   bool false_positive =
       false;  ///< returned, and outside them (or nothing was mapped to compare with)
-  // Absent if nothing was answered, or nothing was mapped that an answer could be compared with.
+  // Absent if no pose was returned or there is no anchor: nothing mapped, or no truth to find one
+  // by. The aligned distance is also absent if the true pose is unknown.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
   std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
   QueryGrade grade = {};

@@ -11,7 +11,7 @@ namespace mh {
 
 // Text that the tables of results share.
 
-/// From this share of answered queries on nothing is left to gain, if the answers are correct.
+/// Above this share of answered queries nothing is left to gain, if the answers are correct.
 inline constexpr double kSaturated = 0.97;
 
 /// Whether a system without labels answers so many queries, correctly as far as is

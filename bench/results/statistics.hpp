@@ -43,16 +43,16 @@ struct Comparison {
   bool more_is_better = true;
   bool in_family = true;     ///< false: shown alongside the declared family, never judged
   std::size_t pairs = 0;     ///< queries (or scenes) where both have a value; 0: unknown
-  std::size_t clusters = 0;  ///< scenes that pooled queries are of; 0: they are not pooled
+  std::size_t clusters = 0;  ///< scenes that the pooled queries come from; 0: not pooled
   double difference = 0;     ///< mean of first - second
   double low = 0, high = 0;  ///< 95 % bootstrap interval
   double p = 1;              ///< two-sided; for queries by sign flips, for scenes Wilcoxon's
   double p_holm = 1;         ///< corrected over the family (see holm)
   /// The true difference that would be detected with 80 % power at the 5 % level: 2.8 standard
-  /// errors; for shares at least 3 / answers, the yes-or-no answers behind them, since differences
-  /// may exist even if none was observed (the rule of three). A mean over scenes has as many
-  /// answers as its scenes have queries: it moves in far smaller steps than 1 / scenes. Infinite if
-  /// even the clearest difference could not reach the 5 % level: too few pairs.
+  /// errors; for shares at least 3 / n, n being the yes-or-no answers behind them, since
+  /// differences may exist even if none was observed (the rule of three). A mean over scenes has as
+  /// many answers as its scenes have queries: it moves in far smaller steps than 1 / scenes.
+  /// Infinite if even the clearest difference could not reach the 5 % level: too few pairs.
   double detectable = 0;
 };
 

@@ -72,7 +72,7 @@ typedef struct mh_pose {
   double values[7];
 } mh_pose;
 
-/** How far a relocalization got. */
+/** Where a relocalization ended. */
 typedef enum mh_stage {
   MH_STAGE_UNKNOWN = 0,
   MH_STAGE_NO_CANDIDATE = 1, /**< no keyframe looked similar */
@@ -128,7 +128,7 @@ typedef struct mh_system {
   /** Relocalizes a frame in the frozen map. */
   int (*relocalize)(void* self, const mh_frame* frame, mh_answer* answer);
 
-  /** Destroys the system: the last call. The mh_system itself may be freed, too. */
+  /** Destroys the system: the last call. It may free the mh_system itself, too. */
   void (*destroy)(void* self);
 } mh_system;
 

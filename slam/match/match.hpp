@@ -42,8 +42,8 @@ class SemanticMatcher {
     counts_.penalized += disagree;
     return {plain, semantic_distance(plain, disagree, xi_)};
   }
-  /// Best match under a gate: nearest by semantic distance, with the second nearest for the ratio
-  /// test.
+  /// Best candidate of a search: nearest by semantic distance, with the second nearest for the
+  /// ratio test.
   struct Best {
     std::uint32_t index = UINT32_MAX;
     Distance first{1e9F, 1e9F}, second{1e9F, 1e9F};
@@ -61,7 +61,8 @@ class SemanticMatcher {
       }
     }
   };
-  /// Applies gate and ratio test (ratio >= 1: no test) and counts where xi changed the outcome.
+  /// Applies the distance limit and the ratio test (ratio >= 1: none) and counts where xi changed
+  /// the outcome.
   bool accept(const Best& best, float max_distance, float ratio);
   GateLog* log() const { return log_; }
 
@@ -75,17 +76,16 @@ class SemanticMatcher {
 /// A point with a predicted image position, to be searched for among a frame's features.
 struct ProjectionTarget {
   float u_px = 0, v_px = 0;
-  float disparity_px = -1;  ///< negative = not compared
   float radius_px = 0;
   int min_octave = 0, max_octave = 0;
   const Descriptor* descriptor = nullptr;
   ClassId label = kVoid;
-  float angle_rad = -1;  ///< required orientation; negative = any
+  float angle_rad = -1;  ///< keypoint orientation for check_angle; negative = not checked
 };
 
 struct ProjectionGate {
-  float max_distance = 50;   ///< after equation 2
-  float ratio = 1.0F;        ///< of the best two on the same octave; >= 1: no ratio test
+  float max_distance = 50;  ///< after equation 2
+  float ratio = 1.0F;  ///< best over second best, if both are on one octave; >= 1: no ratio test
   bool check_angle = false;  ///< keep the dominant rotations only
 };
 
