@@ -23,7 +23,7 @@ struct Environment {
   std::filesystem::path scene, robot, mapping_tour;
   SceneFrame frame = {};                            ///< of the scene files
   std::optional<std::filesystem::path> query_tour;  ///< the second tour; none: held-out frames only
-  // What a scenario may change.
+  // From here to `pedestrian`: what a scenario may change.
   std::optional<std::filesystem::path> query_scene = {};  ///< of the second tour; none: the scene
   /// After the mapping tour the robot is moved, from one frame to the next, to the start of this
   /// tour and continues mapping.

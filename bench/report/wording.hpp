@@ -11,11 +11,12 @@ namespace mh {
 
 // Text that the tables of results share.
 
-/// Above this share of answered queries nothing is left to gain, if the answers are correct.
+/// Above this share of queries with a returned pose, and a correct one where that is known, nothing
+/// is left to gain.
 inline constexpr double kSaturated = 0.97;
 
-/// Whether a system without labels answers so many queries, correctly as far as is
-/// known, that labels have nothing left to gain.
+/// Whether a system without labels returns a pose for so many queries, correct as far as is known,
+/// that labels have nothing left to gain.
 bool is_saturated(const SystemSpec& system, const QuerySummary& queries);
 /// The same of all sets of queries that were asked.
 bool is_saturated(const SystemSpec& system, const CategoryRow& row);
@@ -35,7 +36,7 @@ std::string incomplete(const CategoryRow& row);
 /// runs once and is shown with each kind.
 bool already_shown(const Suite& suite, const Row& row);
 
-/// Headings of the figures in an overview of a trajectory, of answers.
+/// Headings of the columns that summarize a trajectory, and of those that summarize queries.
 std::vector<std::string> trajectory_headings();
 std::vector<std::string> query_headings(QuerySet set);
 /// Their cells; "-" if there were no queries.

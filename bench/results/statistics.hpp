@@ -56,14 +56,14 @@ struct Comparison {
   double detectable = 0;
 };
 
-/// Two-sided p of Wilcoxon's signed-rank test that paired differences are symmetric about 0
-/// (Wilcoxon, 1945). Exact: the distribution over all signs, ties get mid-ranks; differences of 0
-/// are left out. 1 if nothing is left.
+/// Two-sided p of Wilcoxon's signed-rank test of the null hypothesis that paired differences are
+/// symmetric about 0 (Wilcoxon, 1945). Exact: the distribution over all signs, ties get mid-ranks;
+/// differences of 0 are left out. 1 if nothing is left.
 double wilcoxon_signed_rank(std::span<const double> differences);
 
 /// Mean difference of two systems over scenes: scenes are independent, so they are resampled
 /// individually for the interval, and p is Wilcoxon's. Scenes where one of the two has no value are
-/// left out; with fewer than 4 left the interval stays wide open.
+/// left out; with fewer than 4 left the interval is infinite.
 /// @param scenes   per scene, the difference of the two systems' medians over trials
 /// @param answers  yes-or-no answers behind the scenes' shares, in all; 0: they are not shares
 Comparison compare_scenes(std::span<const PairedDifference> scenes, std::size_t answers,
@@ -78,10 +78,10 @@ Comparison compare_scenes(std::span<const PairedDifference> scenes, std::size_t 
 Comparison compare_clusters(std::span<const std::vector<PairedDifference>> clusters, bool shares,
                             std::uint64_t seed, int resamples = 10000);
 
-/// Two-sided p of a sign-flip test (Fisher, 1935) that sums are symmetric about 0: the share of
-/// sign patterns under which their mean is at least as far from 0 as the observed one. Exact, over
-/// all patterns, up to 14 sums; beyond that (1 + hits) / (1 + draws) over 20,000 patterns drawn
-/// from the seed.
+/// Two-sided p of a sign-flip test (Fisher, 1935) of the null hypothesis that sums are symmetric
+/// about 0: the share of sign patterns under which their mean is at least as far from 0 as the
+/// observed one. Exact, over all patterns, up to 14 sums; beyond that (1 + hits) / (1 + draws) over
+/// 20,000 patterns drawn from the seed.
 double sign_flip(std::span<const double> sums, std::uint64_t seed);
 
 /// Mean difference of two systems over the queries of one house. Neighboring queries see the same
@@ -89,7 +89,7 @@ double sign_flip(std::span<const double> sums, std::uint64_t seed);
 /// of a circular block bootstrap (Politis and Romano, 1992), p that of sign_flip() over the sums of
 /// blocks that do not overlap. Fewer than 6 such blocks cannot be significant: with 5, 2 of the 32
 /// patterns are as extreme as any. Deterministic: draws come from the seed. With fewer than 4 pairs
-/// the interval stays wide open.
+/// the interval is infinite.
 /// @param shares  whether the observations are yes or no
 Comparison compare_paired(std::span<const PairedDifference> queries, bool shares,
                           std::uint64_t seed, int resamples = 10000);
