@@ -106,7 +106,7 @@ void validate(const OutsideProgram& program) {
   if (dataset && !writes_trajectory)
     fail("{trajectory} is missing: where is it to write its poses?");
   check_limit(program, "time limit", program.run_limit_s, false);
-  check_limit(program, "time limit of an answer", program.answer_limit_s, false);
+  check_limit(program, "time limit of a reply", program.reply_limit_s, false);
   check_limit(program, "memory limit", program.memory_limit_mb, true);
   check_limit(program, "disk limit", program.disk_limit_mb, true);
 }

@@ -24,7 +24,7 @@ struct OutsideProgram {
   OutsideMode mode = OutsideMode::kTrajectory;
   std::filesystem::path folder = ".";  ///< the suite's: where the command runs
   double run_limit_s = 3600;           ///< wall time of a whole run in trajectory mode, > 0
-  double answer_limit_s = 60;          ///< wall time of one answer in a conversation, > 0
+  double reply_limit_s = 60;           ///< wall time of one reply in a conversation, > 0
   double memory_limit_mb = 0;          ///< resident, the program and its descendants; 0 = none
   double disk_limit_mb = 4096;  ///< each file that it writes, and its folder's growth; 0 = none
   /// Files that it reads in addition to those that the command names, relative to its folder.

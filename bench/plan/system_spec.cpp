@@ -21,8 +21,7 @@ void read_command(YamlReader& node, OutsideProgram& program) {
   program.command = node.string("command");
   program.mode = one_of(node.at("protocol"), kModes);
   program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
-  program.answer_limit_s =
-      node.number_or("answer_limit_s", program.answer_limit_s, 0.01, kLongest_s);
+  program.reply_limit_s = node.number_or("reply_limit_s", program.reply_limit_s, 0.01, kLongest_s);
   program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
   program.disk_limit_mb = node.number_or("disk_limit_mb", program.disk_limit_mb, 0.0, 1e9);
 }
@@ -31,7 +30,7 @@ void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& p
   program.mode = OutsideMode::kLibrary;
   program.library = node.string("library");
   for (const char* key :
-       {"command", "protocol", "run_limit_s", "answer_limit_s", "memory_limit_mb", "disk_limit_mb"})
+       {"command", "protocol", "run_limit_s", "reply_limit_s", "memory_limit_mb", "disk_limit_mb"})
     if (const auto other = node.find(key))
       other->fail("is of a command: a library runs in the bench's own process");
   if (const auto settings = node.find("settings")) {

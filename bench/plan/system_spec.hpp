@@ -46,7 +46,7 @@ struct SystemSpec {
 
 /// Reads `semantic`, `plain`, one of these under another name with settings of its own, {name,
 /// system: plain, slam: {...}}, or a mapping {name, command, protocol: trajectory | conversation}
-/// with `run_limit_s`, `answer_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
+/// with `run_limit_s`, `reply_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
 /// and `inputs`, a list of files. The command runs in the suite's folder. Or a mapping {name,
 /// library} with `settings`, a file, and `inputs`.
 /// @throws InputError naming file, line, field and value; an input that must exist and does not.

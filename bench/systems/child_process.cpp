@@ -179,7 +179,7 @@ void ChildProcess::send(std::string_view line, std::string_view doing) {
   std::string text(line);
   text += '\n';
   for (std::size_t sent = 0; sent < text.size();) {
-    // A program answers before the next request is sent, so the socket's buffer never fills.
+    // A program replies before the next request is sent, so the socket's buffer never fills.
     const ssize_t n =
         ::send(to_child_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n >= 0)
@@ -200,10 +200,10 @@ std::string ChildProcess::read_line(double limit_s, std::string_view doing) {
       return line;
     }
     if (unread_.size() > kLongestLine)
-      fail(fmt::format("answered {} with a line of more than {} MB", doing, kLongestLine >> 20));
+      fail(fmt::format("replied to {} with a line of more than {} MB", doing, kLongestLine >> 20));
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
-    if (left.count() < 0) fail(fmt::format("did not answer {} within {:g} s", doing, limit_s));
+    if (left.count() < 0) fail(fmt::format("did not reply to {} within {:g} s", doing, limit_s));
     check_limits(doing);
     pollfd wait{from_child_, POLLIN, 0};
     const int ready = poll(&wait, 1, static_cast<int>(std::min(left, kLook).count()) + 1);

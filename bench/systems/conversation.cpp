@@ -61,42 +61,42 @@ std::string shortened(std::string_view line) {
   return line.size() > kMost ? text + "..." : text;
 }
 
-/// The exchange of lines: numbers requests and checks answers.
+/// The exchange of lines: numbers requests and checks replies.
 class Conversation {
  public:
   Conversation(const OutsideProgram& program, const Camera& camera, std::uint64_t seed,
                const fs::path& log)
-      : answer_limit_s_(program.answer_limit_s),
+      : reply_limit_s_(program.reply_limit_s),
         child_(program, command(program, camera, seed), ChildProcess::Talk::kOverPipes, log,
                scratch_.path) {
     const Distortion& d = camera.distortion;
     Json classes_by_id = Json::array();
     for (const ClassInfo& info : classes()) classes_by_id.push_back(info.name);
-    const Json answer = ask("hello",
-                            {{"protocol", kProtocol},
-                             {"camera",
-                              {{"width", camera.width_px},
-                               {"height", camera.height_px},
-                               {"fx", camera.fx_px},
-                               {"fy", camera.fy_px},
-                               {"cx", camera.cx_px},
-                               {"cy", camera.cy_px},
-                               {"k1", d.k1},
-                               {"k2", d.k2},
-                               {"p1", d.p1},
-                               {"p2", d.p2},
-                               {"k3", d.k3},
-                               {"fps", camera.rate_hz},
-                               {"bf", camera.baseline_m * camera.fx_px}}},
-                             {"depth_per_meter", kDepthPerMeter},
-                             {"settings", settings().string()},
-                             {"classes", classes_by_id}},
-                            {"protocol", "name"});
-    if (const auto it = answer.find("protocol"); it == answer.end() || *it != kProtocol)
+    const Json reply = ask("hello",
+                           {{"protocol", kProtocol},
+                            {"camera",
+                             {{"width", camera.width_px},
+                              {"height", camera.height_px},
+                              {"fx", camera.fx_px},
+                              {"fy", camera.fy_px},
+                              {"cx", camera.cx_px},
+                              {"cy", camera.cy_px},
+                              {"k1", d.k1},
+                              {"k2", d.k2},
+                              {"p1", d.p1},
+                              {"p2", d.p2},
+                              {"k3", d.k3},
+                              {"fps", camera.rate_hz},
+                              {"bf", camera.baseline_m * camera.fx_px}}},
+                            {"depth_per_meter", kDepthPerMeter},
+                            {"settings", settings().string()},
+                            {"classes", classes_by_id}},
+                           {"protocol", "name"});
+    if (const auto it = reply.find("protocol"); it == reply.end() || *it != kProtocol)
       fail(fmt::format("does not speak protocol {}", kProtocol));
   }
 
-  /// Sends a request and returns its answer. The answer must have this request's number and no keys
+  /// Sends a request and returns its reply. The reply must have this request's number and no keys
   /// other than `known`.
   Json ask(const std::string& what, const Json& fields, const std::set<std::string>& known) {
     const std::lock_guard lock(mutex_);
@@ -104,21 +104,21 @@ class Conversation {
     Json request = {{"id", number_}, {"do", what}};
     request.update(fields);
     child_.send(request.dump(), doing_);
-    const std::string line = child_.read_line(answer_limit_s_, doing_);
-    Json answer = parse(line);
-    if (const auto it = answer.find("error"); it != answer.end())
+    const std::string line = child_.read_line(reply_limit_s_, doing_);
+    Json reply = parse(line);
+    if (const auto it = reply.find("error"); it != reply.end())
       fail(fmt::format("reported an error: {}", shortened(it->dump())));
-    const auto id = answer.find("id");
-    if (id == answer.end() || !id->is_number_integer())
+    const auto id = reply.find("id");
+    if (id == reply.end() || !id->is_number_integer())
       fail(fmt::format("gave no request number (\"id\") in '{}'", shortened(line)));
-    if (*id != number_) fail(fmt::format("answered request {}, which was not asked", id->dump()));
-    for (const auto& [key, value] : answer.items())
+    if (*id != number_) fail(fmt::format("replied to request {}, which was not asked", id->dump()));
+    for (const auto& [key, value] : reply.items())
       if (key != "id" && !known.contains(key))
         fail(fmt::format("gave an unknown key '{}'", shortened(key)));
-    return answer;
+    return reply;
   }
 
-  /// Sends a request about a frame and parses the fields that any such answer may contain.
+  /// Sends a request about a frame and parses the fields that any such reply may contain.
   SystemReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
                          Json fields) {
     const FrameFiles files = show(frame, scratch_.path);
@@ -127,24 +127,24 @@ class Conversation {
     fields["depth"] = files.depth.string();
     if (!files.labels.empty()) fields["labels"] = files.labels.string();
     fields["seed"] = told_seed(stream);
-    const Json answer =
+    const Json reply =
         ask(what, fields,
             {"pose", "keypoints", "inliers", "keyframe", "map_reset", "stage", "candidates"});
     SystemReport report;
-    report.world_from_camera = pose(answer);
-    report.keypoints = count(answer, "keypoints");
-    report.inliers = count(answer, "inliers");
-    report.keyframe_added = flag(answer, "keyframe");
-    report.map_reset = flag(answer, "map_reset");
-    report.relocalization = stage(answer);
-    report.candidates = candidates(answer);
+    report.world_from_camera = pose(reply);
+    report.keypoints = count(reply, "keypoints");
+    report.inliers = count(reply, "inliers");
+    report.keyframe_added = flag(reply, "keyframe");
+    report.map_reset = flag(reply, "map_reset");
+    report.relocalization = stage(reply);
+    report.candidates = candidates(reply);
     return report;
   }
 
   void finish() { child_.finish(kFarewell_s); }
 
   [[noreturn]] void fail(const std::string& what) {
-    child_.fail(fmt::format("{}, answering {}", what, doing_));
+    child_.fail(fmt::format("{}, replying to {}", what, doing_));
   }
 
  private:
@@ -156,7 +156,7 @@ class Conversation {
   }
 
   Json parse(const std::string& line) {
-    Json answer;
+    Json reply;
     std::vector<std::set<std::string>> keys;  // of the open objects, innermost last
     std::string doubled;
     const auto note_keys = [&](int, Json::parse_event_t event, const Json& parsed) {
@@ -166,7 +166,7 @@ class Conversation {
       return true;
     };
     try {
-      answer = Json::parse(line, note_keys);
+      reply = Json::parse(line, note_keys);
     } catch (const Json::out_of_range&) {
       fail(fmt::format("wrote a number that is too large: '{}'", shortened(line)));
     } catch (const Json::exception&) {
@@ -179,15 +179,15 @@ class Conversation {
                        nan ? "a number that is not finite" : "what is not a line of JSON",
                        shortened(line)));
     }
-    if (!answer.is_object()) fail(fmt::format("wrote no JSON object: '{}'", shortened(line)));
+    if (!reply.is_object()) fail(fmt::format("wrote no JSON object: '{}'", shortened(line)));
     if (!doubled.empty())
       fail(fmt::format("gave the key '{}' twice in '{}'", shortened(doubled), shortened(line)));
-    return answer;
+    return reply;
   }
 
-  std::optional<SE3> pose(const Json& answer) {
-    const auto it = answer.find("pose");
-    if (it == answer.end()) fail("gave neither a pose nor \"pose\": null");
+  std::optional<SE3> pose(const Json& reply) {
+    const auto it = reply.find("pose");
+    if (it == reply.end()) fail("gave neither a pose nor \"pose\": null");
     if (it->is_null()) return std::nullopt;
     std::array<double, 7> v{};
     if (!it->is_array() || it->size() != v.size())
@@ -201,9 +201,9 @@ class Conversation {
     return told_pose(v, [this](const std::string& what) { fail(what); });
   }
 
-  bool flag(const Json& answer, const char* key) {
-    const auto it = answer.find(key);
-    if (it == answer.end()) return false;
+  bool flag(const Json& reply, const char* key) {
+    const auto it = reply.find(key);
+    if (it == reply.end()) return false;
     if (!it->is_boolean()) fail(fmt::format("gave a {} of {}", key, shortened(it->dump())));
     return *it;
   }
@@ -216,9 +216,9 @@ class Conversation {
     return it->get<int>();
   }
 
-  std::optional<RelocalizationStage> stage(const Json& answer) {
-    const auto it = answer.find("stage");
-    if (it == answer.end()) return std::nullopt;
+  std::optional<RelocalizationStage> stage(const Json& reply) {
+    const auto it = reply.find("stage");
+    if (it == reply.end()) return std::nullopt;
     const auto reported = it->is_string()
                               ? value_of(it->get<std::string>(), words(RelocalizationStage{}))
                               : std::nullopt;
@@ -226,9 +226,9 @@ class Conversation {
     return reported;
   }
 
-  Candidates candidates(const Json& answer) {
-    const auto it = answer.find("candidates");
-    if (it == answer.end() || it->is_null()) return {};
+  Candidates candidates(const Json& reply) {
+    const auto it = reply.find("candidates");
+    if (it == reply.end() || it->is_null()) return {};
     if (!it->is_object()) fail(fmt::format("gave candidates of {}", shortened(it->dump())));
     for (const auto& [key, value] : it->items())
       if (!std::set<std::string>{"keyframes", "c1", "c2", "c3", "final"}.contains(key))
@@ -243,7 +243,7 @@ class Conversation {
   }
 
   const ScratchFolder scratch_;
-  const double answer_limit_s_;
+  const double reply_limit_s_;
   std::mutex mutex_;
   std::uint64_t number_ = 0;
   std::string doing_ = "hello";
@@ -268,9 +268,9 @@ class ConversationSystem : public OutsideSystem {
   }
   void forget() override { talk_->ask("reset", Json::object(), {}); }
   std::optional<Trajectory> end_mapping() override {
-    const Json answer = talk_->ask("freeze", Json::object(), {"trajectory"});
-    const auto it = answer.find("trajectory");
-    if (it == answer.end()) return std::nullopt;
+    const Json reply = talk_->ask("freeze", Json::object(), {"trajectory"});
+    const auto it = reply.find("trajectory");
+    if (it == reply.end()) return std::nullopt;
     return trajectory_of(*it);
   }
   [[noreturn]] void fail(const std::string& what) const override { talk_->fail(what); }

@@ -199,40 +199,40 @@ class LibrarySystem : public OutsideSystem {
                             .depth = depth.data(),
                             .labels = labels.empty() ? nullptr : labels.data(),
                             .seed = told_seed(stream)};
-    mh_answer answer{};
-    for (std::int32_t* unknown : {&answer.keypoints, &answer.inliers, &answer.keyframes, &answer.c1,
-                                  &answer.c2, &answer.c3, &answer.final})
+    mh_reply reply{};
+    for (std::int32_t* unknown : {&reply.keypoints, &reply.inliers, &reply.keyframes, &reply.c1,
+                                  &reply.c2, &reply.c3, &reply.final})
       *unknown = MH_UNKNOWN;
     const auto [doing, function] = what == Question::kTrack ? std::pair("track", system_->track)
                                    : what == Question::kBlank
                                        ? std::pair("blank", system_->blank)
                                        : std::pair("relocalize", system_->relocalize);
-    if (function != nullptr) call(doing, [&] { return function(system_->self, &shown, &answer); });
-    return report_of(answer);
+    if (function != nullptr) call(doing, [&] { return function(system_->self, &shown, &reply); });
+    return report_of(reply);
   }
 
-  SystemReport report_of(const mh_answer& answer) const {
+  SystemReport report_of(const mh_reply& reply) const {
     SystemReport report;
-    if (answer.has_pose != 0) report.world_from_camera = pose_of(answer.pose);
+    if (reply.has_pose != 0) report.world_from_camera = pose_of(reply.pose);
     const auto count = [&](const char* what, std::int32_t reported) -> std::optional<int> {
       if (reported == MH_UNKNOWN) return std::nullopt;
       if (reported < 0) fail(fmt::format("gave {} of {}: expected a count", what, reported));
       return reported;
     };
-    report.keypoints = count("keypoints", answer.keypoints);
-    report.inliers = count("inliers", answer.inliers);
-    report.keyframe_added = answer.keyframe_added != 0;
-    report.map_reset = answer.map_reset != 0;
+    report.keypoints = count("keypoints", reply.keypoints);
+    report.inliers = count("inliers", reply.inliers);
+    report.keyframe_added = reply.keyframe_added != 0;
+    report.map_reset = reply.map_reset != 0;
     static_assert(static_cast<int>(RelocalizationStage::kVerified) == MH_STAGE_VERIFIED);
-    if (answer.stage < MH_STAGE_UNKNOWN || answer.stage > MH_STAGE_VERIFIED)
-      fail(fmt::format("gave an unknown stage {}", answer.stage));
-    if (answer.stage != MH_STAGE_UNKNOWN)
-      report.relocalization = static_cast<RelocalizationStage>(answer.stage);
-    report.candidates = {.keyframes = count("keyframes", answer.keyframes),
-                         .c1 = count("c1", answer.c1),
-                         .c2 = count("c2", answer.c2),
-                         .c3 = count("c3", answer.c3),
-                         .final = count("final", answer.final),
+    if (reply.stage < MH_STAGE_UNKNOWN || reply.stage > MH_STAGE_VERIFIED)
+      fail(fmt::format("gave an unknown stage {}", reply.stage));
+    if (reply.stage != MH_STAGE_UNKNOWN)
+      report.relocalization = static_cast<RelocalizationStage>(reply.stage);
+    report.candidates = {.keyframes = count("keyframes", reply.keyframes),
+                         .c1 = count("c1", reply.c1),
+                         .c2 = count("c2", reply.c2),
+                         .c3 = count("c3", reply.c3),
+                         .final = count("final", reply.final),
                          .label_mass = {},
                          .gamma = {}};
     return report;

@@ -15,7 +15,7 @@ namespace mh {
 /// loaded; each system is created from scratch.
 /// @param log   file for what the library prints
 /// @throws OutsideError, here and in every call, if the library cannot be loaded, has another
-///         version, reports an error or returns an invalid answer.
+///         version, reports an error or returns an invalid reply.
 std::unique_ptr<System> make_library_system(const OutsideProgram& program, const Camera& camera,
                                             std::uint64_t seed, const std::filesystem::path& log);
 

@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// Receives what is wrong with an answer; throws an OutsideError.
+/// Receives what is wrong with a reply; throws an OutsideError.
 using Refuse = std::function<void(const std::string& what)>;
 
 /// Converts [x, y, z, qx, qy, qz, qw] to a transform. Refuses coordinates beyond kFarthestPose_m,
@@ -42,7 +42,7 @@ class OutsideSystem : public System {
 
  protected:
   enum class Question { kTrack, kBlank, kRelocalize };
-  /// Its answer to a frame, except for the status. @param session  0 with kTrack
+  /// Its reply to a frame, except for the status. @param session  0 with kTrack
   virtual SystemReport ask(Question what, std::uint64_t session, const RgbdFrame& frame,
                            RandomStream stream) const = 0;
   virtual void forget() = 0;  ///< everything, including the map

@@ -26,7 +26,7 @@ class ProcessorTimer {
   double start_s_;
 };
 
-/// A system whose calls are timed; its answers pass through unchanged.
+/// A system whose calls are timed; its replies pass through unchanged.
 class TimedSystem : public System {
  public:
   explicit TimedSystem(std::unique_ptr<System> inner);

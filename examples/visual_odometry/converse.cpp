@@ -15,10 +15,10 @@
 namespace {
 
 /// Opens the conversation's output. What libraries print to standard output goes to the log.
-FILE* open_answers() {
-  FILE* answers = fdopen(dup(STDOUT_FILENO), "w");
+FILE* open_replies() {
+  FILE* replies = fdopen(dup(STDOUT_FILENO), "w");
   dup2(STDERR_FILENO, STDOUT_FILENO);
-  return answers;
+  return replies;
 }
 
 std::string about(const example::Found& found) {
@@ -35,7 +35,7 @@ std::string about(const example::Found& found) {
 }  // namespace
 
 int main() try {
-  FILE* answers = open_answers();
+  FILE* replies = open_replies();
   std::unique_ptr<example::VisualOdometry> odometry;
   std::string line;
   while (std::getline(std::cin, line)) {
@@ -47,15 +47,15 @@ int main() try {
       color = cv::imread(request["color"].string());
       depth = cv::imread(request["depth"].string(), cv::IMREAD_UNCHANGED);
     }
-    std::string answer;
+    std::string reply;
     if (what == "hello") {
       odometry = std::make_unique<example::VisualOdometry>(
           example::read_settings(request["settings"].string()));
-      answer = R"(,"protocol":1,"name":"visual odometry")";
+      reply = R"(,"protocol":1,"name":"visual odometry")";
     } else if (!odometry) {
-      answer = R"(,"error":"hello comes first")";
+      reply = R"(,"error":"hello comes first")";
     } else if (what == "track") {
-      answer = about(odometry->track(color, depth));
+      reply = about(odometry->track(color, depth));
     } else if (what == "rewind") {
       odometry->lose();
     } else if (what == "reset") {
@@ -63,15 +63,15 @@ int main() try {
     } else if (what == "freeze") {
       // The map is a list of keyframes that relocalize() only reads: it stays unchanged.
     } else if (what == "blank") {
-      answer = R"(,"pose":null)";  // relocalize() keeps no state: nothing to lose
+      reply = R"(,"pose":null)";  // relocalize() keeps no state: nothing to lose
     } else if (what == "relocalize") {
-      answer = about(odometry->relocalize(color, depth));
+      reply = about(odometry->relocalize(color, depth));
     } else {
-      answer = R"(,"error":"unknown request ')" + what + "'\"";
+      reply = R"(,"error":"unknown request ')" + what + "'\"";
     }
     const auto id = static_cast<int>(request["id"]);
-    std::fprintf(answers, "{\"id\":%d%s}\n", id, answer.c_str());
-    std::fflush(answers);
+    std::fprintf(replies, "{\"id\":%d%s}\n", id, reply.c_str());
+    std::fflush(replies);
   }
   return 0;
 } catch (const std::exception& error) {

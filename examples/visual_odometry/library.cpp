@@ -43,27 +43,27 @@ cv::Mat depth_of(const mh_frame& frame) {
   return {frame.height_px, frame.width_px, CV_16UC1, const_cast<uint16_t*>(frame.depth)};
 }
 
-void report(const example::Found& found, mh_answer& answer) {
+void report(const example::Found& found, mh_reply& reply) {
   if (found.world_from_camera) {
-    answer.has_pose = 1;
+    reply.has_pose = 1;
     const auto values = example::pose_values(*found.world_from_camera);
-    std::copy(values.begin(), values.end(), answer.pose.values);
+    std::copy(values.begin(), values.end(), reply.pose.values);
   }
-  answer.inliers = found.inliers;
-  answer.keyframe_added = found.keyframe_added;
+  reply.inliers = found.inliers;
+  reply.keyframe_added = found.keyframe_added;
   if (found.candidates == 0) return;
-  answer.keyframes = found.keyframes;
-  answer.final = found.candidates;
+  reply.keyframes = found.keyframes;
+  reply.final = found.candidates;
 }
 
-int track(void* self, const mh_frame* frame, mh_answer* answer) {
+int track(void* self, const mh_frame* frame, mh_reply* reply) {
   return guarded(self, [&](example::VisualOdometry& odometry) {
-    report(odometry.track(bgr_of(*frame), depth_of(*frame)), *answer);
+    report(odometry.track(bgr_of(*frame), depth_of(*frame)), *reply);
   });
 }
-int relocalize(void* self, const mh_frame* frame, mh_answer* answer) {
+int relocalize(void* self, const mh_frame* frame, mh_reply* reply) {
   return guarded(self, [&](const example::VisualOdometry& odometry) {
-    report(odometry.relocalize(bgr_of(*frame), depth_of(*frame)), *answer);
+    report(odometry.relocalize(bgr_of(*frame), depth_of(*frame)), *reply);
   });
 }
 int rewind(void* self) {
@@ -94,7 +94,7 @@ mh_system* mh_make_system(const mh_setup* setup) try {
                      .rewind = rewind,
                      .reset = reset,
                      .freeze = freeze,
-                     .trajectory = nullptr,   // the answers are all there is
+                     .trajectory = nullptr,   // the replies are all there is
                      .begin_query = nullptr,  // relocalize() keeps no state:
                      .blank = nullptr,        // nothing to forget or to lose
                      .relocalize = relocalize,

@@ -6,9 +6,9 @@
  *   systems:
  *   - {name: mine, library: build/libmine.so, settings: mine.yaml}
  *
- * Calls come one at a time, all from one thread. Finish all work that affects any answer before a
- * call returns. The same calls must give the same answers: take randomness only from the seeds, and
- * let no answer depend on a clock.
+ * Calls come one at a time, all from one thread. Before a call returns, finish all work that its
+ * reply or a later one depends on. The same calls must give the same replies: take randomness only from the seeds, and
+ * let no reply depend on a clock.
  *
  * A function that returns a status returns 0 on success. Any other value fails the run: write one
  * line to mh_setup.message before returning it. After that, no function of the system is called
@@ -84,7 +84,7 @@ typedef enum mh_stage {
 
 /** What a system reports about a frame. The bench initializes it to "lost, nothing known": fill in
  * what you know. */
-typedef struct mh_answer {
+typedef struct mh_reply {
   int32_t has_pose; /**< 0: the system is lost */
   mh_pose pose;
   int32_t keypoints, inliers; /**< or MH_UNKNOWN, like all counts here */
@@ -95,7 +95,7 @@ typedef struct mh_answer {
   int32_t stage;              /**< an mh_stage */
   /** Relocalization: keyframes in the map, and how many remain after each step of Algorithm 1. */
   int32_t keyframes, c1, c2, c3, final;
-} mh_answer;
+} mh_reply;
 
 /** Callback that receives one pose of the finished map. */
 typedef void (*mh_add_pose)(void* to, int64_t stamp_ns, const mh_pose* pose);
@@ -107,7 +107,7 @@ typedef struct mh_system {
   void* self;
 
   /** Processes the next frame, mapping included. */
-  int (*track)(void* self, const mh_frame* frame, mh_answer* answer);
+  int (*track)(void* self, const mh_frame* frame, mh_reply* reply);
   /** The input jumps back in time: treat tracking as lost, keep the map. */
   int (*rewind)(void* self);
   /** Forgets everything, including the map. */
@@ -116,7 +116,7 @@ typedef struct mh_system {
    * called again. */
   int (*freeze)(void* self);
   /** Called once after freeze(): passes each tracked frame once to `add`, with its pose in the
-   * finished map, in any order. If NULL, the last answer to each frame is used instead. */
+   * finished map, in any order. If NULL, the last reply to each frame is used instead. */
   int (*trajectory)(void* self, mh_add_pose add, void* to);
 
   /** Begins a query, which must not depend on the one before it: start with tracking lost and the
@@ -124,9 +124,9 @@ typedef struct mh_system {
   int (*begin_query)(void* self);
   /** Processes a black frame without depth, as from a covered camera. If NULL, tracking counts as
    * lost at once. */
-  int (*blank)(void* self, const mh_frame* frame, mh_answer* answer);
+  int (*blank)(void* self, const mh_frame* frame, mh_reply* reply);
   /** Relocalizes a frame in the frozen map. */
-  int (*relocalize)(void* self, const mh_frame* frame, mh_answer* answer);
+  int (*relocalize)(void* self, const mh_frame* frame, mh_reply* reply);
 
   /** Destroys the system: the last call. It may free the mh_system itself, too. */
   void (*destroy)(void* self);

@@ -4,11 +4,11 @@
 
 #include <modelhouse/system.h>
 
-static int answer_origin(void* self, const mh_frame* frame, mh_answer* answer) {
+static int reply_origin(void* self, const mh_frame* frame, mh_reply* reply) {
   (void)self;
   (void)frame;
-  answer->has_pose = 1;
-  answer->pose.values[6] = 1; /* qw */
+  reply->has_pose = 1;
+  reply->pose.values[6] = 1; /* qw */
   return 0;
 }
 
@@ -25,11 +25,11 @@ mh_system* mh_make_system(const mh_setup* setup) {
   static mh_system system;
   (void)setup;
   system.version = MH_SYSTEM_VERSION;
-  system.track = answer_origin;
+  system.track = reply_origin;
   system.rewind = do_nothing;
   system.reset = do_nothing;
   system.freeze = do_nothing;
-  system.relocalize = answer_origin;
+  system.relocalize = reply_origin;
   system.destroy = keep;
   return &system;
 }

@@ -40,7 +40,7 @@ class OutsideFaults : public testing::Test {
 
   OutsideProgram program(OutsideMode mode, const std::string& command) const {
     OutsideProgram p{.name = "theirs", .command = command, .mode = mode};
-    p.run_limit_s = p.answer_limit_s = 10;
+    p.run_limit_s = p.reply_limit_s = 10;
     return p;
   }
 
@@ -381,7 +381,7 @@ TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
   EXPECT_HOLDS(hello_error("exit 4"), "exited with code 4");
   EXPECT_HOLDS(
       hello_error("echo Welcome to my SLAM; sleep 60"),
-      "wrote what is not a line of JSON: 'Welcome to my SLAM', answering hello (request 1)");
+      "wrote what is not a line of JSON: 'Welcome to my SLAM', replying to hello (request 1)");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "does not speak protocol 1");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
                "does not speak protocol 1");
@@ -394,8 +394,8 @@ TEST_F(OutsideFaults, ConversationsThatBreakOff) {
   EXPECT_HOLDS(track_error(says("kill -9 $$")), "was killed by signal 9 during track");
   EXPECT_HOLDS(track_error(says("exec >&-; sleep 60")), "closed its pipe during track");
   OutsideProgram silent = says("sleep 60");
-  silent.answer_limit_s = 0.3;
-  EXPECT_HOLDS(track_error(silent), "did not answer track (request 2) within 0.3 s");
+  silent.reply_limit_s = 0.3;
+  EXPECT_HOLDS(track_error(silent), "did not reply to track (request 2) within 0.3 s");
   // Gone before it is asked: writing to it must not kill the bench by SIGPIPE.
   const OutsideProgram short_lived =
       program(OutsideMode::kConversation, R"(read -r line; echo '{"id":1,"protocol":1}'; exit 0)");
@@ -403,31 +403,31 @@ TEST_F(OutsideFaults, ConversationsThatBreakOff) {
 }
 
 TEST_F(OutsideFaults, AnswersThatAreNone) {
-  const auto answers = [&](const std::string& json) {
+  const auto replies = [&](const std::string& json) {
     return track_error(says("echo '" + json + "'; sleep 60"));
   };
-  EXPECT_HOLDS(answers("garbage"), "wrote what is not a line of JSON: 'garbage'");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,-1e7,0,0,0,0,1]})"), "a pose more than 1e+06 m away");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
-  EXPECT_HOLDS(answers(R"({"id":2})"), "neither a pose nor");
-  EXPECT_HOLDS(answers(R"({"id":3,"pose":null})"), "answered request 3, which was not asked");
-  EXPECT_HOLDS(answers(R"({"pose":null})"), "gave no request number");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"map_reset":1})"), "gave a map_reset of 1");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"c4":1}})"), "'candidates.c4'");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"candidates":{"keyframes":3,"final":9}})"),
+  EXPECT_HOLDS(replies("garbage"), "wrote what is not a line of JSON: 'garbage'");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,-1e7,0,0,0,0,1]})"), "a pose more than 1e+06 m away");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
+  EXPECT_HOLDS(replies(R"({"id":2})"), "neither a pose nor");
+  EXPECT_HOLDS(replies(R"({"id":3,"pose":null})"), "replied to request 3, which was not asked");
+  EXPECT_HOLDS(replies(R"({"pose":null})"), "gave no request number");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"map_reset":1})"), "gave a map_reset of 1");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"candidates":{"c4":1}})"), "'candidates.c4'");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"candidates":{"keyframes":3,"final":9}})"),
                "a step cannot leave more than the one before it");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"stage":"lunch"})"), "unknown stage");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":[0,0,0,0,0,0,1],"stage":"no_candidate"})"),
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"stage":"lunch"})"), "unknown stage");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,1],"stage":"no_candidate"})"),
                "gave a pose and the stage \"no_candidate\"");
-  EXPECT_HOLDS(answers(R"({"id":2,"pose":null,"pose":[0,0,0,0,0,0,1]})"), "the key 'pose' twice");
-  EXPECT_HOLDS(answers(R"({"id":2,"error":"no memory"})"), "reported an error: \"no memory\"");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"pose":[0,0,0,0,0,0,1]})"), "the key 'pose' twice");
+  EXPECT_HOLDS(replies(R"({"id":2,"error":"no memory"})"), "reported an error: \"no memory\"");
 }
 
 TEST_F(OutsideFaults, AFinalTrajectoryHoldsShownFramesOnly) {
@@ -495,7 +495,7 @@ TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
   EXPECT_EQ(refused(OutsideMode::kTrajectory, R"(sh -c "slam {dataset} it's" 'a b' {trajectory})"),
             "no error");
   OutsideProgram p = program(OutsideMode::kConversation, "slam");
-  p.answer_limit_s = 0;
+  p.reply_limit_s = 0;
   EXPECT_THROW(validate(p), InputError);
 }
 

@@ -30,16 +30,16 @@ static int told(const tiny* t, const char* word) {
   return strstr(t->words, word) != NULL;
 }
 
-static int stand_still(tiny* t, mh_answer* answer) {
+static int stand_still(tiny* t, mh_reply* reply) {
   if (told(t, "lost")) return 0;
-  answer->map_reset = told(t, "anew");
-  answer->has_pose = 1;
-  answer->pose.values[0] = told(t, "nan") ? NAN : told(t, "far") ? -1e7 : t->seen;
-  answer->pose.values[6] = told(t, "norm") ? 2 : 1;
+  reply->map_reset = told(t, "anew");
+  reply->has_pose = 1;
+  reply->pose.values[0] = told(t, "nan") ? NAN : told(t, "far") ? -1e7 : t->seen;
+  reply->pose.values[6] = told(t, "norm") ? 2 : 1;
   return 0;
 }
 
-static int track(void* self, const mh_frame* frame, mh_answer* answer) {
+static int track(void* self, const mh_frame* frame, mh_reply* reply) {
   tiny* t = self;
   if (told(t, "crash")) abort();
   if (told(t, "exit")) exit(0);
@@ -51,10 +51,10 @@ static int track(void* self, const mh_frame* frame, mh_answer* answer) {
   }
   if (told(t, "speechless")) return 7;
   t->stamps_ns[t->seen++ % 16] = frame->stamp_ns;
-  answer->keypoints = frame->color[0] + 1000 * frame->depth[0];
-  answer->inliers = told(t, "count") ? -2 : frame->labels != NULL ? frame->labels[0] : MH_UNKNOWN;
-  answer->keyframe_added = t->seen == 1;
-  return stand_still(t, answer);
+  reply->keypoints = frame->color[0] + 1000 * frame->depth[0];
+  reply->inliers = told(t, "count") ? -2 : frame->labels != NULL ? frame->labels[0] : MH_UNKNOWN;
+  reply->keyframe_added = t->seen == 1;
+  return stand_still(t, reply);
 }
 
 static int rewind_feed(void* self) {
@@ -87,14 +87,14 @@ static int begin_query(void* self) {
   return 0;
 }
 
-static int relocalize(void* self, const mh_frame* frame, mh_answer* answer) {
+static int relocalize(void* self, const mh_frame* frame, mh_reply* reply) {
   tiny* t = self;
   (void)frame;
-  answer->stage = told(t, "stage") ? MH_STAGE_PNP : MH_STAGE_VERIFIED;
-  answer->keyframes = 1;
-  answer->final = told(t, "candidates") ? 2 : 1;
-  answer->inliers = t->queries;
-  return stand_still(t, answer);
+  reply->stage = told(t, "stage") ? MH_STAGE_PNP : MH_STAGE_VERIFIED;
+  reply->keyframes = 1;
+  reply->final = told(t, "candidates") ? 2 : 1;
+  reply->inliers = t->queries;
+  return stand_still(t, reply);
 }
 
 static void destroy(void* self) {
