@@ -90,9 +90,10 @@ void fields(C& c, Visit& v) {
     "when tracking is lost, the feed goes back (rewind) or on (continue)");
   v("rewind_frames", rewind_frames, {1, 100000}, "how far the feed goes back after a failure");
   v("restarts_per_frame", restarts_per_frame, {0, 1000},
-    "failed restarts after which the offending frame is dropped");
+    "failed restarts after which the frame that failed is dropped");
   v("reset", reset, {},
-    "after a dropped frame: restart the count of restarts (counter), or discard the map too (map)");
+    "after a dropped frame: set the count of restarts to zero (counter), or discard the map too "
+    "(map)");
   v("max_effort", max_effort, {1, 1000},
     "mapping stops after this many track calls per frame of the sequence");
   v("query_attempts", query_attempts, {1, 1000}, "times that a test frame is shown");

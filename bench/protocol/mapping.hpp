@@ -87,13 +87,13 @@ using MappingObserver =
     std::function<void(const MappedFrame&, const RgbdFrame&, const SystemReport&)>;
 
 /// Maps a sequence (section 3.1 of the paper; with OnFailure::kContinue, each frame is shown once
-/// and the rules on rewinds below do not apply). A failure is a frame reported lost while tracking
-/// was on, or a frame reported lost at which the feed failed before. After a failure at frame i the
-/// feed rewinds to i - 50 and continues with the map as it is; frames reported lost on the way back
-/// to i are not failures: the system is still relocalizing there. After five consecutive restarts
-/// that did not get past frame i, the frame that failed last is dropped, the feed rewinds by 50
-/// once more and the count starts over. Frames reported lost before anything is mapped are skipped:
-/// there is nothing to rewind to.
+/// and the rules on rewinds below do not apply). A failure is a lost frame right after a
+/// tracked one. After a failure at frame i the feed rewinds to i - 50 and continues with the map as
+/// it is. Frames lost on the way back to i are not failures, since the system is still relocalizing
+/// there; frame i itself is one if it is lost again. After five consecutive restarts that did not
+/// get past i, the furthest frame that failed, the frame that failed last (which may be an earlier
+/// one) is dropped, the feed rewinds by 50 once more and the count starts from zero. Frames
+/// reported lost before anything is mapped are skipped: there is nothing to rewind to.
 ///
 /// Terminates: the frame to get past only moves forward, a drop removes a frame for good, and there
 /// are at most five restarts between two of these events; beyond max_effort * count track calls (or

@@ -27,8 +27,8 @@ struct RenderedFrame {
   Grid2d<float> depth_m;         ///< along the optical axis; 0 = nothing hit
   Grid2d<ClassId> classes;       ///< kVoid where nothing was hit
   Grid2d<InstanceId> instances;  ///< 0 where nothing was hit
-  /// Linear radiance that is white in the image is 1 / exposure; 0: the scene shows its own unlit
-  /// colors, so that its brightness is unknown.
+  /// Linear radiance 1 / exposure is shown as white. 0: the scene shows its own unlit colors, so
+  /// that its brightness is unknown.
   float exposure = 0.0F;
 
   // On request (ExtraOutputs), else empty.
@@ -60,7 +60,7 @@ class Renderer {
   /// @throws InputError if the camera's size or focal length is out of range.
   virtual RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const = 0;
 
-  // Parts of that image, to the bit, for less than the whole of it.
+  // Parts of that image, bit-identical, at less cost than the whole.
 
   /// The image, in which only rows first to last - 1 are defined.
   virtual RenderedFrame render_rows(const Camera& camera, const SE3& world_from_camera, int first,

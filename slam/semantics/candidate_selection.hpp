@@ -27,12 +27,11 @@ struct CandidateSelection {
 /// Algorithm 1. Comparisons are strict, as in the paper. The paper leaves two points open: if
 /// several keyframes are replaced by the same best neighbor, it is kept once, with the highest
 /// score; if neighbors are equally similar, the smallest key wins.
-/// @param keyframes   all keyframes of the map.
+/// @param keyframes   all keyframes of the map; those that share nothing may be left out.
 /// @param overlap     overlap(k) -> n of equation 3, 0 = nothing shared.
-/// @param neighbors  neighbors(k) -> range of keyframes: k itself and its neighbors.
-/// @param similarity  similarity(k) -> similarity between the view and keyframe k, at least 0,
-/// larger =
-///                    more similar: the paper's ||L_f, L_k||_1, see augmented_vector.hpp.
+/// @param neighbors   neighbors(k) -> range of keyframes: k itself and its neighbors.
+/// @param similarity  similarity(k) -> of the view and keyframe k, at least 0; a larger value means
+///                    more similar. The paper's ||L_f, L_k||_1, see augmented_vector.hpp.
 /// @param alpha, beta thresholds of equations 4 and 6, in [0, 1).
 template <class Key, class Overlap, class Neighbors, class Similarity>
 CandidateSelection<Key> select_candidates(std::span<const Key> keyframes, Overlap overlap,
