@@ -193,6 +193,11 @@ void run(MapBuildArguments options) {
   const MapStudy study =
       study_of(mapper.map(), {.floor_z_m = floor_z_m, .robot_height_m = options.height_m},
                scans ? &*scans : nullptr);
+  if (study.grid.cells.empty())
+    fmt::print(stderr,
+               "map: warning: the grid is empty: nothing was seen from {:g} to {:g} m above the "
+               "floor\n",
+               ObstacleGridConfig{}.ground_m, options.height_m);
   write_map_files(options.out, mapper.map(), study);
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
   write_image(fs::path(options.out) / "grid_classes.png",

@@ -850,6 +850,19 @@ TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
                  "tolerances");
 }
 
+TEST_F(CommandLine, AMapWithAnEmptyGridSaysSo) {
+  // Eight frames from a robot's height see nothing below 0.15 m.
+  const std::string map =
+      "map build scene:generated:bathroom:0 --tour auto:0 --level ideal "
+      "--frames 8 --out " +
+      (folder_ / "map").string();
+  ASSERT_EQ(run(map + " --height 0.15"), 0) << err_;
+  EXPECT_NE(err_.find("the grid is empty: nothing was seen from 0.1 to 0.15 m"), std::string::npos)
+      << err_;
+  ASSERT_EQ(run(map), 0) << err_;
+  EXPECT_EQ(err_.find("empty"), std::string::npos) << err_;
+}
+
 TEST_F(CommandLine, AMapOfARaisedFloorHasItsGridAboveThatFloor) {
   const std::string room = (folder_ / "room.ply").string(), out = (folder_ / "map").string();
   ASSERT_EQ(run("scene convert generated:bathroom:0 --out " + room), 0) << err_;
