@@ -159,6 +159,8 @@ Environment recorded_environment(std::string name, std::string category, std::st
   e.category = std::move(category);
   e.sequence = std::move(sequence);
   if (beside.queries) e.queries = read_sequence(*beside.queries, paths, index, beside.topics);
+  if (e.queries && split_sequence(*e.queries).second == split_sequence(e.sequence).second)
+    beside.queries->fail("is the recording that is mapped: its test frames are queried anyway");
   e.settings = beside.settings;
   e.classes = beside.classes;
   if (beside.topics) e.topics = beside.topics->as_string();
@@ -181,10 +183,13 @@ std::vector<Environment> read_recorded_entry(YamlReader node, const SuitePaths& 
 }
 
 /// Finds the recordings that match a pattern, sorted by name.
-std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const SuitePaths& paths) {
+/// @param notes  receives a line about folders that are not recordings
+std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const SuitePaths& paths,
+                                            std::vector<std::string>& notes) {
   const auto [layout, path] = split_sequence(pattern.as_string());
   const fs::path full = (paths.folder / path).lexically_normal();
   std::vector<FoundRecording> found;
+  std::vector<std::string> others;
   for (const std::string& name :
        list_folder(full.parent_path().empty() ? "." : full.parent_path(), full.filename())) {
     const fs::path place = full.parent_path() / name;
@@ -198,10 +203,15 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
     const auto reader = std::ranges::find_if(readers, [&](const SequenceReader* r) {
       return (layout.empty() || layout == r->name) && r->recognizes(place);
     });
-    if (reader == readers.end()) continue;  // a list or a table next to the recordings
-    found.push_back({source, (*reader)->scene_type ? (*reader)->scene_type(place) : ""});
+    if (reader != readers.end())
+      found.push_back({source, (*reader)->scene_type ? (*reader)->scene_type(place) : ""});
+    else if (is_folder(place))  // a file is a list or a table next to the recordings
+      others.push_back(name);
   }
   if (found.empty()) pattern.fail(fmt::format("no recording matches '{}'", full.string()));
+  if (!others.empty())
+    notes.push_back(fmt::format("{}: left out: {} without a recording, the first: {}",
+                                pattern.as_string(), counted(others.size(), "folder"), others[0]));
   return found;
 }
 
@@ -243,7 +253,7 @@ void read_pattern_entry(YamlReader node, const SuitePaths& paths, Environments& 
   const std::string text = pattern.as_string();
   const auto known = paths.found.find(text);
   const std::vector<FoundRecording> found =
-      known != paths.found.end() ? known->second : find_recordings(pattern, paths);
+      known != paths.found.end() ? known->second : find_recordings(pattern, paths, all.notes);
   std::map<std::string, std::size_t> left_out;
   std::size_t taken = 0;
   for (const FoundRecording& recording : found) {

@@ -20,6 +20,9 @@ constexpr double kLongest_s = 1e7;
 void read_command(YamlReader& node, OutsideProgram& program) {
   program.command = node.string("command");
   program.mode = one_of(node.at("protocol"), kModes);
+  const bool is_trajectory = program.mode == OutsideMode::kTrajectory;
+  if (const auto other = node.find(is_trajectory ? "reply_limit_s" : "run_limit_s"))
+    other->fail(fmt::format("is of protocol '{}'", is_trajectory ? "conversation" : "trajectory"));
   program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
   program.reply_limit_s = node.number_or("reply_limit_s", program.reply_limit_s, 0.01, kLongest_s);
   program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);

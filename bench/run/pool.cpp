@@ -213,14 +213,12 @@ class Pool {
       waiting_.push_back({job, true});
       return;
     }
-    if (end.code == kDiskFullCode && ended.cut_off.empty()) {
+    if (end.reported && end.code == kDiskFullCode && ended.cut_off.empty()) {
       give_up();
       store_.release(job.key);
-      throw DiskFullError(end.message.empty()
-                              ? job.spec.name + ": the disk is full: make room and run again"
-                              : end.message);
+      throw DiskFullError(end.message);
     }
-    if (end.code == kInputChangedCode && ended.cut_off.empty()) {
+    if (end.reported && end.code == kInputChangedCode && ended.cut_off.empty()) {
       give_up();
       store_.release(job.key);
       throw InputError(end.message);
@@ -238,7 +236,8 @@ class Pool {
       return fmt::format("ended by signal {} ({}){}", end.signal, strsignal(end.signal), last);
     if (end.good) return "ended without a result";
     if (end.message.empty()) return fmt::format("returned {}", end.code);
-    return end.code == kBadInputCode ? std::string(kBadInputMark) + end.message : end.message;
+    return end.reported && end.code == kBadInputCode ? std::string(kBadInputMark) + end.message
+                                                     : end.message;
   }
 
   void note_end(const Job& job, bool good) {

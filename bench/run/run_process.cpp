@@ -43,14 +43,15 @@ std::vector<char*> with_large_pages() {
   return all;
 }
 
-/// The last nonblank line, without the leading program name.
+constexpr std::string_view kErrorMark = "modelhouse: error: ";  // of bench/cli/main.cpp
+
+/// The last nonblank line.
 std::string last_line(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line, last;
   while (std::getline(in, line))
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  constexpr std::string_view kOwn = "modelhouse: error: ";
-  return last.starts_with(kOwn) ? last.substr(kOwn.size()) : last;
+  return last;
 }
 
 double seconds(const timeval& t) {
@@ -152,7 +153,10 @@ std::optional<ProcessEnd> RunProcess::poll() {
               .frames_s = 0,
               .products_s = 0,
               .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0};
-  if (!end.good) end.message = last_line(log_);
+  if (end.good) return end;
+  end.message = last_line(log_);
+  end.reported = end.message.starts_with(kErrorMark);
+  if (end.reported) end.message.erase(0, kErrorMark.size());
   return end;
 }
 

@@ -29,6 +29,9 @@ struct ProcessEnd {
   int signal = 0;       ///< that killed it; 0 = it exited
   int code = 0;         ///< exit code
   std::string message;  ///< the last line of its standard error
+  /// The message is an error that Modelhouse itself reported. A library of the user's may end the
+  /// process with any code, and without one.
+  bool reported = false;
   RunCost cost;
 };
 

@@ -97,6 +97,7 @@ class SensFile : public Recording {
     mend_stamps();
     note_faulty_poses();
     note_bytes_left(cursor);
+    add_lost(frames);
   }
 
   const RecordingInfo& info() const override { return info_; }
@@ -110,6 +111,7 @@ class SensFile : public Recording {
   }
   RecordedMoment frame(std::size_t index) const override {
     const FrameRecord& record = frames_[index];
+    if (index >= whole_) fail(index, "is missing: the file is truncated");
     return {record.stamp_ns, color_of(record, index), depth_of(record, index),
             record.world_from_device};
   }
@@ -156,16 +158,30 @@ class SensFile : public Recording {
     return size;
   }
 
-  /// A recording that was cut short is used as far as its frames are whole.
+  /// A recording that was cut short is used as far as its frames are whole; see add_lost().
   void read_frames(Cursor& cursor, std::uint64_t frames) {
     for (std::uint64_t i = 0; i < frames; ++i) try {
         frames_.push_back(read_record(cursor, i));
       } catch (const Truncated& error) {
         if (frames_.empty()) throw;
-        notes_.push_back(fmt::format("{}; {} of {} frames are used", error.what(), i, frames));
+        notes_.push_back(fmt::format("{}; {} of {} frames are whole", error.what(), i, frames));
         cursor.end();
         return;
       }
+  }
+
+  /// The frames that a truncated file has lost are part of the recording, unreadable, so that they
+  /// are counted. Their stamps go on at the mean interval of the others.
+  void add_lost(std::uint64_t frames) {
+    constexpr std::uint64_t kCredible =
+        1'000'000;  // 9 hours; a damaged header may count any number
+    whole_ = frames_.size();
+    if (frames > kCredible) return;
+    const Stamp first_ns = frames_.front().stamp_ns, last_ns = frames_.back().stamp_ns;
+    const Stamp interval_ns =
+        whole_ > 1 ? (last_ns - first_ns) / static_cast<Stamp>(whole_ - 1) : 1'000'000'000 / 30;
+    while (frames_.size() < frames)
+      frames_.push_back({frames_.back().stamp_ns + std::max<Stamp>(interval_ns, 1), {}, {}, {}});
   }
 
   FrameRecord read_record(Cursor& cursor, std::uint64_t index) {
@@ -288,6 +304,7 @@ class SensFile : public Recording {
   RecordingInfo info_;
   std::int32_t color_kind_ = kJpeg, depth_kind_ = kZlib;
   std::vector<FrameRecord> frames_;
+  std::size_t whole_ = 0;  ///< of the frames; a truncated file has lost those behind
 };
 
 /// Writes values one after the other.

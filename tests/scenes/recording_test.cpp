@@ -103,7 +103,7 @@ TEST_F(SensFile, ReadsBackWhatItWrote) {
   EXPECT_TRUE(names(error_of([&] { open_recording(folder_); }), {"2 .sens files"}));
 }
 
-TEST_F(SensFile, CutAnywhereTheFramesBeforeAreUsed) {
+TEST_F(SensFile, CutAnywhereTheFramesBeforeAreUsedAndTheLostOnesCount) {
   const std::string whole = bytes();
   EXPECT_EQ(error(whole), "");
   const std::size_t frames_end = whole.size() - 8;  // then come inertial measurements, unread
@@ -113,8 +113,18 @@ TEST_F(SensFile, CutAnywhereTheFramesBeforeAreUsed) {
     const std::string refused = error_of([&] {
       const auto recording = open_sens(hold(whole.substr(0, size)), "a.sens");
       notes = recording->notes();
-      used.insert(recording->size());
-      recording->frame(recording->size() - 1);
+      EXPECT_EQ(recording->size(), 3U);
+      std::size_t whole_frames = 0;
+      while (whole_frames < 3 && error_of([&] { recording->frame(whole_frames); }).empty())
+        ++whole_frames;
+      used.insert(whole_frames);
+      for (std::size_t i = whole_frames; i < 3; ++i) {
+        const std::string number = fmt::format("frame {}", i);
+        EXPECT_TRUE(
+            names(error_of([&] { recording->frame(i); }), {"a.sens", number.c_str(), "truncated"}));
+        EXPECT_FALSE(recording->world_from_device(i));
+        EXPECT_GT(recording->stamp_ns(i), recording->stamp_ns(i - 1));
+      }
     });
     EXPECT_TRUE(names(notes.empty() ? refused : notes.front(), {"a.sens", "truncated"})) << size;
   }

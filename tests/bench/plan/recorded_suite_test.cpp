@@ -153,6 +153,8 @@ TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
             "'table' is 'desk' once more");
   expect_in(error("- {category: desk, count: 2, sequence: 'tum:desk'}"),
             "'desk-1' is 'desk-0' once more");
+  expect_in(error("- {category: desk, sequence: 'tum:desk', queries: './desk'}"),
+            "suite.yaml:2: environments[0].queries: is the recording that is mapped");
   // Queries of another recording make another environment.
   EXPECT_EQ(load(std::string(kDesk) +
                  "\n- {category: table, sequence: 'tum:desk', queries: 'tum:desk_again'}")
@@ -193,6 +195,11 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   EXPECT_EQ(suite.environments[1].category, "bedroom");
   ASSERT_EQ(suite.left_out.size(), 1U);
   expect_in(suite.left_out[0], "2 of 4 recordings left out: 1 without a scene type, 1 'Stairs'");
+  fs::create_directories(folder_ / "scans/scene0009_00");  // half a download
+  const Suite with_half = load(entry, "[recorded]", "", set);
+  ASSERT_EQ(with_half.left_out.size(), 2U);
+  expect_in(with_half.left_out[0],
+            "left out: 1 folder without a recording, the first: scene0009_00");
   // Where the scans are not, their results are still read.
   SuiteOverrides elsewhere = set;
   elsewhere.found = suite.found;

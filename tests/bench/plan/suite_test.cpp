@@ -153,6 +153,19 @@ TEST_F(SuiteFile, NeedsAVocabularyForOurOwnSystemsAlone) {
       load_with("[{name: theirs, protocol: trajectory, command: 'cat {dataset} {trajectory}'}]");
   EXPECT_TRUE(outside.vocabulary.empty());
   ASSERT_EQ(expand(outside).size(), 1u);
+  for (const auto& [protocol, key] :
+       {std::pair("trajectory", "reply_limit_s"), std::pair("conversation", "run_limit_s")}) {
+    const std::string other =
+        fmt::format("[{{name: a, command: x, protocol: {}, {}: 3}}]", protocol, key);
+    try {
+      load_with(other);
+      ADD_FAILURE() << other;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(fmt::format("{}: is of protocol '", key)),
+                std::string::npos)
+          << error.what();
+    }
+  }
   EXPECT_THROW(load_with("[plain]"), InputError);
 }
 

@@ -338,6 +338,23 @@ TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
   EXPECT_TRUE(store.claim("k")) << "its claim was kept";
 }
 
+// Those codes are ours only with an error that we reported: a library in the process may end it
+// too.
+TEST_F(StoreFile, AnExitCodeWithoutAnErrorOfOursIsAFailureOfTheRunAlone) {
+  for (const int code : {kBadInputCode, kDiskFullCode, kInputChangedCode}) {
+    const fs::path program = folder_ / "program";
+    std::ofstream(program) << "#!/bin/sh\nexit " << code << "\n";
+    fs::permissions(program, fs::perms::owner_all);
+    Store store(folder_ / fmt::format("{}.sqlite", code));
+    PoolOptions options;
+    options.executable = program;
+    options.work_folder = folder_;
+    options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+    run_pending(store, {{some_run("a").spec, "k"}}, options);
+    EXPECT_EQ(store.error("k"), fmt::format("returned {}", code));
+  }
+}
+
 TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
   const fs::path program = folder_ / "program";
   std::ofstream(program) << "#!/bin/sh\necho 0.5; echo baking the light of a room; echo 0.75\n"
