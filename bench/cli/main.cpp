@@ -36,7 +36,7 @@ enum ExitCode {
 
 int fail(int code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  fmt::print(stderr, "modelhouse: error: {}\n", mh::legible(std::move(message)));
+  fmt::print(stderr, "{}{}\n", mh::kErrorMark, mh::legible(std::move(message)));
   return code;
 }
 

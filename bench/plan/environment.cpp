@@ -152,6 +152,14 @@ struct BesideFrames {
   }
 };
 
+/// Where a recording lies, however its path is written.
+std::string place_of(const std::string& sequence, const SuitePaths& paths) {
+  fs::path path = split_sequence(sequence).second;
+  if (!path.has_filename()) path = path.parent_path();  // "room/"
+  std::error_code error;
+  return (paths.must_exist ? fs::weakly_canonical(path, error) : path).string();
+}
+
 Environment recorded_environment(std::string name, std::string category, std::string sequence,
                                  const BesideFrames& beside, const SuitePaths& paths, int index) {
   Environment e;
@@ -159,7 +167,7 @@ Environment recorded_environment(std::string name, std::string category, std::st
   e.category = std::move(category);
   e.sequence = std::move(sequence);
   if (beside.queries) e.queries = read_sequence(*beside.queries, paths, index, beside.topics);
-  if (e.queries && split_sequence(*e.queries).second == split_sequence(e.sequence).second)
+  if (e.queries && place_of(*e.queries, paths) == place_of(e.sequence, paths))
     beside.queries->fail("is the recording that is mapped: its test frames are queried anyway");
   e.settings = beside.settings;
   e.classes = beside.classes;
@@ -182,8 +190,7 @@ std::vector<Environment> read_recorded_entry(YamlReader node, const SuitePaths& 
   return environments;
 }
 
-/// Finds the recordings that match a pattern, sorted by name.
-/// @param notes  receives a line about folders that are not recordings
+/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording.
 std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const SuitePaths& paths,
                                             std::vector<std::string>& notes) {
   const auto [layout, path] = split_sequence(pattern.as_string());
@@ -193,7 +200,6 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
   for (const std::string& name :
        list_folder(full.parent_path().empty() ? "." : full.parent_path(), full.filename())) {
     const fs::path place = full.parent_path() / name;
-    const std::string source = join_sequence(layout, place);
     try {
       require_open(place);
     } catch (const InputError& error) {
@@ -204,7 +210,8 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
       return (layout.empty() || layout == r->name) && r->recognizes(place);
     });
     if (reader != readers.end())
-      found.push_back({source, (*reader)->scene_type ? (*reader)->scene_type(place) : ""});
+      found.push_back({join_sequence(layout, place),
+                       (*reader)->scene_type ? (*reader)->scene_type(place) : ""});
     else if (is_folder(place))  // a file is a list or a table next to the recordings
       others.push_back(name);
   }
@@ -328,20 +335,13 @@ std::vector<fs::path> matching_files(const YamlReader& pattern, const fs::path& 
 
 /// What an environment is of, whatever it is called and however its recordings are written.
 Environment place_of(Environment e, const SuitePaths& paths) {
-  e.name.clear();
-  e.category.clear();
+  e.name = e.category = "";
   if (e.is_recorded()) {  // with another calibration it is the same place
     e.settings.reset();
     e.classes.reset();
     e.topics.clear();
-  }
-  for (std::string* source : {&e.sequence, e.queries ? &*e.queries : nullptr}) {
-    if (source == nullptr || source->empty()) continue;
-    fs::path path = split_sequence(*source).second;
-    if (!path.has_filename()) path = path.parent_path();  // "room/"
-    std::error_code error;
-    if (paths.must_exist) path = fs::weakly_canonical(path, error);
-    *source = path.string();
+    e.sequence = place_of(e.sequence, paths);
+    if (e.queries) e.queries = place_of(*e.queries, paths);
   }
   return e;
 }

@@ -43,8 +43,6 @@ std::vector<char*> with_large_pages() {
   return all;
 }
 
-constexpr std::string_view kErrorMark = "modelhouse: error: ";  // of bench/cli/main.cpp
-
 /// The last nonblank line.
 std::string last_line(const std::filesystem::path& file) {
   std::ifstream in(file);

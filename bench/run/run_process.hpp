@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/store/store.hpp"
@@ -19,6 +20,9 @@ inline constexpr int kDiskFullCode = 4;
 inline constexpr int kInputChangedCode = 5;
 /// Exit code on bad input that is found only during the run.
 inline constexpr int kBadInputCode = 2;
+
+/// What begins the line by which Modelhouse reports an error.
+inline constexpr std::string_view kErrorMark = "modelhouse: error: ";
 
 /// First character of a line that reports a run's status; the latest counts.
 inline constexpr char kStatusMark = '~';

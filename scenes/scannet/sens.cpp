@@ -173,8 +173,7 @@ class SensFile : public Recording {
   /// The frames that a truncated file has lost are part of the recording, unreadable, so that they
   /// are counted. Their stamps go on at the mean interval of the others.
   void add_lost(std::uint64_t frames) {
-    constexpr std::uint64_t kCredible =
-        1'000'000;  // 9 hours; a damaged header may count any number
+    constexpr std::uint64_t kCredible = 1'000'000;  // 9 h; a damaged header may say anything
     whole_ = frames_.size();
     if (frames > kCredible) return;
     const Stamp first_ns = frames_.front().stamp_ns, last_ns = frames_.back().stamp_ns;

@@ -155,6 +155,8 @@ TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
             "'desk-1' is 'desk-0' once more");
   expect_in(error("- {category: desk, sequence: 'tum:desk', queries: './desk'}"),
             "suite.yaml:2: environments[0].queries: is the recording that is mapped");
+  expect_in(error("- {category: desk, sequence: 'tum:desk', queries: 'tum:link/'}"),
+            "is the recording that is mapped");
   // Queries of another recording make another environment.
   EXPECT_EQ(load(std::string(kDesk) +
                  "\n- {category: table, sequence: 'tum:desk', queries: 'tum:desk_again'}")
