@@ -73,7 +73,9 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
       const std::string kind = fmt::format("{} recording {}", layout, beside);
       inputs.push_back(read(name, kind, path, [&](const fs::path& file) {
         say_(fmt::format("reading {}", file.string()));
-        for (const std::string& note : open_recorded(e, sequence).notes) warn(note);
+        const OpenedRecording opened = open_recorded(e, sequence);
+        frames_digests_[sequence] = opened.frames_digest;
+        for (const std::string& note : opened.notes) warn(note);
       }));
     };
     add("sequence", e.sequence);
@@ -123,6 +125,10 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   std::ranges::copy(of_program->second, std::back_inserter(inputs));
   std::ranges::sort(inputs, {}, &InputDigest::name);
   return inputs;
+}
+
+std::pair<std::uint64_t, std::uint64_t> InputReader::frames_of(const Environment& e) const {
+  return {frames_digests_.at(e.sequence), e.queries ? frames_digests_.at(*e.queries) : 0};
 }
 
 std::shared_ptr<const Scene> InputReader::scene(const fs::path& file, const SceneFrame& frame) {

@@ -49,6 +49,10 @@ class InputReader {
   /// Only those of the environment: no level, vocabulary or program.
   std::vector<InputDigest> inputs_of(const Environment& environment);
 
+  /// The frames of a recorded environment, mapped and queried, by content: equal for copies,
+  /// whatever their files are called. @pre inputs_of(environment)
+  std::pair<std::uint64_t, std::uint64_t> frames_of(const Environment& environment) const;
+
   /// Returns a scene by its file, not lit; the last one requested is cached. Repairs made to it are
   /// reported once, a line each.
   std::shared_ptr<const Scene> scene(const std::filesystem::path& file, const SceneFrame& frame);
@@ -59,6 +63,7 @@ class InputReader {
                    const std::function<void(const std::filesystem::path&)>& load);
 
   std::map<std::pair<std::string, std::filesystem::path>, InputDigest> known_;  // by kind, source
+  std::map<std::string, std::uint64_t> frames_digests_;         // by the recording's name
   std::map<std::string, std::vector<InputDigest>> of_program_;  // by the system's name
   std::function<void(std::string_view)> say_;
   std::pair<std::filesystem::path, SceneFrame> scene_source_;

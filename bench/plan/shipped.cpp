@@ -137,6 +137,10 @@ fs::path find_shipped(const std::string& word, Shipped what) {
   if (const fs::path file = shipped_file(word, what); !file.empty()) return file;
   if (const fs::path below = data_folder() / word; is_there(below, what)) return below;
   if (!is_bare_name(word)) return word;
+  std::error_code error;
+  if (fs::is_directory(word, error))
+    throw InputError(
+        fmt::format("'{}' is a folder, and no {} of that name is shipped", word, noun(what)));
   throw InputError(fmt::format("'{}' is not a file, and no {} of that name is shipped{}", word,
                                noun(what), hint(word, shipped_names(what))));
 }

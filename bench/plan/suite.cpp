@@ -10,6 +10,7 @@
 #include "bench/plan/gate_config.hpp"
 #include "bench/plan/names.hpp"
 #include "scenes/scannet/files.hpp"
+#include "slam/config/by_name.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/settings_io.hpp"
@@ -177,8 +178,10 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   });
   for (const auto& [name, value] : overrides.set)
     if (!asked.contains(name))
-      throw InputError(fmt::format("{}: --set {}: nothing in it is called ${{{}}}{}", file.string(),
-                                   name, name, did_you_mean(name, {asked.begin(), asked.end()})));
+      throw InputError(
+          fmt::format("{}: --set {}: nothing in it is called ${{{}}}{}", file.string(), name, name,
+                      is_setting(name) ? "; a setting of SLAM stands in the suite, under `slam:`"
+                                       : did_you_mean(name, {asked.begin(), asked.end()})));
   const SuitePaths paths{file.parent_path(), files_must_exist, overrides.found};
 
   Suite suite;
@@ -190,7 +193,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   Environments environments = read_environments(yaml.at("environments"), paths, robot);
   suite.environments = std::move(environments.list);
   suite.found = std::move(environments.found);
-  suite.left_out = std::move(environments.notes);
+  suite.notes = std::move(environments.notes);
   suite.set = overrides.set;
   suite.levels = read_levels(yaml, paths, suite);
   std::set<std::string> names;
@@ -219,6 +222,15 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   protocol.finish();
   if (suite.protocol.test_interval == 1)
     yaml.at("protocol").at("test_interval").fail("would hold out every frame");
+  if (suite.protocol.test_interval == 0)
+    for (const Environment& e : suite.environments)
+      if (e.query_tour || e.queries) {
+        suite.notes.push_back(
+            fmt::format("{}: protocol.test_interval is 0: no frame is queried, not even of the "
+                        "second tour of '{}'",
+                        file.string(), e.name));
+        break;
+      }
   if (const auto graded = yaml.find("graded")) {
     suite.graded = read_graded(*graded);
     for (const Environment& e : suite.environments)

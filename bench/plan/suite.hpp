@@ -61,7 +61,7 @@ struct Suite {
   bool scene_replaced = false;             ///< SuiteOverrides::scene was set
   std::map<std::string, std::string> set;  ///< as in SuiteOverrides
   FoundRecordings found;                   ///< recordings that the suite's patterns matched
-  std::vector<std::string> left_out;       ///< matched recordings that are not used, one line each
+  std::vector<std::string> notes;          ///< what it leaves out, one line each
 };
 
 /// What the command line may override in a suite.

@@ -46,13 +46,40 @@ void check_recordings(const Environment& e, const Labels& labels,
   }
 }
 
+/// Checks that runs can have folders of their names.
 void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
+  constexpr std::size_t kLongest = 200;  // a file's name has at most 255 bytes
   std::set<std::string> names;
-  for (const RunSpec& spec : specs)
+  for (const RunSpec& spec : specs) {
+    if (spec.name.size() > kLongest)
+      throw InputError(
+          fmt::format("{}: the name of run '{}...' has {} characters, at most {} can be: shorten "
+                      "that of its environment, system or labels",
+                      suite.file.string(), spec.name.substr(0, 40), spec.name.size(), kLongest));
     if (!names.insert(spec.name).second)
       throw InputError(fmt::format("{}: two runs are named '{}': rename an environment or a level",
                                    suite.file.string(), spec.name));
+  }
 }
+
+/// Which environment something is of, to find two that are one place.
+template <class Key>
+class Places {
+ public:
+  explicit Places(const Suite& suite) : suite_(suite) {}
+  /// @throws InputError if another environment has the same key
+  void add(const Key& key, const std::string& environment, const char* alike) {
+    const auto [known, is_new] = environment_of_.try_emplace(key, environment);
+    if (known->second != environment)
+      throw InputError(fmt::format(
+          "{}: environments '{}' and '{}' {}: statistics take environments for independent",
+          suite_.file.string(), known->second, environment, alike));
+  }
+
+ private:
+  const Suite& suite_;
+  std::map<Key, std::string> environment_of_;
+};
 
 }  // namespace
 
@@ -60,23 +87,27 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
                            const std::function<void(std::string_view)>& say) {
   const std::vector<RunSpec> specs = expand(suite);
   check_names(suite, specs);
-  for (const std::string& line : suite.left_out) say(line);
-  std::set<std::string> warned;
+  for (const std::string& line : suite.notes) say(line);
+  std::set<std::string> outside;
   for (const RunSpec& spec : specs)
-    if (spec.system.is_outside() && warned.insert(spec.system.name).second)
+    if (spec.system.is_outside() && outside.insert(spec.system.name).second) {
+      require_program(spec.system.outside);
       if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
         say(warning);
+    }
   std::vector<Job> jobs;
-  std::map<std::string, std::string> environment_of;  // by key
+  Places<std::string> by_key(suite);
+  Places<std::pair<std::uint64_t, std::uint64_t>> by_frames(suite);
   for (const RunSpec& spec : specs) {
     jobs.push_back({spec, run_key(spec, inputs.inputs_of(spec)), images_of(spec)});
-    const std::string& name = spec.environment.name;
-    const auto [known, is_new] = environment_of.try_emplace(jobs.back().key, name);
-    if (known->second != name)
-      throw InputError(fmt::format(
-          "{}: environments '{}' and '{}' are equal in every byte that a run reads: statistics "
-          "take environments for independent",
-          suite.file.string(), known->second, name));
+    const Environment& e = spec.environment;
+    by_key.add(jobs.back().key, e.name, "are equal in every byte that a run reads");
+    if (!e.is_recorded()) continue;
+    const auto frames = inputs.frames_of(e);
+    if (frames.first == frames.second)
+      throw InputError(fmt::format("{}: '{}': its `queries` have the frames of its `sequence`",
+                                   suite.file.string(), e.name));
+    by_frames.add(frames, e.name, "have the same frames");
   }
   return jobs;
 }
@@ -89,7 +120,6 @@ std::vector<std::pair<std::string, std::string>> keys_by_name(const std::vector<
 
 void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                      const std::function<void(std::string_view)>& say) {
-  std::set<std::string> programs;
   std::set<std::pair<std::string, bool>> checked;  // recordings, and whether with labels
   struct Uses {
     std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>
@@ -99,8 +129,6 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
   std::map<std::pair<fs::path, SceneFrame>, Uses> uses_of;  // of each scene
   for (const Job& job : jobs) {
     const RunSpec& spec = job.spec;
-    if (spec.system.is_outside() && programs.insert(spec.system.name).second)
-      require_program(spec.system.outside);
     const Environment& e = spec.environment;
     if (e.is_recorded()) {
       if (checked.insert({e.name, spec.labels == LabelMode::kRecorded}).second)

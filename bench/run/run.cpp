@@ -207,10 +207,13 @@ void execute_run(const SingleRunOptions& order) {
     return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, order.images);
   }();
   const auto require_key = [&](std::span<const InputDigest> inputs) {
-    if (run_key(spec, inputs) != order.key)
-      throw InputChanged(fmt::format(
-          "{}: a file that it reads was changed after the suite was begun: start the suite again",
-          spec.name));
+    if (run_key(spec, inputs) == order.key) return;
+    std::string what = "a file that it reads";  // before it began: which one is not known
+    for (const InputDigest& input : inputs)
+      if (std::ranges::find(world.inputs, input) == world.inputs.end())
+        what = fmt::format("its '{}'", input.name);
+    throw InputChanged(fmt::format(
+        "{}: {} was changed after the suite was begun: start the suite again", spec.name, what));
   };
   require_key(world.inputs);
   const fs::path folder = order.folder / spec.name;

@@ -61,24 +61,46 @@ class FramesOf : public Sequence {
   const Sequence& inner_;
 };
 
+/// A message about a recording without the place where that lies: a result must not depend on it,
+/// and the cache gives it to copies elsewhere.
+std::string without_place(std::string message, const std::string& recording) {
+  fs::path place = split_sequence(recording).second;
+  if (!place.has_filename()) place = place.parent_path();  // "room/"
+  if (place.empty()) return message;
+  for (const char* end : {"/", ": "})
+    if (const std::string mark = place.string() + end; message.starts_with(mark))
+      return message.substr(mark.size());
+  return message;
+}
+
 /// The frames as a run sees them: the CPU time spent on making them is counted, and tests may
 /// change them.
 class WatchedFrames : public FramesOf {
  public:
+  /// @param recording  where they come from; empty: they are simulated
   /// @param spent_s  grows by the time spent
-  WatchedFrames(const Sequence& inner, const RunTamper& tamper, double& spent_s)
-      : FramesOf(inner), tamper_(tamper), spent_s_(spent_s) {}
-  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+  WatchedFrames(const Sequence& inner, std::string recording, const RunTamper& tamper,
+                double& spent_s)
+      : FramesOf(inner), recording_(std::move(recording)), tamper_(tamper), spent_s_(spent_s) {}
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override try {
     const ProcessorTimer timer(spent_s_);
     RgbdFrame frame = FramesOf::frame(i, noise);
     if (tamper_.frame) tamper_.frame(i, frame);
     return frame;
+  } catch (const InputError& error) {
+    throw InputError(without_place(error.what(), recording_));
   }
 
  private:
+  const std::string recording_;
   const RunTamper& tamper_;
   double& spent_s_;
 };
+
+/// The recording that answers a set of queries; empty: they are simulated.
+std::string recording_of(const Environment& environment, QuerySet set) {
+  return set == QuerySet::kSecondTour ? environment.queries.value_or("") : environment.sequence;
+}
 
 /// Frames of one query, made once for all parameter points.
 class FramesMadeOnce : public FramesOf {
@@ -111,7 +133,8 @@ class QueryRound {
       : spec_(spec),
         set_(set),
         world_(world),
-        frames_(*sequence_of(world, set), tamper, run.frames_s),
+        frames_(*sequence_of(world, set), recording_of(spec.environment, set), tamper,
+                run.frames_s),
         run_(run),
         stream_(query_stream(spec, set)) {}
   QuerySet set() const { return set_; }
@@ -191,8 +214,7 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
 /// Writes the mapping frames as a folder and returns an outside program's trajectory for them.
 /// @param skipped  receives the frames that could not be written
 Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStream stream,
-                        const std::filesystem::path& folder,
-                        const std::function<void(std::string_view)>& status,
+                        const fs::path& folder, const std::function<void(std::string_view)>& status,
                         SkippedFrames& skipped) {
   const std::vector<std::size_t> offered = offered_frames(mapping.size(), spec.protocol);
   UsableFrames frames(mapping);
@@ -214,7 +236,7 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStre
 }  // namespace
 
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
-                                    const std::filesystem::path& folder) {
+                                    const fs::path& folder) {
   if (spec.system.is_outside()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
     if (spec.system.outside.mode == OutsideMode::kLibrary)
@@ -246,7 +268,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   run.place = facts(world, spec);
   if (mapping.truth() != nullptr) run.truth = *mapping.truth();
   OccupancyMapper mapper(camera);
-  const WatchedFrames frames(mapping, tamper, run.frames_s);
+  const WatchedFrames frames(mapping, spec.environment.sequence, tamper, run.frames_s);
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
     if (!tools.occupancy) return;

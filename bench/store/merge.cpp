@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -7,6 +8,7 @@
 #include "bench/plan/runs.hpp"
 #include "bench/store/database.hpp"
 #include "bench/store/guard.hpp"
+#include "bench/store/row_digest.hpp"
 #include "bench/store/store.hpp"
 #include "slam/core/error.hpp"
 
@@ -83,14 +85,15 @@ std::size_t Store::merge(const fs::path& other) {
           "(SELECT 1 FROM runs r WHERE r.key = o.key AND (r.status = 'done' OR o.status = "
           "'failed'))");
       taken = database_->execAndGet("SELECT COUNT(*) FROM wanted").getUInt();
-      for (const char* table :
-           {"runs", "points", "metrics", "calls", "frames", "queries", "times"}) {
+      const auto replace = [&](const char* table) {
         database_->exec(
             fmt::format("DELETE FROM {0} WHERE key IN (SELECT key FROM wanted)", table));
         database_->exec(fmt::format(
             "INSERT INTO {0} SELECT * FROM other.{0} WHERE key IN (SELECT key FROM wanted)",
             table));
-      }
+      };
+      replace("runs");
+      std::ranges::for_each(kTablesOfRuns, replace);
       database_->exec("INSERT OR IGNORE INTO plan SELECT * FROM other.plan");
       database_->exec("DROP TABLE wanted");
       transaction.commit();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/store/result_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -37,6 +38,18 @@ Json result_json(const RunResult& run) {
 void read_result(const Json& json, RunResult& run) {
   const auto read = [&](const char* name, auto&& value) { read_json(json.at(name), value); };
   result_fields(run, read);
+}
+
+/// How many rows a run has, besides the one in `runs`.
+std::int64_t row_count(SQLite::Database& db, const std::string& key) {
+  std::int64_t count = 0;
+  for (const char* table : kTablesOfRuns) {
+    SQLite::Statement s(db, fmt::format("SELECT count(*) FROM {} WHERE key = ?", table));
+    s.bind(1, key);
+    s.executeStep();
+    count += s.getColumn(0).getInt64();
+  }
+  return count;
 }
 
 void put_metrics(SQLite::Database& db, const std::string& key, const RunResult& run) {
@@ -171,25 +184,28 @@ void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,
   RowWriter row(db, "runs");
   row << key << spec.name << spec.environment.name << spec.environment.category
       << level_name(spec.level) << spec.system.name << name(spec.labels) << spec.trial << spec.seed
-      << (error.empty() ? "done" : "failed") << error << stored_spec(spec) << result;
+      << (error.empty() ? "done" : "failed") << error << stored_spec(spec) << result
+      << row_count(db, key);
   row.end_row();
 }
 
 void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run) {
-  put_run(db, key, run.spec, "", result_json(run).dump());
   put_points(db, key, run.spec);
   put_metrics(db, key, run);
   put_calls(db, key, run);
   put_frames(db, key, run);
   put_queries(db, key, run);
+  put_run(db, key, run.spec, "", result_json(run).dump());
 }
 
 void forget_rows(SQLite::Database& db, const std::string& key) {
-  for (const char* table : {"runs", "points", "metrics", "calls", "frames", "queries", "times"}) {
+  const auto forget = [&](const char* table) {
     SQLite::Statement s(db, fmt::format("DELETE FROM {} WHERE key = ?", table));
     s.bind(1, key);
     s.exec();
-  }
+  };
+  forget("runs");
+  std::ranges::for_each(kTablesOfRuns, forget);
 }
 
 RunResult load_rows(SQLite::Database& db, const std::filesystem::path& file, const std::string& key,

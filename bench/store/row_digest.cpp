@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bench/provenance/digest.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -81,6 +82,40 @@ std::string printable(std::string text) {
   return text.size() > kMost ? text.substr(0, kMost) + "..." : text;
 }
 
+/// Checks that no row was lost.
+void require_all_rows(SQLite::Database& db, const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& what) {
+    throw InputError(fmt::format(
+        "{}: is damaged: {}: put back a copy, or move it away and run again", file.string(), what));
+  };
+  std::string of_run, of_all;
+  for (const char* table : kTablesOfRuns) {
+    const char* plus = of_run.empty() ? "" : " + ";
+    of_run += fmt::format("{0}(SELECT count(*) FROM {1} WHERE {1}.key = runs.key)", plus, table);
+    of_all += fmt::format("{}(SELECT count(*) FROM {})", plus, table);
+  }
+  SQLite::Statement lost(
+      db, fmt::format("SELECT name, row_count, {0} AS found FROM runs WHERE row_count <> found "
+                      "ORDER BY name LIMIT 1",
+                      of_run));
+  if (lost.executeStep())
+    fail(fmt::format("run '{}' has {} of {} rows", printable(lost.getColumn(0).getString()),
+                     lost.getColumn(2).getInt64(), lost.getColumn(1).getInt64()));
+  // All in one statement: other processes may be adding results.
+  SQLite::Statement left(
+      db, fmt::format("SELECT {} - (SELECT coalesce(sum(row_count), 0) FROM runs)", of_all));
+  left.executeStep();
+  if (left.getColumn(0).getInt64() != 0)
+    fail(fmt::format("{} are of a run that its table 'runs' has lost",
+                     counted(static_cast<std::size_t>(left.getColumn(0).getInt64()), "row")));
+  SQLite::Statement plan(db,
+                         "SELECT run_count, (SELECT count(*) FROM plan) AS found FROM suite "
+                         "WHERE run_count <> found");
+  if (plan.executeStep())
+    fail(fmt::format("its table 'plan' has {} of {} rows", plan.getColumn(1).getInt64(),
+                     plan.getColumn(0).getInt64()));
+}
+
 }  // namespace
 
 void add_row_digest(SQLite::Database& db) {
@@ -111,6 +146,7 @@ void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file)
           "again",
           file.string(), printable(s.getColumn(0).getString()), table));
   }
+  require_all_rows(db, file);
 }
 
 std::map<std::string, std::string> schema_texts(SQLite::Database& db) {

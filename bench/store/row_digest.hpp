@@ -11,11 +11,16 @@ namespace mh {
 
 // Each row of a results file, except in `claims`, has as its last column a digest of its table's
 // name and its other values: SQLite has no checksums, and a number with a flipped bit is still a
-// number.
+// number. `runs` counts the other rows of each run, and `suite` those of `plan`: a lost row has no
+// digest that could fail.
 
 /// The tables whose rows carry one, in the order of the schema.
 inline constexpr const char* kDigestedTables[] = {"suite", "plan",   "runs",    "points", "metrics",
                                                   "calls", "frames", "queries", "times"};
+
+/// The tables that `runs.row_count` counts the rows of.
+inline constexpr const char* kTablesOfRuns[] = {"points", "metrics", "calls",
+                                                "frames", "queries", "times"};
 
 /// Registers the SQL function row_digest(table, value, ...) with a connection; it returns a 64-bit
 /// integer. A number's digest is that of its value: 3 and 3.0 have the same.
@@ -27,8 +32,8 @@ int column_count(SQLite::Database& db, const std::string& table);
 /// "INSERT INTO plan VALUES (?1, ?2, ?3, row_digest('plan', ?1, ?2, ?3))" for that many values.
 std::string insert_row(const std::string& table, int values, const char* verb = "INSERT");
 
-/// Checks every row. @throws InputError naming file, table and the first row whose digest does not
-/// match its values.
+/// Checks every row, and that none is missing. @throws InputError naming file, table and the first
+/// row whose digest does not match its values, or the first run that has lost rows.
 void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file);
 
 /// The text that created each table of a database, by its name.

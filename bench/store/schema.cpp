@@ -15,7 +15,7 @@ std::string schema() {
       R"sql(
 CREATE TABLE suite (
   one INTEGER PRIMARY KEY CHECK (one = 1), name TEXT NOT NULL, file TEXT NOT NULL,
-  content TEXT NOT NULL, overrides TEXT NOT NULL, digest INTEGER);
+  content TEXT NOT NULL, overrides TEXT NOT NULL, run_count INTEGER NOT NULL, digest INTEGER);
 CREATE TABLE plan (
   position INTEGER NOT NULL, name TEXT PRIMARY KEY, key TEXT NOT NULL, digest INTEGER)
   WITHOUT ROWID;
@@ -23,7 +23,8 @@ CREATE TABLE runs (
   key TEXT PRIMARY KEY, name TEXT NOT NULL, environment TEXT NOT NULL, category TEXT NOT NULL,
   level TEXT NOT NULL, system TEXT NOT NULL, labels TEXT NOT NULL, trial INTEGER NOT NULL,
   seed INTEGER NOT NULL, status TEXT NOT NULL CHECK (status IN ('done', 'failed')),
-  error TEXT NOT NULL, spec TEXT NOT NULL, result TEXT NOT NULL, digest INTEGER) WITHOUT ROWID;
+  error TEXT NOT NULL, spec TEXT NOT NULL, result TEXT NOT NULL, row_count INTEGER NOT NULL,
+  digest INTEGER) WITHOUT ROWID;
 CREATE TABLE points (
   key TEXT NOT NULL, point INTEGER NOT NULL, gamma REAL, label_mass REAL, xi REAL, alpha REAL,
   beta REAL,

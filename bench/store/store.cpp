@@ -141,7 +141,7 @@ void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
                  const std::vector<std::pair<std::string, std::string>>& key_of_name) {
   guarded(file_, [&] {
     SQLite::Transaction transaction = begin_writing(*database_);
-    SQLite::Statement s(*database_, insert_row("suite", 5, "INSERT OR REPLACE"));
+    SQLite::Statement s(*database_, insert_row("suite", 6, "INSERT OR REPLACE"));
     s.bind(1, 1);
     s.bind(2, suite.name);
     s.bind(3, fs::absolute(suite.file).lexically_normal().string());
@@ -149,6 +149,7 @@ void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
     SuiteOverrides stored = overrides;
     stored.found = suite.found;  // may be read on a machine without the recordings
     s.bind(5, to_json(stored).dump());
+    s.bind(6, static_cast<std::int64_t>(key_of_name.size()));
     s.exec();
     database_->exec("DELETE FROM plan");
     SQLite::Statement row(*database_, insert_row("plan", 3));
@@ -248,8 +249,8 @@ void Store::put(const std::string& key, const RunResult& run, const RunCost& cos
   guarded(file_, [&] {
     SQLite::Transaction transaction = begin_writing(*database_);
     forget_rows(*database_, key);
-    put_rows(*database_, key, run);
     put_cost(*database_, key, cost, calls_json(run.times).dump());
+    put_rows(*database_, key, run);
     end_claim(*database_, key);
     transaction.commit();
   });
@@ -260,8 +261,8 @@ void Store::put_failure(const std::string& key, const RunSpec& spec, const std::
   guarded(file_, [&] {
     SQLite::Transaction transaction = begin_writing(*database_);
     forget_rows(*database_, key);
-    put_run(*database_, key, spec, error, "");
     put_cost(*database_, key, cost, "");
+    put_run(*database_, key, spec, error, "");
     end_claim(*database_, key);
     transaction.commit();
   });

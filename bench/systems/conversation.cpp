@@ -93,7 +93,9 @@ class Conversation {
                             {"classes", classes_by_id}},
                            {"protocol", "name"});
     if (const auto it = reply.find("protocol"); it == reply.end() || *it != kProtocol)
-      fail(fmt::format("does not speak protocol {}", kProtocol));
+      fail(it == reply.end()
+               ? fmt::format("named no \"protocol\": expected {}", kProtocol)
+               : fmt::format("speaks protocol {}, not {}", shortened(it->dump()), kProtocol));
   }
 
   /// Sends a request and returns its reply. The reply must have this request's number and no keys

@@ -33,6 +33,8 @@ void check_told(const SystemReport& report, const Refuse& refuse) {
   if (stage && report.world_from_camera && stage != RelocalizationStage::kNone &&
       stage != RelocalizationStage::kVerified)
     refuse(fmt::format("gave a pose and the stage \"{}\", which is one of failure", name(*stage)));
+  if (report.inliers && report.keypoints && *report.inliers > *report.keypoints)
+    refuse(fmt::format("gave {} inliers of {} keypoints", *report.inliers, *report.keypoints));
   const Candidates& c = report.candidates;
   std::optional<int> left;
   for (const std::optional<int>& number : {c.keyframes, c.c1, c.c2, c.c3, c.final}) {

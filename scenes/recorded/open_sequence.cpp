@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -38,6 +39,16 @@ void note_content(const fs::path& file) {
     read_file(file);
   } catch (const InputError&) {  // a frame that cannot be read is skipped, not the recording
   }
+}
+
+/// Digest of the contents that were read, whatever the files' names and order.
+std::uint64_t digest_of_contents(std::span<const FileObservation> observations) {
+  ReadRecord contents;
+  for (const FileObservation& o : observations)
+    if (o.kind == FileObservation::Kind::kRead)
+      contents.observations.push_back({o.kind, "", o.digest});
+  std::ranges::sort(contents.observations, {}, &FileObservation::digest);
+  return digest(contents);
 }
 
 }  // namespace
@@ -125,8 +136,12 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
   {
     const ReadScope scope(ReadScope::Outer::kIgnores);
     opened = open();
+    const std::size_t before_frames = scope.record().observations.size();
     std::ranges::for_each(opened.files, note_content);
     all = digest(scope.record());
+    const std::span read(scope.record().observations);
+    opened.frames_digest =
+        digest_of_contents(opened.files.empty() ? read : read.subspan(before_frames));
   }
   ReadScope::report(
       {FileObservation::Kind::kRead, path / fmt::format("{} recording", reader.name), all});

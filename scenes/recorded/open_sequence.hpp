@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -36,6 +37,9 @@ struct OpenedRecording {
   bool has_labels = false;                   ///< it contains labels, whether used or not
   std::vector<std::filesystem::path> files;  ///< files that frames are read from on demand
   std::vector<std::string> notes;            ///< what could not be used, one line each
+  /// Digest of the contents of the files with its frames, whatever their names and order: copies of
+  /// one recording have the same. 0 unless a ReadScope was open.
+  std::uint64_t frames_digest = 0;
 };
 
 /// A recording layout. To add one, see docs/recordings.md.

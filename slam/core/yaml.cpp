@@ -75,7 +75,9 @@ YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
     Walk(name).visit(node);
     return {node, name, ""};
   } catch (const YAML::Exception& e) {
-    throw InputError(fmt::format("{}:{}: is not valid YAML: {}", name, e.mark.line + 1, e.msg));
+    const bool braces = text.find("${") != std::string::npos;
+    throw InputError(fmt::format("{}:{}: is not valid YAML: {}{}", name, e.mark.line + 1, e.msg,
+                                 braces ? "; within { } or [ ], ${...} must be quoted" : ""));
   }
 }
 
@@ -218,7 +220,10 @@ std::int64_t YamlReader::as_int(std::int64_t min, std::int64_t max) const {
   try {
     value = node_->as<std::int64_t>();
   } catch (const YAML::Exception&) {
-    fail(fmt::format("'{}' is not an integer", node_->Scalar()));
+    const std::string& text = node_->Scalar();
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    if (digits) fail(fmt::format("{} is outside [{}, {}]", text, min, max));
+    fail(fmt::format("'{}' is not an integer", text));
   }
   if (value < min || value > max) fail(fmt::format("{} is outside [{}, {}]", value, min, max));
   return value;

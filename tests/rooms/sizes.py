@@ -11,6 +11,7 @@ FOLDERS = ("slam", "scenes", "robots", "sim", "bench", "include")
 
 
 def without_comments(text):
+    text = re.sub(r'R"(\w*)\(.*?\)\1"', '""', text, flags=re.DOTALL)
     text = re.sub(r"//[^\n]*", "", text)
     return re.sub(r'"(\\.|[^"\\\n])*"', '""', text)
 

@@ -142,6 +142,14 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
   expect_in(error(kDesk, "[recorded]", "", {.scene = folder_ / "house.yaml"}), "is a recording");
 }
 
+TEST_F(RecordedSuite, ASecondRecordingThatIsNeverQueriedIsNoted) {
+  const std::string entry = "- {category: desk, sequence: 'tum:desk', queries: 'tum:desk_again'}";
+  EXPECT_TRUE(load(entry).notes.empty());
+  const Suite unasked = load(entry, "[recorded]", "protocol: {test_interval: 0}\n");
+  ASSERT_EQ(unasked.notes.size(), 1U);
+  expect_in(unasked.notes[0], "no frame is queried, not even of the second tour of 'desk'");
+}
+
 // Statistics over scenes would count it twice.
 TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
   fs::create_directory_symlink(folder_ / "desk", folder_ / "link");
@@ -195,13 +203,12 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   EXPECT_EQ(suite.environments[0].name, "scene0000_00");
   EXPECT_EQ(suite.environments[0].category, "bathroom");
   EXPECT_EQ(suite.environments[1].category, "bedroom");
-  ASSERT_EQ(suite.left_out.size(), 1U);
-  expect_in(suite.left_out[0], "2 of 4 recordings left out: 1 without a scene type, 1 'Stairs'");
+  ASSERT_EQ(suite.notes.size(), 1U);
+  expect_in(suite.notes[0], "2 of 4 recordings left out: 1 without a scene type, 1 'Stairs'");
   fs::create_directories(folder_ / "scans/scene0009_00");  // half a download
   const Suite with_half = load(entry, "[recorded]", "", set);
-  ASSERT_EQ(with_half.left_out.size(), 2U);
-  expect_in(with_half.left_out[0],
-            "left out: 1 folder without a recording, the first: scene0009_00");
+  ASSERT_EQ(with_half.notes.size(), 2U);
+  expect_in(with_half.notes[0], "left out: 1 folder without a recording, the first: scene0009_00");
   // Where the scans are not, their results are still read.
   SuiteOverrides elsewhere = set;
   elsewhere.found = suite.found;
@@ -213,6 +220,10 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
 
   expect_in(error(entry), "'${scans}' is not set: --set scans=VALUE does");
   expect_in(error(kDesk, "[recorded]", "", set), "--set scans: nothing in it is called ${scans}");
+  expect_in(error(kDesk, "[recorded]", "", {.set = {{"features.count", "500"}}}),
+            "${features.count}; a setting of SLAM stands in the suite, under `slam:`");
+  expect_in(error(kDesk, "[recorded]", "slam: {features: {count: ${n}}}\n", {.set = {{"n", "5"}}}),
+            "within { } or [ ], ${...} must be quoted");
   expect_in(error(entry, "[recorded]", "", set), "no recording matches");
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <regex>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -255,8 +256,10 @@ TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
   const RunResult result = run();
   EXPECT_EQ(result.mapping.skipped.count, 9U);
   EXPECT_EQ(result.mapping.skipped.reasons.size(), SkippedFrames::kReasonsKept);
-  EXPECT_NE(result.mapping.skipped.reasons[0].find(files[10].color.filename().string()),
-            std::string::npos);
+  // Where the recording lies is no part of a result.
+  EXPECT_TRUE(result.mapping.skipped.reasons[0].starts_with(
+      "rgb/" + files[10].color.filename().string() + ": "))
+      << result.mapping.skipped.reasons[0];
   EXPECT_EQ(result.points.front().held_out.size(), 1U);  // frame 59
   EXPECT_EQ(result.trajectory.tracked, 61U);
   Store store(folder_ / "results.sqlite");
@@ -547,9 +550,55 @@ TEST_F(Recorded, ACopyUnderAnotherNameIsRefused) {
               std::string::npos)
         << error.what();
   }
-  write(folder_ / "copy" / "rgb.txt", read_file(room() / "rgb.txt") + "# another\n");
+  // Nor is it another place with other words in its lists, or other names.
+  const fs::path list = folder_ / "copy" / "rgb.txt";
+  write(list, read_file(list) + "# another\n");
+  fs::rename(folder_ / "copy" / "rgb", folder_ / "copy" / "images");
+  write(list, std::regex_replace(read_file(list), std::regex("rgb/"), "images/"));
+  reader = InputReader();
+  try {
+    plan();
+    ADD_FAILURE() << "one recording would count twice";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'room' and 'copy' have the same frames"),
+              std::string::npos)
+        << error.what();
+  }
+  // Nor do its own frames query it.
+  Suite own = suite();
+  own.environments[0].queries = two.environments[1].sequence;
+  EXPECT_THROW(plan_runs(own, reader, [](std::string_view) {}), InputError);
+  fs::remove_all(folder_ / "copy");
+  record(folder_ / "copy", "tum", 1, 3);
   reader = InputReader();
   EXPECT_EQ(plan().size(), 2U);
+}
+
+TEST_F(Recorded, ACachedMapSaysTheSameOfACopy) {
+  record(room(), "tum", 0, 40);
+  write(load_tum_folder(room())[10].color, "no image");
+  fs::copy(room(), folder_ / "copy", fs::copy_options::recursive);
+  RunTools cached = tools();
+  cached.maps = Cache(folder_ / "maps");
+  const SkippedFrames first = run_one(spec_, world(), cached).mapping.skipped;
+  fs::remove_all(room());
+  spec_.environment.sequence = "tum:" + (folder_ / "copy").string();
+  EXPECT_EQ(run_one(spec_, world(), cached).mapping.skipped, first);
+  EXPECT_EQ(run().mapping.skipped, first);
+}
+
+TEST_F(Recorded, ANameThatNoFolderCanHaveIsRefusedBeforeAnythingRuns) {
+  record(room(), "tum", 0, 2);
+  Suite long_name = suite();
+  long_name.systems[0].name = std::string(300, 'x');
+  InputReader reader;
+  try {
+    plan_runs(long_name, reader, [](std::string_view) {});
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("characters, at most 200"), std::string::npos)
+        << error.what();
+  }
 }
 
 // A folder that is of two layouts is two recordings, whichever is looked at first.

@@ -223,6 +223,31 @@ TEST_F(StoreFile, AChangedValueOfAnyTableIsNamed) {
   }
 }
 
+TEST_F(StoreFile, ALostRowOfAnyTableIsNamed) {
+  const fs::path file = folder_ / "r.sqlite";
+  for (const auto& [table, named] :
+       std::map<std::string, std::string>{{"plan", "its table 'plan' has 0 of 3 rows"},
+                                          {"runs", "are of a run that its table 'runs' has lost"},
+                                          {"points", "run '"},
+                                          {"metrics", "run '"},
+                                          {"calls", "run '"},
+                                          {"frames", "run '"},
+                                          {"queries", "run '"},
+                                          {"times", "run '"}}) {
+    fs::remove(file);
+    write_results(file);
+    SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("DELETE FROM " + table);
+    try {
+      exports(file);
+      ADD_FAILURE() << table;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("is damaged: "), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+    }
+    EXPECT_THROW(Store(folder_ / "all.sqlite").merge(file), InputError);
+  }
+}
+
 /// As a user who is not root, while it lives; root may write everywhere.
 class AsNobody {
  public:
@@ -353,6 +378,26 @@ TEST_F(StoreFile, AnExitCodeWithoutAnErrorOfOursIsAFailureOfTheRunAlone) {
     run_pending(store, {{some_run("a").spec, "k"}}, options);
     EXPECT_EQ(store.error("k"), fmt::format("returned {}", code));
   }
+}
+
+TEST_F(StoreFile, ACrashSaysWhereAndNamesTheLibraryThatRanThere) {
+  const fs::path program = folder_ / "program";
+  std::ofstream(program) << "#!/bin/sh\necho '" << kStatusMark << "frame 7 of 9'\nkill -SEGV $$\n";
+  fs::permissions(program, fs::perms::owner_all);
+  Store store(folder_ / "r.sqlite");
+  PoolOptions options;
+  options.executable = program;
+  options.work_folder = folder_;
+  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  RunSpec spec = some_run("a").spec;
+  spec.system.kind = SystemKind::kOutside;
+  spec.system.name = "mine";
+  spec.system.outside.mode = OutsideMode::kLibrary;
+  spec.system.outside.library = "libmine.so";
+  run_pending(store, {{spec, "k"}}, options);
+  EXPECT_EQ(store.error("k"),
+            "ended by signal 11 (Segmentation fault) after 'frame 7 of 9', with outside library "
+            "'mine' (libmine.so) in its process");
 }
 
 TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {

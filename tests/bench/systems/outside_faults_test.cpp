@@ -382,9 +382,9 @@ TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
   EXPECT_HOLDS(
       hello_error("echo Welcome to my SLAM; sleep 60"),
       "wrote what is not a line of JSON: 'Welcome to my SLAM', replying to hello (request 1)");
-  EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "does not speak protocol 1");
+  EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "named no \"protocol\": expected 1");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
-               "does not speak protocol 1");
+               "speaks protocol 2, not 1");
   EXPECT_HOLDS(hello_error(R"(echo '[1]'; sleep 60)"), "wrote no JSON object");
 }
 
@@ -419,6 +419,8 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   EXPECT_HOLDS(replies(R"({"pose":null})"), "gave no request number");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"keypoints":5,"inliers":50})"),
+               "gave 50 inliers of 5 keypoints");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"map_reset":1})"), "gave a map_reset of 1");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"candidates":{"c4":1}})"), "'candidates.c4'");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"candidates":{"keyframes":3,"final":9}})"),
