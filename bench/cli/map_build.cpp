@@ -23,6 +23,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/interpolate.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/occupancy/cost_map.hpp"
 #include "slam/occupancy/floor_frame.hpp"
@@ -84,6 +85,15 @@ Posed run_slam(const MapBuildArguments& options, const Source& source,
   return posed_by(state);
 }
 
+/// The poses of frames by a trajectory, whose stamps may be others: those of motion capture are.
+Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory) {
+  Trajectory poses;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (const auto pose = interpolated_pose(trajectory, frames.stamp_ns(i), kMaxTruthGap_ns))
+      poses.push_back({frames.stamp_ns(i), *pose});
+  return poses;
+}
+
 /// Keeps the frames of the sequence at the stamps of known poses.
 void keep_posed(const MapBuildArguments& options, const Source& source, const Trajectory& poses,
                 const std::function<void(const RgbdFrame&)>& keep) {
@@ -97,8 +107,7 @@ void keep_posed(const MapBuildArguments& options, const Source& source, const Tr
       keep(source.frames->frame(i, RandomStream(options.seed).fork(i)));
   }
   if (met == 0)
-    throw InputError(fmt::format("{}: has no frame at the time of any of the {} of {}",
-                                 options.source, counted(poses.size(), "pose"),
+    throw InputError(fmt::format("{}: has no frame at the time of a pose of {}", options.source,
                                  options.map.empty() ? options.poses : options.map));
 }
 
@@ -164,7 +173,7 @@ void run(MapBuildArguments options) {
   };
   Posed posed;
   if (!options.poses.empty()) {
-    posed.poses = read_trajectory(options.poses);
+    posed.poses = poses_of_frames(*source.frames, read_trajectory(options.poses));
     keep_posed(options, source, posed.poses, keep);
   } else {
     const auto vocabulary =
@@ -221,8 +230,10 @@ void add_map_build(CLI::App& map) {
   command->add_option("--map", options->map,
                       "Saved map (slam --save-map) of this sequence: where its keyframes are; "
                       "without: SLAM is run");
-  command->add_option("--poses", options->poses,
-                      "Trajectory of this sequence instead, TUM text or EuRoC CSV");
+  command->add_option(
+      "--poses", options->poses,
+      "Trajectory of this sequence instead, TUM text or EuRoC CSV; between its stamps, "
+      "poses are interpolated over at most 0.05 s");
   command
       ->add_option("--every", options->every,
                    "--poses, --map: only every n-th frame that has a pose")

@@ -863,6 +863,28 @@ TEST_F(CommandLine, AMapWithAnEmptyGridSaysSo) {
   EXPECT_EQ(err_.find("empty"), std::string::npos) << err_;
 }
 
+TEST_F(CommandLine, PosesOfAMapMayHaveOtherStampsThanTheFrames) {
+  const std::string tour = (folder_ / "tour").string(), out = (folder_ / "map").string();
+  ASSERT_EQ(run("render generated:bedroom:0 --motion handheld:0:60 --level ideal --frames 6 "
+                "--out " +
+                tour),
+            0)
+      << err_;
+  std::istringstream truth(content(tour + "/groundtruth.txt"));
+  std::string shifted;
+  for (std::string line; std::getline(truth, line);)
+    if (double stamp_s = 0; line[0] != '#' && std::sscanf(line.c_str(), "%lf", &stamp_s) == 1)
+      shifted += fmt::format("{:.6f}{}\n", stamp_s + 0.01, line.substr(line.find(' ')));
+  for (const auto& [poses, frames] : {std::pair(tour + "/groundtruth.txt", "6 keyframes, "),
+                                      {write("shifted.txt", shifted).string(), "5 keyframes, "}}) {
+    ASSERT_EQ(run("map build tum:" + tour + " --poses " + poses + " --out " + out), 0) << err_;
+    EXPECT_TRUE(out_.starts_with(frames)) << out_;
+  }
+  expect_refused("map build tum:" + tour + " --poses " +
+                     write("late.txt", "99 0 0 0 0 0 0 1\n").string() + " --out " + out,
+                 "has no frame at the time of a pose of ");
+}
+
 TEST_F(CommandLine, AMapOfARaisedFloorHasItsGridAboveThatFloor) {
   const std::string room = (folder_ / "room.ply").string(), out = (folder_ / "map").string();
   ASSERT_EQ(run("scene convert generated:bathroom:0 --out " + room), 0) << err_;
