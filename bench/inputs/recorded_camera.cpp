@@ -27,19 +27,12 @@ bool settings_have_camera(const std::filesystem::path& file) {
 
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
                               bool labels) {
-  Settings read;
-  OpenedRecording opened =
-      open_sequence(sequence, {.calibration = environment.settings.value_or(""),
-                               .classes = environment.classes.value_or(""),
-                               .labels = labels,
-                               .topics = environment.topics,
-                               .read_camera = camera_reader(&read),
-                               .has_camera = settings_have_camera});
-  if (environment.settings && read.has_camera && read.slam != SlamConfig{})
-    opened.notes.push_back(
-        fmt::format("{}: its settings of SLAM do not count in a suite: name them in `slam:`",
-                    environment.settings->string()));
-  return opened;
+  return open_sequence(sequence, {.calibration = environment.settings.value_or(""),
+                                  .classes = environment.classes.value_or(""),
+                                  .labels = labels,
+                                  .topics = environment.topics,
+                                  .read_camera = camera_reader(),
+                                  .has_camera = settings_have_camera});
 }
 
 RecordedCamera load_recorded_camera(const std::filesystem::path& file) {

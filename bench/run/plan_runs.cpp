@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/inputs/run_key.hpp"
@@ -15,7 +16,10 @@
 #include "bench/plan/find_program.hpp"
 #include "bench/run/shard.hpp"
 #include "sim/world/travel.hpp"
+#include "slam/config/by_name.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/error.hpp"
+#include "slam/pipeline/settings.hpp"
 
 namespace mh {
 namespace {
@@ -44,6 +48,23 @@ void check_recordings(const Environment& e, const Labels& labels,
                       "nothing is said of correct ones, of distances and of the trajectory",
                       sequence));
   }
+}
+
+/// Says which settings of SLAM a calibration file has that a run does not: a suite ignores them.
+void warn_of_ignored_settings(const fs::path& file, const SlamConfig& of_run,
+                              const std::function<void(std::string_view)>& say) {
+  const SlamConfig of_file = load_settings(file).slam, defaults;
+  std::vector<std::string> ignored;
+  for (const std::string& name : setting_names())
+    if (const std::string text = setting_text(of_file, name);
+        text != setting_text(defaults, name) && text != setting_text(of_run, name))
+      ignored.push_back(fmt::format("{}: {}", name, text));
+  if (ignored.empty()) return;
+  say(
+      fmt::format("warning: {}: its settings of SLAM do not count in a suite: {}{}: name them in "
+                  "`slam:` where they are meant",
+                  file.string(), ignored.front(),
+                  ignored.size() > 1 ? fmt::format(" and {} more", ignored.size() - 1) : ""));
 }
 
 /// Checks that runs can have folders of their names.
@@ -120,6 +141,7 @@ std::vector<std::pair<std::string, std::string>> keys_by_name(const std::vector<
 
 void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                      const std::function<void(std::string_view)>& say) {
+  std::set<fs::path> calibrations;
   std::set<std::pair<std::string, bool>> checked;  // recordings, and whether with labels
   struct Uses {
     std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>
@@ -131,6 +153,8 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
     const RunSpec& spec = job.spec;
     const Environment& e = spec.environment;
     if (e.is_recorded()) {
+      if (e.settings && spec.system.takes_settings() && calibrations.insert(*e.settings).second)
+        warn_of_ignored_settings(*e.settings, spec.slam, say);
       if (checked.insert({e.name, spec.labels == LabelMode::kRecorded}).second)
         check_recordings(e, spec.labels, say);
       continue;
