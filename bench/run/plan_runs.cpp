@@ -60,11 +60,10 @@ void warn_of_ignored_settings(const fs::path& file, const SlamConfig& of_run,
         text != setting_text(defaults, name) && text != setting_text(of_run, name))
       ignored.push_back(fmt::format("{}: {}", name, text));
   if (ignored.empty()) return;
-  say(
-      fmt::format("warning: {}: its settings of SLAM do not count in a suite: {}{}: name them in "
-                  "`slam:` where they are meant",
-                  file.string(), ignored.front(),
-                  ignored.size() > 1 ? fmt::format(" and {} more", ignored.size() - 1) : ""));
+  say(fmt::format(
+      "warning: {}: its settings of SLAM do not count in a suite: name them in `slam:` where they "
+      "are meant: {}",
+      file.string(), fmt::join(ignored, ", ")));
 }
 
 /// Checks that runs can have folders of their names.
