@@ -111,8 +111,8 @@ void check_suite(const Baseline& baseline, const std::filesystem::path& file,
                                  file.string(), baseline.suite, suite));
   if (baseline.suite_digest != suite_digest)
     throw InputError(fmt::format(
-        "{}: suite_digest: '{}' was made before the suite's scenes, tours, systems, seeds or "
-        "protocol changed (now '{}'): look at the change, then run with --update",
+        "{}: suite_digest: '{}' was made before the suite's scenes, tours, systems, seeds, "
+        "protocol or --frames changed (now '{}'): look at the change, then run with --update",
         file.string(), baseline.suite_digest, suite_digest));
 }
 

@@ -111,17 +111,16 @@ void keep_posed(const MapBuildArguments& options, const Source& source, const Tr
                                  options.map.empty() ? options.poses : options.map));
 }
 
-/// The frame of the map: that of a scene, whose robot knows its dock; else the floor's.
-SE3 find_map_frame(const MapBuildArguments& options, const Source& source,
-                   const OccupancyMapper& mapper, const Trajectory& poses) {
+/// The frame of the map: that of a scene, whose robot knows its dock; else the floor's; nullopt
+/// where no floor was seen.
+std::optional<SE3> find_map_frame(const MapBuildArguments& options, const Source& source,
+                                  const OccupancyMapper& mapper, const Trajectory& poses) {
   if (const Trajectory* truth = source.frames->truth(); options.is_scene() && truth != nullptr)
     for (const TimedPose& pose : poses)
       if (const TimedPose* known = pose_at(*truth, pose.stamp_ns))
         return known->world_from_camera * pose.world_from_camera.inverse();
   const auto floor = floor_of(mapper, poses);
-  if (!floor)
-    throw InputError(options.source +
-                     ": no floor was found under the camera's path: no grid can be made");
+  if (!floor) return std::nullopt;
   const SE3 first = floor->floor_from_world * poses.front().world_from_camera;
   fmt::print(stderr,
              "map: floor found by {}, {}, median distance {:.3f} m, {:.2f} m below the first "
@@ -188,9 +187,23 @@ void run(MapBuildArguments options) {
   if (with_depth == 0)
     throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without",
                                  options.source, counted(kept, "keyframe")));
-  const SE3 map_from_world = find_map_frame(options, source, mapper, posed.poses);
+  const std::optional<SE3> frame = find_map_frame(options, source, mapper, posed.poses);
+  const SE3 map_from_world = frame.value_or(SE3());
   mapper.update(posed.poses, map_from_world);
   mapper.associate_detections();
+  const std::string built =
+      fmt::format("{}, {} ({:.1f} MB as an octree)", counted(kept, "keyframe"),
+                  counted(mapper.map().voxel_count(), "voxel"),
+                  static_cast<double>(mapper.map().memory_bytes()) * 1e-6);
+  if (!frame) {
+    fmt::print(
+        stderr,
+        "map: warning: no floor was found under the camera's path: there is no grid, and the "
+        "octree is in the frame of the poses\n");
+    write_octree(options.out, mapper.map());
+    fmt::print("{}\n", built);
+    return;
+  }
   for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
   std::optional<ScanGrid> scans;
   if (lasers) {
@@ -211,9 +224,7 @@ void run(MapBuildArguments options) {
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
   write_image(fs::path(options.out) / "grid_classes.png",
               draw_classes_over(study.grid, posed.landmarks));
-  fmt::print("{}, {} ({:.1f} MB as an octree), grid of {} x {} cells, {}\n",
-             counted(kept, "keyframe"), counted(mapper.map().voxel_count(), "voxel"),
-             static_cast<double>(mapper.map().memory_bytes()) * 1e-6, study.grid.cells.width(),
+  fmt::print("{}, grid of {} x {} cells, {}\n", built, study.grid.cells.width(),
              study.grid.cells.height(), counted(study.objects.size(), "object"));
   if (options.score)
     score(options, *source.frames->truth(), *scene, mapper, study, lasers ? &*lasers : nullptr);

@@ -74,7 +74,7 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
       inputs.push_back(read(name, kind, path, [&](const fs::path& file) {
         say_(fmt::format("reading {}", file.string()));
         const OpenedRecording opened = open_recorded(e, sequence);
-        frames_digests_[sequence] = opened.frames_digest;
+        image_digests_[sequence] = opened.image_digests;
         for (const std::string& note : opened.notes) warn(note);
       }));
     };
@@ -127,8 +127,11 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   return inputs;
 }
 
-std::pair<std::uint64_t, std::uint64_t> InputReader::frames_of(const Environment& e) const {
-  return {frames_digests_.at(e.sequence), e.queries ? frames_digests_.at(*e.queries) : 0};
+bool InputReader::share_images(const std::string& a, const std::string& b) const {
+  const std::vector<std::uint64_t>&one = image_digests_.at(a), &other = image_digests_.at(b);
+  std::vector<std::uint64_t> both;
+  std::ranges::set_intersection(one, other, std::back_inserter(both));
+  return 2 * both.size() > std::min(one.size(), other.size());
 }
 
 std::shared_ptr<const Scene> InputReader::scene(const fs::path& file, const SceneFrame& frame) {

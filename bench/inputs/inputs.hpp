@@ -49,9 +49,9 @@ class InputReader {
   /// Only those of the environment: no level, vocabulary or program.
   std::vector<InputDigest> inputs_of(const Environment& environment);
 
-  /// The frames of a recorded environment, mapped and queried, by content: equal for copies,
-  /// whatever their files are called. @pre inputs_of(environment)
-  std::pair<std::uint64_t, std::uint64_t> frames_of(const Environment& environment) const;
+  /// Whether two recordings have most images of the shorter one in common, whatever their files are
+  /// called. @pre inputs_of() their environments
+  bool share_images(const std::string& a, const std::string& b) const;
 
   /// Returns a scene by its file, not lit; the last one requested is cached. Repairs made to it are
   /// reported once, a line each.
@@ -63,8 +63,8 @@ class InputReader {
                    const std::function<void(const std::filesystem::path&)>& load);
 
   std::map<std::pair<std::string, std::filesystem::path>, InputDigest> known_;  // by kind, source
-  std::map<std::string, std::uint64_t> frames_digests_;         // by the recording's name
-  std::map<std::string, std::vector<InputDigest>> of_program_;  // by the system's name
+  std::map<std::string, std::vector<std::uint64_t>> image_digests_;  // by the recording's name
+  std::map<std::string, std::vector<InputDigest>> of_program_;       // by the system's name
   std::function<void(std::string_view)> say_;
   std::pair<std::filesystem::path, SceneFrame> scene_source_;
   std::set<std::string> warned_;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/legible.hpp"
 #include "slam/core/names.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -29,8 +30,10 @@ void add_once(std::vector<T>& list, T value, const YamlReader& node) {
 
 /// @throws InputError at this place unless the name is valid as a folder name.
 inline void check_folder_name(const YamlReader& node, const std::string& name) {
-  if (name.empty() || name.find('/') != std::string::npos || name[0] == '.')
-    node.fail(fmt::format("'{}' cannot name a folder", name));
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; };
+  if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' ||
+      std::ranges::any_of(name, is_control))
+    node.fail(fmt::format("'{}' cannot name a folder", legible(name)));
 }
 
 }  // namespace mh

@@ -101,6 +101,7 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
     } catch (const InputError& error) {
       pattern.fail(error.what());
     }
+    if (!is_there(place)) pattern.fail(fmt::format("'{}' is a link to nothing", place.string()));
     const auto readers = sequence_readers();
     const auto reader = std::ranges::find_if(readers, [&](const SequenceReader* r) {
       return (layout.empty() || layout == r->name) && r->recognizes(place);

@@ -9,8 +9,10 @@
 
 #include "bench/plan/gate_config.hpp"
 #include "bench/plan/names.hpp"
+#include "bench/plan/runs.hpp"
 #include "scenes/scannet/files.hpp"
 #include "slam/config/by_name.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/settings_io.hpp"
@@ -142,6 +144,17 @@ void check_design(YamlReader study, const SuitePaths& paths) {
                     file.string(), found, stated));
 }
 
+/// Whether two points of the sweep differ for any system.
+bool any_system_varies(const Suite& suite) {
+  const std::vector<SharedSlamConfig>& points = suite.sweep.points;
+  return points.size() < 2 || std::ranges::any_of(suite.systems, [&](const SystemSpec& system) {
+           const SlamConfig first = settings_of(system, points.front());
+           return std::ranges::any_of(points, [&](const SlamConfig& point) {
+             return !(settings_of(system, point) == first);
+           });
+         });
+}
+
 /// The value of a variable of the suite. @throws InputError if it was not set.
 std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
   const auto value = overrides.set.find(name);
@@ -215,7 +228,13 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     suite.slam = read_slam_config(*slam);
     slam->finish();
   }
-  if (const auto sweep = yaml.find("parameters")) suite.sweep = read_sweep(*sweep, suite.slam);
+  if (const auto sweep = yaml.find("parameters")) {
+    suite.sweep = read_sweep(*sweep, suite.slam);
+    if (!any_system_varies(suite))
+      sweep->fail(
+          "no system of the suite uses what is varied: the plain one ignores what is of "
+          "labels, an outside one all settings of SLAM");
+  }
   SettingsReader protocol(yaml);
   protocol.section("protocol");
   fields(suite.protocol, protocol);

@@ -59,8 +59,8 @@ std::string stamp_fault(const Sequence& sequence, std::size_t i) {
 }
 
 std::optional<RgbdFrame> UsableFrames::frame(std::size_t i, RandomStream noise) {
-  if (!has_stamp_[i]) {
-    skip(stamp_fault(sequence_, i));
+  if (!has_stamp_[i]) {  // no sign that nothing can be read
+    skipped_.add(stamp_fault(sequence_, i));
     return std::nullopt;
   }
   try {

@@ -55,13 +55,16 @@ struct PlaceFacts {
   std::optional<PathFacts> second;
   std::vector<GradedCell> graded = {};  ///< empty: no graded queries
   bool cut = false;                     ///< the tours were cut after RunSpec::max_frames
+  /// What of its recordings could not be used, or was repaired, one line each, without the place
+  /// where they lie.
+  std::vector<std::string> notes = {};
   std::vector<InputDigest> inputs;
 };
 
 template <Either<PlaceFacts> P, class Visit>
 void fields(P& place, Visit& v) {
   auto& [scene, robot, scene_digest, path_digest, vocabulary_digest, vocabulary_words, mapping,
-         second, graded, cut, inputs] = place;
+         second, graded, cut, notes, inputs] = place;
   v("scene", scene);
   v("robot", robot);
   v("scene_digest", as_digest(scene_digest));
@@ -72,6 +75,7 @@ void fields(P& place, Visit& v) {
   v("query_tour", second);
   v("graded", graded);
   v("cut", cut);
+  v("notes", notes);
   v("inputs", inputs);
 }
 

@@ -56,6 +56,13 @@ std::string truth_text(const RunResult& run) {
   return text;
 }
 
+std::string notes_text(const RunResult& run) {
+  std::string text;
+  for (const std::string& note : run.place.notes)
+    text += fmt::format("  {}: {}\n", run.spec.environment.name, note);
+  return text;
+}
+
 /// Warns of a second recording that was answered often, by all systems together, and never
 /// correctly.
 std::string other_frame_text(const Runs& runs) {
@@ -84,7 +91,8 @@ std::string recordings_text(const Suite& suite, std::span<const RunResult> runs)
   for (const Environment& environment : suite.environments)
     if (const Runs of_it = first_runs(runs, environment);
         environment.is_recorded() && !of_it.empty())
-      text += skipped_text(of_it) + truth_text(*of_it.front()) + other_frame_text(of_it);
+      text += notes_text(*of_it.front()) + skipped_text(of_it) + truth_text(*of_it.front()) +
+              other_frame_text(of_it);
   return text;
 }
 

@@ -82,23 +82,40 @@ void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
   }
 }
 
-/// Which environment something is of, to find two that are one place.
-template <class Key>
+/// Finds environments that are one place under two names.
 class Places {
  public:
-  explicit Places(const Suite& suite) : suite_(suite) {}
-  /// @throws InputError if another environment has the same key
-  void add(const Key& key, const std::string& environment, const char* alike) {
-    const auto [known, is_new] = environment_of_.try_emplace(key, environment);
-    if (known->second != environment)
-      throw InputError(fmt::format(
-          "{}: environments '{}' and '{}' {}: statistics take environments for independent",
-          suite_.file.string(), known->second, environment, alike));
+  Places(const Suite& suite, const InputReader& inputs) : suite_(suite), inputs_(inputs) {}
+
+  /// @throws InputError if another environment reads the same, or shows the same images, or if the
+  /// environment is queried with the images that it maps.
+  void add(const Environment& e, const std::string& key) {
+    const auto [known, is_new] = environment_of_.try_emplace(key, e.name);
+    if (known->second != e.name)
+      refuse(known->second, e.name, "are equal in every byte that a run reads");
+    if (!e.is_recorded() || !recorded_.try_emplace(e.name, e).second) return;
+    if (e.queries && inputs_.share_images(e.sequence, *e.queries))
+      throw InputError(fmt::format("{}: '{}': its `queries` have the images of its `sequence`",
+                                   suite_.file.string(), e.name));
+    for (const auto& [name, other] : recorded_)
+      if (name != e.name && inputs_.share_images(e.sequence, other.sequence) &&
+          e.queries.has_value() == other.queries.has_value() &&
+          (!e.queries || inputs_.share_images(*e.queries, *other.queries)))
+        refuse(name, e.name, "have the same images");
   }
 
  private:
+  [[noreturn]] void refuse(const std::string& a, const std::string& b, const char* alike) const {
+    throw InputError(
+        fmt::format("{}: environments '{}' and '{}' {}: statistics take environments for "
+                    "independent",
+                    suite_.file.string(), a, b, alike));
+  }
+
   const Suite& suite_;
-  std::map<Key, std::string> environment_of_;
+  const InputReader& inputs_;
+  std::map<std::string, std::string> environment_of_;  // by a run's key
+  std::map<std::string, Environment> recorded_;        // by name
 };
 
 }  // namespace
@@ -116,18 +133,10 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
         say(warning);
     }
   std::vector<Job> jobs;
-  Places<std::string> by_key(suite);
-  Places<std::pair<std::uint64_t, std::uint64_t>> by_frames(suite);
+  Places places(suite, inputs);
   for (const RunSpec& spec : specs) {
     jobs.push_back({spec, run_key(spec, inputs.inputs_of(spec)), images_of(spec)});
-    const Environment& e = spec.environment;
-    by_key.add(jobs.back().key, e.name, "are equal in every byte that a run reads");
-    if (!e.is_recorded()) continue;
-    const auto frames = inputs.frames_of(e);
-    if (frames.first == frames.second)
-      throw InputError(fmt::format("{}: '{}': its `queries` have the frames of its `sequence`",
-                                   suite.file.string(), e.name));
-    by_frames.add(frames, e.name, "have the same frames");
+    places.add(spec.environment, jobs.back().key);
   }
   return jobs;
 }

@@ -233,7 +233,7 @@ class Pool {
   static std::string where(const Running& ended) {
     const SystemSpec& system = ended.what.job.spec.system;
     const std::string& status = ended.process->status();
-    std::string text = status.empty() ? "" : " after '" + status + "'";
+    std::string text = status.empty() ? "" : ", last seen at '" + status + "'";
     if (system.is_outside() && system.outside.mode == OutsideMode::kLibrary)
       text += fmt::format(", with outside library '{}' ({}) in its process", system.name,
                           system.outside.library);
@@ -247,9 +247,8 @@ class Pool {
       return fmt::format("ended by signal {} ({}){}{}", end.signal, strsignal(end.signal),
                          where(ended), last);
     if (end.good) return "ended without a result" + where(ended);
-    if (end.message.empty()) return fmt::format("returned {}", end.code);
-    return end.reported && end.code == kBadInputCode ? std::string(kBadInputMark) + end.message
-                                                     : end.message;
+    if (!end.reported) return fmt::format("exited with code {}{}{}", end.code, where(ended), last);
+    return end.code == kBadInputCode ? std::string(kBadInputMark) + end.message : end.message;
   }
 
   void note_end(const Job& job, bool good) {

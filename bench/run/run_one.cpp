@@ -61,18 +61,6 @@ class FramesOf : public Sequence {
   const Sequence& inner_;
 };
 
-/// A message about a recording without the place where that lies: a result must not depend on it,
-/// and the cache gives it to copies elsewhere.
-std::string without_place(std::string message, const std::string& recording) {
-  fs::path place = split_sequence(recording).second;
-  if (!place.has_filename()) place = place.parent_path();  // "room/"
-  if (place.empty()) return message;
-  for (const char* end : {"/", ": "})
-    if (const std::string mark = place.string() + end; message.starts_with(mark))
-      return message.substr(mark.size());
-  return message;
-}
-
 /// The frames as a run sees them: the CPU time spent on making them is counted, and tests may
 /// change them.
 class WatchedFrames : public FramesOf {
@@ -135,6 +123,7 @@ class QueryRound {
         world_(world),
         frames_(*sequence_of(world, set), recording_of(spec.environment, set), tamper,
                 run.frames_s),
+        has_stamp_(increasing_stamps(frames_)),
         run_(run),
         stream_(query_stream(spec, set)) {}
   QuerySet set() const { return set_; }
@@ -144,6 +133,10 @@ class QueryRound {
   void put(System& frozen, std::size_t first, std::size_t end,
            const std::vector<std::vector<QueryScore>*>& scores, WorkDone& work) const {
     for (const std::size_t index : asked_frames(set_, frames_, spec_.protocol)) {
+      if (!has_stamp_[index]) {
+        if (first == 0) run_.mapping.skipped.add(stamp_fault(frames_, index));
+        continue;
+      }
       const Trajectory* truth = run_.truth.empty() ? nullptr : frames_.truth();
       const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
       // If there is a truth, skip frames without one: no answer to them could be judged.
@@ -176,6 +169,7 @@ class QueryRound {
   QuerySet set_;
   const World& world_;
   WatchedFrames frames_;
+  std::vector<bool> has_stamp_;
   RunResult& run_;
   RandomStream stream_;
 };
@@ -235,13 +229,13 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStre
 
 }  // namespace
 
-std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
-                                    const fs::path& folder) {
+std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, const fs::path& folder,
+                                    std::function<void(std::string_view)> status) {
   if (spec.system.is_outside()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
     if (spec.system.outside.mode == OutsideMode::kLibrary)
       return make_library_system(spec.system.outside, world.mapping->camera(), spec.seed,
-                                 folder / "outside.log");
+                                 folder / "outside.log", std::move(status));
     return make_conversation_system(spec.system.outside, world.mapping->camera(), spec.seed,
                                     folder / "outside.log");
   }
@@ -277,8 +271,9 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
 
-  std::unique_ptr<System> inner =
-      tools.system ? tools.system(spec, world) : make_system(spec, world, tools.folder);
+  std::unique_ptr<System> inner = tools.system
+                                      ? tools.system(spec, world)
+                                      : make_system(spec, world, tools.folder, tools.status);
   if (inner == nullptr) {  // a program that only returns a trajectory: no queries
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
     run.estimate = run_recorded(spec, frames, mapping_stream(spec), tools.folder, tools.status,

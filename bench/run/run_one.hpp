@@ -22,9 +22,11 @@ struct RunTamper {
 /// The system of a run: our own SLAM with the run's settings, or an outside one in
 /// conversation or in a library; null for one that runs on a recorded folder instead.
 /// @param folder  for the log of an outside program
+/// @param status  receives what a library is being asked for
 /// @throws InputError if settings are out of range; OutsideError if the program does not start.
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
-                                    const std::filesystem::path& folder);
+                                    const std::filesystem::path& folder,
+                                    std::function<void(std::string_view)> status = {});
 
 /// The stream that mapping draws from (bench/protocol/mapping.hpp).
 RandomStream mapping_stream(const RunSpec& spec);

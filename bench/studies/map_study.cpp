@@ -48,10 +48,14 @@ MapStudy study_of(const VoxelMap& map, const ObstacleGridConfig& config, const S
   return study;
 }
 
-void write_map_files(const std::filesystem::path& folder, const VoxelMap& map,
-                     const MapStudy& study) {
+void write_octree(const std::filesystem::path& folder, const VoxelMap& map) {
   map.save_ot(folder / "map.ot");
   map.save_bt(folder / "map.bt");
+}
+
+void write_map_files(const std::filesystem::path& folder, const VoxelMap& map,
+                     const MapStudy& study) {
+  write_octree(folder, map);
   save_map_server(study.grid, folder / "grid");
   save_map_server(study.grid, folder / "grid_raw", GridMode::kRaw);
   save_cost_map(cost_map(study.grid), folder / "cost");

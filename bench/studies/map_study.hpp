@@ -40,6 +40,8 @@ inline constexpr std::array<const char*, 12> kMapFiles{"map.ot",
                                                        "grid_against_truth.png",
                                                        "score.json"};
 
+/// Writes the octree alone. @throws InputError naming the file.
+void write_octree(const std::filesystem::path& folder, const VoxelMap& map);
 /// Writes octree, grid (trinary and raw), costs and objects. @throws InputError naming the file.
 void write_map_files(const std::filesystem::path& folder, const VoxelMap& map,
                      const MapStudy& study);

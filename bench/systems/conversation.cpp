@@ -123,6 +123,8 @@ class Conversation {
   /// Sends a request about a frame and parses the fields that any such reply may contain.
   SystemReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
                          Json fields) {
+    if (std::error_code error; !fs::is_directory(scratch_.path, error))
+      fail("removed the folder of its images");
     const FrameFiles files = show(frame, scratch_.path);
     fields["stamp"] = format_stamp(frame.stamp_ns);
     fields["color"] = files.color.string();

@@ -3,16 +3,19 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cfenv>
+#include <clocale>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <iostream>
+#include <locale>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -50,14 +53,17 @@ class Log {
 };
 
 /// Scope of a call into the library. What the library prints goes to the log: our own output is
-/// read by the bench. Our floating-point mode is restored afterward: code built with -ffast-math
-/// changes it when loaded, and frames would come out with different bits.
+/// read by the bench. What belongs to the whole process is restored afterward: the floating-point
+/// mode (code built with -ffast-math changes it when loaded, and frames would come out with
+/// different bits), the locale, the working directory and the mask of new files' modes.
 class Visit {
  public:
   explicit Visit(const Log& log) {
     flush();
     folder_ = open(".", O_PATH | O_CLOEXEC);
     std::fegetenv(&floating_point_);
+    mode_mask_ = umask(0);
+    umask(mode_mask_);
     for (std::size_t k = 0; k < kOurs.size(); ++k) {
       ours_[k] = fcntl(kOurs[k], F_DUPFD_CLOEXEC, 0);
       dup2(log.descriptor(), kOurs[k]);
@@ -66,6 +72,10 @@ class Visit {
   ~Visit() {
     flush();
     std::fesetenv(&floating_point_);
+    umask(mode_mask_);
+    if (std::locale() != locale_) std::locale::global(locale_);
+    if (const char* now = std::setlocale(LC_ALL, nullptr); now == nullptr || now != c_locale_)
+      std::setlocale(LC_ALL, c_locale_.c_str());
     // Relative paths must lead where they led before.
     if (fchdir(folder_) != 0) std::abort();
     close(folder_);
@@ -85,6 +95,9 @@ class Visit {
   }
   std::array<int, kOurs.size()> ours_{};
   std::fenv_t floating_point_{};
+  mode_t mode_mask_ = 0;
+  const std::locale locale_;
+  const std::string c_locale_ = std::setlocale(LC_ALL, nullptr);
   int folder_ = -1;
 };
 
@@ -140,8 +153,8 @@ class Setup {
 class LibrarySystem : public OutsideSystem {
  public:
   LibrarySystem(const OutsideProgram& program, const Camera& camera, std::uint64_t seed,
-                const fs::path& log)
-      : program_(program), log_(log), setup_(program, camera, seed) {
+                const fs::path& log, std::function<void(std::string_view)> on_call)
+      : program_(program), log_(log), setup_(program, camera, seed), on_call_(std::move(on_call)) {
     const fs::path file = fs::absolute(program.folder / program.library);
     if (const char* reason = why_unreadable(file); reason != nullptr)
       fail(fmt::format("cannot be loaded: {}", reason));
@@ -267,6 +280,7 @@ class LibrarySystem : public OutsideSystem {
   void visit(std::string_view doing, const Function& function) const {
     doing_ = doing;
     setup_.clear_message();
+    if (on_call_) on_call_(fmt::format("{} (call {})", doing, ++calls_));
     std::string escaped;
     {
       const Visit here(log_);
@@ -298,6 +312,8 @@ class LibrarySystem : public OutsideSystem {
   const OutsideProgram program_;
   const Log log_;
   mutable Setup setup_;
+  const std::function<void(std::string_view)> on_call_;
+  mutable std::size_t calls_ = 0;
   mutable mh_system* system_ = nullptr;  ///< null after it failed or ended
   mutable std::string doing_ = "loading";
 };
@@ -305,9 +321,10 @@ class LibrarySystem : public OutsideSystem {
 }  // namespace
 
 std::unique_ptr<System> make_library_system(const OutsideProgram& program, const Camera& camera,
-                                            std::uint64_t seed, const fs::path& log) {
+                                            std::uint64_t seed, const fs::path& log,
+                                            std::function<void(std::string_view)> on_call) {
   validate(program);
-  return std::make_unique<LibrarySystem>(program, camera, seed, log);
+  return std::make_unique<LibrarySystem>(program, camera, seed, log, std::move(on_call));
 }
 
 }  // namespace mh

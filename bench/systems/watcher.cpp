@@ -259,7 +259,11 @@ void Watcher::end_all() {
   end(0);
   send(life_, "q", 1, MSG_NOSIGNAL);
   close(life_);
-  while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  // The command may have stopped the watcher, and may do so again until it is killed.
+  constexpr int kPatience = 10000;  // of 1 ms
+  for (int tries = 0; waitpid(process_, nullptr, tries < kPatience ? WNOHANG : 0) == 0; ++tries) {
+    kill(process_, tries + 1 < kPatience ? SIGCONT : SIGKILL);
+    poll(nullptr, 0, 1);
   }
   process_ = -1;
 }

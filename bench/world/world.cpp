@@ -58,6 +58,7 @@ PlaceFacts common_facts(const World& world) {
     f.vocabulary_words = world.vocabulary->size();
   }
   f.cut = world.cut;
+  f.notes = world.notes;
   f.inputs = world.inputs;
   return f;
 }
@@ -139,6 +140,8 @@ World open_recordings(const RunSpec& spec) {
     OpenedRecording opened = noted(world.inputs, name, split_sequence(sequence).second, [&] {
       return open_recorded(e, sequence, spec.labels == LabelMode::kRecorded);
     });
+    for (const std::string& note : opened.notes)
+      world.notes.push_back(without_place(note, sequence));
     const std::size_t all = opened.sequence->size();
     world.cut = world.cut || (spec.max_frames && *spec.max_frames < all);
     return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all));

@@ -48,8 +48,9 @@ struct World {
   std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
   std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
   std::shared_ptr<const Vocabulary> vocabulary;
-  bool cut = false;                 ///< the sequences were cut after RunSpec::max_frames
-  std::vector<InputDigest> inputs;  ///< what was read to build it, by name
+  bool cut = false;                     ///< the sequences were cut after RunSpec::max_frames
+  std::vector<std::string> notes = {};  ///< PlaceFacts::notes
+  std::vector<InputDigest> inputs;      ///< what was read to build it, by name
 };
 
 /// What the queries of a set are frames of; null if there are none.

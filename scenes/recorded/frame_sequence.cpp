@@ -104,6 +104,7 @@ OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
   for (const RecordedFrame& frame : listed.frames) {
     for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})
       if (!file->empty()) opened.files.push_back(*file);
+    opened.images.push_back(frame.color);
     opened.has_labels = opened.has_labels || !frame.classes.empty();
   }
   if (!config.classes.empty() && !opened.has_labels)

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <span>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -41,14 +42,16 @@ void note_content(const fs::path& file) {
   }
 }
 
-/// Digest of the contents that were read, whatever the files' names and order.
-std::uint64_t digest_of_contents(std::span<const FileObservation> observations) {
-  ReadRecord contents;
-  for (const FileObservation& o : observations)
-    if (o.kind == FileObservation::Kind::kRead)
-      contents.observations.push_back({o.kind, "", o.digest});
-  std::ranges::sort(contents.observations, {}, &FileObservation::digest);
-  return digest(contents);
+/// Digests of the contents of files that were read, sorted, each once.
+std::vector<std::uint64_t> digests_of(const std::vector<fs::path>& files, const ReadRecord& read) {
+  std::map<fs::path, std::uint64_t> digest_of;
+  for (const FileObservation& o : read.observations)
+    if (o.kind == FileObservation::Kind::kRead) digest_of[o.path] = o.digest;
+  std::set<std::uint64_t> digests;
+  for (const fs::path& file : files)
+    if (const auto found = digest_of.find(file); found != digest_of.end())
+      digests.insert(found->second);
+  return {digests.begin(), digests.end()};
 }
 
 }  // namespace
@@ -89,6 +92,16 @@ std::pair<std::string, fs::path> split_sequence(const std::string& source) {
 
 std::string join_sequence(const std::string& layout, const fs::path& path) {
   return layout.empty() ? path.string() : layout + ":" + path.string();
+}
+
+std::string without_place(const std::string& message, const std::string& source) {
+  fs::path place = split_sequence(source).second;
+  if (!place.has_filename()) place = place.parent_path();  // "room/"
+  if (place.empty()) return message;
+  for (const char* end : {"/", ": "})
+    if (const std::string mark = place.string() + end; message.starts_with(mark))
+      return message.substr(mark.size());
+  return message;
 }
 
 const SequenceReader& reader_of(const std::string& source) {
@@ -136,12 +149,9 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
   {
     const ReadScope scope(ReadScope::Outer::kIgnores);
     opened = open();
-    const std::size_t before_frames = scope.record().observations.size();
     std::ranges::for_each(opened.files, note_content);
     all = digest(scope.record());
-    const std::span read(scope.record().observations);
-    opened.frames_digest =
-        digest_of_contents(opened.files.empty() ? read : read.subspan(before_frames));
+    opened.image_digests = digests_of(opened.images, scope.record());
   }
   ReadScope::report(
       {FileObservation::Kind::kRead, path / fmt::format("{} recording", reader.name), all});

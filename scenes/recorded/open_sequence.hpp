@@ -37,9 +37,11 @@ struct OpenedRecording {
   bool has_labels = false;                   ///< it contains labels, whether used or not
   std::vector<std::filesystem::path> files;  ///< files that frames are read from on demand
   std::vector<std::string> notes;            ///< what could not be used, one line each
-  /// Digest of the contents of the files with its frames, whatever their names and order: copies of
-  /// one recording have the same. 0 unless a ReadScope was open.
-  std::uint64_t frames_digest = 0;
+  /// Files with the color images: one of each frame, or one of all.
+  std::vector<std::filesystem::path> images;
+  /// Digests of the contents of `images`, sorted, whatever their names: copies of a recording share
+  /// them. Empty unless a ReadScope was open.
+  std::vector<std::uint64_t> image_digests;
 };
 
 /// A recording layout. To add one, see docs/recordings.md.
@@ -69,6 +71,10 @@ std::string sequence_forms();
 std::pair<std::string, std::filesystem::path> split_sequence(const std::string& source);
 /// The inverse: joins a layout and a path to a name.
 std::string join_sequence(const std::string& layout, const std::filesystem::path& path);
+
+/// A message about a recording without the place where that lies: a result must not depend on it,
+/// and the cache gives it to copies elsewhere.
+std::string without_place(const std::string& message, const std::string& source);
 
 /// The layout of a recording: by its name, otherwise by the files at its path.
 /// @throws InputError if it is neither named nor recognized.

@@ -130,6 +130,7 @@ class ScannetSequence : public Sequence {
 
   bool has_labels() const { return labels_ != nullptr; }
   void leave_out_labels() { labels_.reset(); }
+  std::vector<fs::path> images() const { return recording_->images(); }
   std::vector<fs::path> files() const {
     std::vector<fs::path> files = recording_->files();
     if (labels_ == nullptr) return files;
@@ -239,6 +240,7 @@ OpenedRecording open_recorded(const fs::path& path, const RecordingConfig& confi
   OpenedRecording opened;
   auto sequence = std::make_unique<ScannetSequence>(path, config, opened.notes);
   opened.files = sequence->files();
+  opened.images = sequence->images();
   opened.has_labels = sequence->has_labels();
   if (!config.labels) sequence->leave_out_labels();
   opened.sequence = std::move(sequence);

@@ -49,6 +49,7 @@ class ExtractedFolder : public Recording {
     note_faulty_poses();
     note_lonely("color", color_, depth_);
     note_lonely("depth", depth_, color_);
+    note_poses_alone();
     if (missing_poses_ > 0)
       notes_.push_back(
           fmt::format("{}: {} of {} frames have no file in pose/: their pose is unknown",
@@ -69,6 +70,12 @@ class ExtractedFolder : public Recording {
     for (const std::uint32_t number : numbers_)
       files.insert(files.end(), {color_.file(number), depth_.file(number)});
     return files;
+  }
+
+  std::vector<fs::path> images() const override {
+    std::vector<fs::path> images;
+    for (const std::uint32_t number : numbers_) images.push_back(color_.file(number));
+    return images;
   }
 
   RecordedMoment frame(std::size_t index) const override {
@@ -135,6 +142,19 @@ class ExtractedFolder : public Recording {
                       "first is {})",
                       (folder_ / which).string(), std::ranges::count_if(numbers, lonely),
                       numbers.size(), &files == &color_ ? "depth" : "color", *first));
+  }
+
+  /// Poses without images are what a damaged download leaves.
+  void note_poses_alone() {
+    if (!is_folder(folder_ / "pose")) return;
+    const std::vector<std::uint32_t> poses = NumberedFiles(folder_ / "pose", {".txt"}).numbers();
+    const auto alone = [&](std::uint32_t number) {
+      return !color_.contains(number) && !depth_.contains(number);
+    };
+    if (const auto first = std::ranges::find_if(poses, alone); first != poses.end())
+      notes_.push_back(fmt::format("{}: {} of {} poses are of no image (the first is {})",
+                                   (folder_ / "pose").string(), std::ranges::count_if(poses, alone),
+                                   poses.size(), *first));
   }
 
   std::optional<SE3> read_pose(std::uint32_t number) {

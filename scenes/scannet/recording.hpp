@@ -59,6 +59,8 @@ class Recording {
   virtual RecordedMoment frame(std::size_t index) const = 0;
   /// The files that frame() reads; empty if everything is in the opened file.
   virtual std::vector<std::filesystem::path> files() const { return {}; }
+  /// The files with the color images: one of each frame, or the opened file.
+  virtual std::vector<std::filesystem::path> images() const = 0;
 
  protected:
   /// What `read` returns; nullopt, and counted, if it throws because it holds no pose.

@@ -102,6 +102,7 @@ class SensFile : public Recording {
 
   const RecordingInfo& info() const override { return info_; }
   std::size_t size() const override { return frames_.size(); }
+  std::vector<fs::path> images() const override { return {name_}; }
   Stamp stamp_ns(std::size_t index) const override { return frames_[index].stamp_ns; }
   std::uint32_t number(std::size_t index) const override {
     return static_cast<std::uint32_t>(index);

@@ -254,8 +254,8 @@ Stamp parse_stamp(const std::string& text) {
 }
 
 std::string format_stamp(Stamp stamp_ns) {
-  assert(stamp_ns >= 0);
-  return fmt::format("{}.{:09}", stamp_ns / 1'000'000'000, stamp_ns % 1'000'000'000);
+  return fmt::format("{}{}.{:09}", stamp_ns < 0 ? "-" : "", std::abs(stamp_ns / 1'000'000'000),
+                     std::abs(stamp_ns % 1'000'000'000));
 }
 
 Trajectory parse_valid_tum(const std::string& text, const std::string& name,

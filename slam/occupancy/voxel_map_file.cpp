@@ -15,6 +15,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <iostream>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -28,6 +29,19 @@
 
 namespace mh {
 namespace {
+
+/// While in scope, nothing is printed to std::cerr: OctoMap says " done." there, which a run's log
+/// would end with.
+class QuietErrors {
+ public:
+  QuietErrors() : printed_to_(std::cerr.rdbuf(nullptr)) {}
+  ~QuietErrors() { std::cerr.rdbuf(printed_to_); }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  std::streambuf* printed_to_;
+};
 
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie");
 
@@ -256,6 +270,7 @@ void VoxelMap::write_bt(std::ostream& out) const {
   octomap::OcTree tree(resolution_m());
   for (auto leaf = impl_->tree.begin_leafs(), end = impl_->tree.end_leafs(); leaf != end; ++leaf)
     tree.setNodeValue(leaf.getKey(), leaf->getLogOdds() >= 0 ? kMostLogOdds : kLeastLogOdds, true);
+  const QuietErrors quiet;
   tree.writeBinary(out);
 }
 
@@ -275,7 +290,10 @@ void VoxelMap::write_ot(std::ostream& out) const {
   }
   if (tree.size() > 0) tree.updateInnerOccupancy();
   tree.prune();
-  tree.write(out);
+  {
+    const QuietErrors quiet;
+    tree.write(out);
+  }
   const std::string counts = counts_of(impl_->tree, impl_->detected);
   std::string end(kCountsMagic);
   put(end, static_cast<std::uint64_t>(counts.size()));

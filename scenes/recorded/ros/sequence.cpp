@@ -308,6 +308,7 @@ OpenedRecording open_messages(OpenMessages open, HeldBytes content, const std::s
                             const MessagePlace& place) { topics.add(channel, message, place); });
   OpenedRecording opened;
   opened.notes = sequence->file->notes();
+  opened.images = {name};
   if (topics.unreadable > 0)
     opened.notes.push_back(fmt::format("{}: {} cannot be read, the first: {}", name,
                                        counted(topics.unreadable, "message"),

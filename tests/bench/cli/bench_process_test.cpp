@@ -524,10 +524,10 @@ TEST(BenchProcess, ACrashOfALibraryIsAFailureOfItsRunAlone) {
   EXPECT_EQ(run(bench(suite, "libraries")), 3);
   const std::string reported = errors();
   for (const char* line :
-       {"crash-exact-pepper-0: failed: ended by signal 6 (Aborted), with outside library 'crash' "
-        "(libtiny.so) in its process\n",
-        "exit-exact-pepper-0: failed: ended without a result, with outside library 'exit' "
-        "(libtiny.so) in its process\n",
+       {"crash-exact-pepper-0: failed: ended by signal 6 (Aborted), last seen at 'track (call 3)', "
+        "with outside library 'crash' (libtiny.so) in its process\n",
+        "exit-exact-pepper-0: failed: ended without a result, last seen at 'track (call 3)', with "
+        "outside library 'exit' (libtiny.so) in its process\n",
         "nan-boxes-pepper-0: failed: outside library 'nan' (libtiny.so) gave a pose of [nan, 0, 0, "
         "0, 0, 0, 1]: a number is not finite, in track\n"})
     EXPECT_NE(reported.find(line), std::string::npos) << line << reported;

@@ -885,6 +885,20 @@ TEST_F(CommandLine, PosesOfAMapMayHaveOtherStampsThanTheFrames) {
                  "has no frame at the time of a pose of ");
 }
 
+TEST_F(CommandLine, WithoutAFloorTheOctreeAloneIsWritten) {
+  const std::string tour = (folder_ / "tour").string(), out = (folder_ / "map").string();
+  // A robot in front of a wall.
+  ASSERT_EQ(
+      run("render generated:bathroom:0 --motion auto:0 --level ideal --frames 3 --out " + tour), 0)
+      << err_;
+  ASSERT_EQ(run("map build tum:" + tour + " --poses " + tour + "/groundtruth.txt --out " + out), 0)
+      << err_;
+  EXPECT_NE(err_.find("no floor was found under the camera's path"), std::string::npos) << err_;
+  EXPECT_TRUE(fs::exists(out + "/map.ot"));
+  EXPECT_FALSE(fs::exists(out + "/grid.pgm"));
+  EXPECT_EQ(out_.find("grid"), std::string::npos) << out_;
+}
+
 TEST_F(CommandLine, AMapOfARaisedFloorHasItsGridAboveThatFloor) {
   const std::string room = (folder_ / "room.ply").string(), out = (folder_ / "map").string();
   ASSERT_EQ(run("scene convert generated:bathroom:0 --out " + room), 0) << err_;

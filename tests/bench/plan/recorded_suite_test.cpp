@@ -134,6 +134,8 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
             "no environment is one");
   expect_in(error("- {category: desk, sequence: 'tum:nowhere'}"), "is not there");
   expect_in(error("- {category: desk, sequence: scans}"), "name its layout: " + sequence_forms());
+  expect_in(error("- {category: desk, name: \"a\\nplain 99\", sequence: 'tum:desk'}"),
+            "cannot name a folder");
   expect_in(error("- {category: desk, sequence: 'tum:'}"),
             "suite.yaml:2: environments[0].sequence");
   expect_in(error("- {category: desk, sequence: 'tum:words'}"), "is not a folder");
@@ -217,6 +219,11 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   ASSERT_EQ(again.environments.size(), 2U);
   EXPECT_EQ(again.environments[1].sequence, suite.environments[1].sequence);
   EXPECT_EQ(again.environments[1].category, "bedroom");
+
+  fs::create_directories(folder_ / "scans");
+  fs::create_directory_symlink(folder_ / "nowhere", folder_ / "scans/scene0001_00");
+  expect_in(error(entry, "[recorded]", "", set), "scene0001_00' is a link to nothing");
+  fs::remove_all(folder_ / "scans");
 
   expect_in(error(entry), "'${scans}' is not set: --set scans=VALUE does");
   expect_in(error(kDesk, "[recorded]", "", set), "--set scans: nothing in it is called ${scans}");

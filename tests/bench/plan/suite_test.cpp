@@ -308,6 +308,26 @@ TEST_F(SuiteFile, EnvironmentsAreListedCountedOrFoundInFiles) {
   EXPECT_EQ(expand(suite)[3].name, "hall-1-plain-pepper-0");
 }
 
+TEST_F(SuiteFile, ASweepThatNoSystemFeelsIsRefused) {
+  const auto load = [&](const std::string& systems, const std::string& parameters) {
+    std::ofstream(folder_ / "suite.yaml")
+        << "environments:\n- {category: house, scene: house.yaml, robot: robot.yaml}\n"
+           "vocabulary: words\nlevels: [pepper.yaml]\nlabels: [exact]\nsystems: "
+        << systems << "\nparameters: {map: fixed, " << parameters << "}\n";
+    return load_suite(folder_ / "suite.yaml");
+  };
+  try {
+    load("[plain]", "semantics.gamma: [0.5, 1]");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no system of the suite uses what is varied"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_NO_THROW(load("[plain]", "semantics.alpha: [0.5, 0.8]"));
+  EXPECT_NO_THROW(load("[plain, semantic]", "semantics.gamma: [0.5, 1]"));
+}
+
 TEST_F(SuiteFile, SceneMayBeAScannetFolderWithAFrame) {
   fs::create_directories(folder_ / "scans/s");
   std::ofstream(folder_ / "scans/s/s_vh_clean_2.ply") << "ply";
@@ -461,12 +481,12 @@ TEST_F(SuiteFile, NamesAnOutsideProgram) {
       << "environments:\n- {category: house, scene: house.yaml, mapping_tour: tour.yaml}\n"
          "robot: robot.yaml\nvocabulary: words\nlevels: [pepper.yaml]\nlabels: [exact]\n"
          "systems: [plain, {name: vo, command: 'run {dataset} {trajectory}', protocol: "
-         "trajectory}]\n"
+         "trajectory}, semantic]\n"
          "parameters: {map: rebuilt, semantics.xi: [1, 2]}\n";
   const Suite suite = load_suite(folder_ / "suite.yaml");
   EXPECT_EQ(suite.systems[1].outside.mode, OutsideMode::kTrajectory);
   const std::vector<RunSpec> runs = expand(suite);
-  ASSERT_EQ(runs.size(), 2u) << "neither looks at xi";
+  ASSERT_EQ(runs.size(), 4u) << "the semantic system alone looks at xi";
   EXPECT_EQ(runs[1].name, "vo-exact-pepper-0");
 }
 

@@ -270,6 +270,53 @@ TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
   EXPECT_NE(table.find("differ in RANSAC's draws alone"), std::string::npos);
 }
 
+TEST_F(Recorded, AFrameShownTwiceIsNotAskedAboutAsIfItWereNew) {
+  record(room(), "tum", 0, 60);
+  std::istringstream lines(read_file(room() / "rgb.txt"));
+  std::string doubled;
+  int frame = 0;
+  for (std::string line; std::getline(lines, line);) {
+    doubled += line + "\n";
+    if (line[0] != '#' && ++frame == 29) doubled += line + "\n";  // index 28 becomes 29, too
+  }
+  write(room() / "rgb.txt", doubled);
+  const RunResult result = run();
+  EXPECT_EQ(result.mapping.skipped.count, 1U);
+  ASSERT_EQ(result.points.front().held_out.size(), 1U);  // of 29 and 59
+  EXPECT_EQ(result.points.front().held_out[0].answer.index, 59U);
+}
+
+TEST_F(Recorded, AClockThatIsWrongAtFirstCostsOnlyThoseFrames) {
+  record(room(), "tum", 0, 60);
+  fs::remove(room() / "label.txt");
+  for (const char* list : {"rgb.txt", "depth.txt"}) {
+    std::istringstream lines(read_file(room() / list));
+    std::string late;
+    int frame = 0;
+    for (std::string line; std::getline(lines, line);)
+      late += (line[0] != '#' && frame++ < 12 ? "9" : "") + line + "\n";
+    write(room() / list, late);
+  }
+  spec_.labels = LabelMode::kNone;
+  const RunResult result = run();
+  EXPECT_EQ(result.mapping.skipped.count, 12U);
+  EXPECT_EQ(result.trajectory.tracked, 46U);  // of 48, 2 are held out
+}
+
+TEST_F(Recorded, WhatARecordingLacksIsPartOfItsResults) {
+  record(room(), "scannet-frames", 0, 60);
+  for (int i = 50; i < 60; ++i) {
+    fs::remove(room() / "color" / fmt::format("{}.jpg", i));
+    fs::remove(room() / "depth" / fmt::format("{}.png", i));
+  }
+  spec_.environment.sequence = "scannet:" + room().string();
+  const RunResult result = run();
+  const std::string note = "pose: 10 of 60 poses are of no image (the first is 50)";
+  EXPECT_TRUE(std::ranges::find(result.place.notes, note) != result.place.notes.end());
+  const std::string table = results_table(suite(), std::span(&result, 1));
+  EXPECT_NE(table.find("  room: " + note + "\n"), std::string::npos) << table;
+}
+
 // Only a system that sees labels loses the frame. Queries are paired by their frame, not by their
 // place in the list.
 TEST_F(Recorded, AFrameWithADamagedLabelImageIsSkippedForTheSystemsThatSeeIt) {
@@ -389,7 +436,7 @@ TEST_F(Recorded, WhatCannotBeRunIsToldBeforeAnythingIsWritten) {
   Camera other = BoxRoom::camera();
   other.fx_px += 1;
   TumWriter writer(folder_ / "other", other);
-  for (int i = 0; i < 3; ++i) writer.add(static_cast<std::size_t>(i), exact_frame(i));
+  for (int i = 0; i < 3; ++i) writer.add(static_cast<std::size_t>(i), exact_frame(20 + i));
   writer.finish();
   suite.environments[0].queries = "tum:" + (folder_ / "other").string();
   expect_told("was taken with another camera than");
@@ -569,7 +616,7 @@ TEST_F(Recorded, ACopyUnderAnotherNameIsRefused) {
     plan();
     ADD_FAILURE() << "one recording would count twice";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("'room' and 'copy' have the same frames"),
+    EXPECT_NE(std::string(error.what()).find("'room' and 'copy' have the same images"),
               std::string::npos)
         << error.what();
   }
@@ -577,8 +624,11 @@ TEST_F(Recorded, ACopyUnderAnotherNameIsRefused) {
   Suite own = suite();
   own.environments[0].queries = two.environments[1].sequence;
   EXPECT_THROW(plan_runs(own, reader, [](std::string_view) {}), InputError);
+  fs::remove(folder_ / "copy" / "label.txt");  // which a run need not see
+  reader = InputReader();
+  EXPECT_THROW(plan_runs(own, reader, [](std::string_view) {}), InputError);
   fs::remove_all(folder_ / "copy");
-  record(folder_ / "copy", "tum", 1, 3);
+  record(folder_ / "copy", "tum", 2, 4);
   reader = InputReader();
   EXPECT_EQ(plan().size(), 2U);
 }

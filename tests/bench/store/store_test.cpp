@@ -376,7 +376,7 @@ TEST_F(StoreFile, AnExitCodeWithoutAnErrorOfOursIsAFailureOfTheRunAlone) {
     options.work_folder = folder_;
     options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
     run_pending(store, {{some_run("a").spec, "k"}}, options);
-    EXPECT_EQ(store.error("k"), fmt::format("returned {}", code));
+    EXPECT_EQ(store.error("k"), fmt::format("exited with code {}", code));
   }
 }
 
@@ -395,9 +395,10 @@ TEST_F(StoreFile, ACrashSaysWhereAndNamesTheLibraryThatRanThere) {
   spec.system.outside.mode = OutsideMode::kLibrary;
   spec.system.outside.library = "libmine.so";
   run_pending(store, {{spec, "k"}}, options);
-  EXPECT_EQ(store.error("k"),
-            "ended by signal 11 (Segmentation fault) after 'frame 7 of 9', with outside library "
-            "'mine' (libmine.so) in its process");
+  EXPECT_EQ(
+      store.error("k"),
+      "ended by signal 11 (Segmentation fault), last seen at 'frame 7 of 9', with outside library "
+      "'mine' (libmine.so) in its process");
 }
 
 TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
@@ -452,7 +453,7 @@ TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   EXPECT_EQ(seen, (std::vector<Counts>{
                       {0, 0, 0.0}, {1, 0, 0.25}, {1, 1, 0.5}, {2, 1, 0.75}, {2, 2, 1.0}}));
   EXPECT_FALSE(to_go) << "nothing is left to be waited for";
-  EXPECT_EQ(store.error("badly"), "returned 1");
+  EXPECT_EQ(store.error("badly"), "exited with code 1");
 }
 
 // Six runs of three environments, planned trial by trial: those that see the same images follow one

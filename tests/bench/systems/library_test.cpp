@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Systems in shared libraries: a small one in C99 that does as its settings file says.
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <clocale>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -218,11 +220,15 @@ TEST_F(LibrarySystems, PrintToTheLogAndNotToTheBench) {
   EXPECT_EQ(read_file(folder_ / "log"), "0.5\n~nonsense\ngoodbye\n");
 }
 
-TEST_F(LibrarySystems, LeaveTheWorkingFolderAsItWas) {
+TEST_F(LibrarySystems, LeaveTheProcessAsItWas) {
   const auto before = std::filesystem::current_path();
+  const std::string locale = std::setlocale(LC_ALL, nullptr);
+  const mode_t mask = umask(022);
   const auto system = tiny("wander");
   system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
   EXPECT_EQ(std::filesystem::current_path(), before);
+  EXPECT_EQ(std::setlocale(LC_ALL, nullptr), locale);
+  EXPECT_EQ(umask(mask), 022U);
 }
 
 TEST_F(LibrarySystems, LeaveTheFloatingPointModeAsItWas) {

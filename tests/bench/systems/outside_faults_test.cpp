@@ -428,6 +428,8 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"stage":"lunch"})"), "unknown stage");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,1],"stage":"no_candidate"})"),
                "gave a pose and the stage \"no_candidate\"");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"stage":"verified"})"),
+               "gave the stage \"verified\" without a pose");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"pose":[0,0,0,0,0,0,1]})"), "the key 'pose' twice");
   EXPECT_HOLDS(replies(R"({"id":2,"error":"no memory"})"), "reported an error: \"no memory\"");
 }

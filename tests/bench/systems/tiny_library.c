@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A system in C99 that stands still: the least that a library must do. Its settings file holds the
  * words of what it is to do wrong; a word that is not known does nothing. */
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <modelhouse/system.h>
@@ -43,7 +45,11 @@ static int track(void* self, const mh_frame* frame, mh_reply* reply) {
   tiny* t = self;
   if (told(t, "crash")) abort();
   if (told(t, "exit")) exit(0);
-  if (told(t, "wander") && chdir("/") != 0) return 1;
+  if (told(t, "wander")) {
+    if (chdir("/") != 0) return 1;
+    umask(0777);
+    setlocale(LC_ALL, "C.UTF-8");
+  }
   if (told(t, "print")) puts("0.5\n~nonsense");
   if (told(t, "error")) {
     snprintf(t->message, MH_MESSAGE_SIZE, "no memory\nleft");
@@ -90,7 +96,9 @@ static int begin_query(void* self) {
 static int relocalize(void* self, const mh_frame* frame, mh_reply* reply) {
   tiny* t = self;
   (void)frame;
-  reply->stage = told(t, "stage") ? MH_STAGE_PNP : MH_STAGE_VERIFIED;
+  reply->stage = told(t, "stage")  ? MH_STAGE_PNP
+                 : told(t, "lost") ? MH_STAGE_NO_CANDIDATE
+                                   : MH_STAGE_VERIFIED;
   reply->keyframes = 1;
   reply->final = told(t, "candidates") ? 2 : 1;
   reply->inliers = t->queries;
