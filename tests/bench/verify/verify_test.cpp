@@ -288,7 +288,7 @@ TEST(Verify, ARunThatFailedIsNoVerification) {
     verify(suite, {}, {});
     FAIL();
   } catch (const MachineError& error) {
-    EXPECT_STREQ(error.what(), "plain-ideal-0: returned 1");
+    EXPECT_STREQ(error.what(), "plain-ideal-0: exited with code 1");
   }
 }
 
