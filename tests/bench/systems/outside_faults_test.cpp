@@ -285,6 +285,28 @@ TEST_F(OutsideFaults, AProgramThatKillsItsWatcherFails) {
                "was lost: the process that watched it was killed");
 }
 
+TEST_F(OutsideFaults, AProgramThatStopsItsWatcherIsEndedInTime) {
+  const auto start = std::chrono::steady_clock::now();
+  OutsideProgram stopping = says("kill -STOP $PPID; sleep 60");
+  stopping.reply_limit_s = 0.3;
+  EXPECT_HOLDS(track_error(stopping), "did not reply to track (request 2) within 0.3 s");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+// The next image cannot be written there, which is no full disk.
+TEST_F(OutsideFaults, AProgramThatRemovesTheFolderOfItsImagesFails) {
+  const OutsideProgram p =
+      says(R"sh(rm -rf "$(dirname "$(echo "$line" | sed 's/.*"color":"//; s/".*//')")"; )sh"
+           R"(echo '{"id":2,"pose":null}'; sleep 60)");
+  const auto system = make_conversation_system(p, camera_, 0, folder_ / "log");
+  EXPECT_HOLDS(error_of(p,
+                        [&] {
+                          for (std::uint64_t i = 0; i < 2; ++i)
+                            system->track(fake_frame(i, RandomStream(i)), RandomStream(i));
+                        }),
+               "removed the folder of its images");
+}
+
 TEST_F(OutsideFaults, WhatIsSaidIsBounded) {
   const auto start = std::chrono::steady_clock::now();
   // 3 GB, were it let.
