@@ -138,6 +138,17 @@ class StoreFile : public testing::Test {
     return export_json(store) + export_csv(store) + export_latex(store) +
            results_json(planned, results.runs, results.failed, results.missing).dump();
   }
+  /// A pool whose runs are this shell script.
+  PoolOptions pool_of(const std::string& script) const {
+    const fs::path program = folder_ / "program";
+    std::ofstream(program) << "#!/bin/sh\n" << script;
+    fs::permissions(program, fs::perms::owner_all);
+    PoolOptions options;
+    options.executable = program;
+    options.work_folder = folder_;
+    options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+    return options;
+  }
   std::map<std::string, std::string> files() const {
     std::map<std::string, std::string> found;
     for (const auto& entry : fs::directory_iterator(folder_))
@@ -349,15 +360,9 @@ TEST_F(StoreFile, ARunComesBackAsItWas) {
 }
 
 TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
-  const fs::path program = folder_ / "program";
-  std::ofstream(program) << "#!/bin/sh\necho 'modelhouse: error: x: the disk is full' >&2\nexit "
-                         << kDiskFullCode << "\n";
-  fs::permissions(program, fs::perms::owner_all);
   Store store(folder_ / "r.sqlite");
-  PoolOptions options;
-  options.executable = program;
-  options.work_folder = folder_;
-  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  const PoolOptions options = pool_of(
+      fmt::format("echo 'modelhouse: error: x: the disk is full' >&2\nexit {}\n", kDiskFullCode));
   EXPECT_THROW(run_pending(store, {{some_run("a").spec, "k"}}, options), DiskFullError);
   EXPECT_EQ(store.status("k"), std::nullopt);
   EXPECT_TRUE(store.claim("k")) << "its claim was kept";
@@ -367,28 +372,17 @@ TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
 // too.
 TEST_F(StoreFile, AnExitCodeWithoutAnErrorOfOursIsAFailureOfTheRunAlone) {
   for (const int code : {kBadInputCode, kDiskFullCode, kInputChangedCode}) {
-    const fs::path program = folder_ / "program";
-    std::ofstream(program) << "#!/bin/sh\nexit " << code << "\n";
-    fs::permissions(program, fs::perms::owner_all);
     Store store(folder_ / fmt::format("{}.sqlite", code));
-    PoolOptions options;
-    options.executable = program;
-    options.work_folder = folder_;
-    options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+    const PoolOptions options = pool_of(fmt::format("exit {}\n", code));
     run_pending(store, {{some_run("a").spec, "k"}}, options);
     EXPECT_EQ(store.error("k"), fmt::format("exited with code {}", code));
   }
 }
 
 TEST_F(StoreFile, ACrashSaysWhereAndNamesTheLibraryThatRanThere) {
-  const fs::path program = folder_ / "program";
-  std::ofstream(program) << "#!/bin/sh\necho '" << kStatusMark << "frame 7 of 9'\nkill -SEGV $$\n";
-  fs::permissions(program, fs::perms::owner_all);
   Store store(folder_ / "r.sqlite");
-  PoolOptions options;
-  options.executable = program;
-  options.work_folder = folder_;
-  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  const PoolOptions options =
+      pool_of(fmt::format("echo '{}frame 7 of 9'\nkill -SEGV $$\n", kStatusMark));
   RunSpec spec = some_run("a").spec;
   spec.system.kind = SystemKind::kOutside;
   spec.system.name = "mine";
@@ -402,16 +396,11 @@ TEST_F(StoreFile, ACrashSaysWhereAndNamesTheLibraryThatRanThere) {
 }
 
 TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
-  const fs::path program = folder_ / "program";
-  std::ofstream(program) << "#!/bin/sh\necho 0.5; echo baking the light of a room; echo 0.75\n"
-                            "echo 'modelhouse: error: x.ply: no floor' >&2\nexit 2\n";
-  fs::permissions(program, fs::perms::owner_all);
   Store store(folder_ / "r.sqlite");
   std::vector<std::string> said;
-  PoolOptions options;
-  options.executable = program;
-  options.work_folder = folder_;
-  options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+  PoolOptions options = pool_of(
+      "echo 0.5; echo baking the light of a room; echo 0.75\n"
+      "echo 'modelhouse: error: x.ply: no floor' >&2\nexit 2\n");
   options.say = [&](std::string_view line) { said.emplace_back(line); };
   run_pending(store, {{some_run("a").spec, "k"}}, options);
   EXPECT_EQ(store.error("k"), std::string(kBadInputMark) + "x.ply: no floor");
