@@ -53,8 +53,8 @@ fs::path read_source(const YamlReader& node, const SuitePaths& paths, int index,
 
 /// Reads a scene: a source, or the folder of a ScanNet scene.
 fs::path read_scene(const YamlReader& node, const SuitePaths& paths, int index) {
-  fs::path folder = (paths.folder / with_index(node.as_string(), index)).lexically_normal();
-  if (!folder.has_filename()) folder = folder.parent_path();  // "scene0000_00/"
+  const fs::path folder = without_trailing_slash(
+      (paths.folder / with_index(node.as_string(), index)).lexically_normal());
   return is_scannet_scene(folder) ? folder : read_source(node, paths, index, Shipped::kScene);
 }
 

@@ -30,9 +30,7 @@ void add_once(std::vector<T>& list, T value, const YamlReader& node) {
 
 /// @throws InputError at this place unless the name is valid as a folder name.
 inline void check_folder_name(const YamlReader& node, const std::string& name) {
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; };
-  if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' ||
-      std::ranges::any_of(name, is_control))
+  if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' || !is_legible(name))
     node.fail(fmt::format("'{}' cannot name a folder", legible(name)));
 }
 

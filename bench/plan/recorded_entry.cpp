@@ -142,8 +142,7 @@ std::string counted_types(const std::map<std::string, std::size_t>& types) {
 }  // namespace
 
 std::string place_of(const std::string& sequence, const SuitePaths& paths) {
-  fs::path path = split_sequence(sequence).second;
-  if (!path.has_filename()) path = path.parent_path();  // "room/"
+  const fs::path path = without_trailing_slash(split_sequence(sequence).second);
   std::error_code error;
   return (paths.must_exist ? fs::weakly_canonical(path, error) : path).string();
 }

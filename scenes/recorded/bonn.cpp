@@ -55,8 +55,7 @@ SE3 markers_from_camera() {
 
 bool is_bonn(const fs::path& folder) {
   std::error_code error;
-  fs::path place = fs::absolute(folder, error).lexically_normal();
-  if (!place.has_filename()) place = place.parent_path();  // "rgbd_bonn_balloon/"
+  const fs::path place = without_trailing_slash(fs::absolute(folder, error).lexically_normal());
   return place.filename().string().starts_with("rgbd_bonn_") && is_file(folder / "rgb.txt") &&
          is_file(folder / "depth.txt") && !is_file(folder / "camera.yaml") &&
          !is_file(folder / "camera_info.yaml");

@@ -95,8 +95,7 @@ std::string join_sequence(const std::string& layout, const fs::path& path) {
 }
 
 std::string without_place(const std::string& message, const std::string& source) {
-  fs::path place = split_sequence(source).second;
-  if (!place.has_filename()) place = place.parent_path();  // "room/"
+  const fs::path place = without_trailing_slash(split_sequence(source).second);
   if (place.empty()) return message;
   for (const char* end : {"/", ": "})
     if (const std::string mark = place.string() + end; message.starts_with(mark))

@@ -249,8 +249,7 @@ OpenedRecording open_recorded(const fs::path& path, const RecordingConfig& confi
 
 std::string scene_type(const fs::path& path) {
   std::error_code error;
-  fs::path place = fs::absolute(path, error).lexically_normal();
-  if (!place.has_filename()) place = place.parent_path();  // "scene0000_00/"
+  const fs::path place = without_trailing_slash(fs::absolute(path, error).lexically_normal());
   const fs::path info = is_folder(place) ? place / (place.filename().string() + ".txt")
                                          : fs::path(place).replace_extension(".txt");
   if (!is_file(info)) return "";

@@ -47,9 +47,7 @@ class ExtractedFolder : public Recording {
     for (const std::uint32_t number : numbers_)
       poses_.push_back(pose_or_none([&] { return read_pose(number); }));
     note_faulty_poses();
-    note_lonely("color", color_, depth_);
-    note_lonely("depth", depth_, color_);
-    note_poses_alone();
+    note_files_alone();
     if (missing_poses_ > 0)
       notes_.push_back(
           fmt::format("{}: {} of {} frames have no file in pose/: their pose is unknown",
@@ -132,29 +130,32 @@ class ExtractedFolder : public Recording {
                    static_cast<int>(size.height), intrinsics.string());
   }
 
-  void note_lonely(const char* which, const NumberedFiles& files, const NumberedFiles& others) {
-    const std::vector<std::uint32_t> numbers = files.numbers();
-    const auto lonely = [&](std::uint32_t number) { return !others.contains(number); };
-    const auto first = std::ranges::find_if(numbers, lonely);
+  /// @param what  is true of these files: "images have no partner in depth/"
+  template <class Predicate>
+  void note_alone(const char* which, const std::vector<std::uint32_t>& numbers,
+                  const Predicate& is_alone, const char* what) {
+    const auto first = std::ranges::find_if(numbers, is_alone);
     if (first != numbers.end())
-      notes_.push_back(
-          fmt::format("{}: {} of {} images have no partner in {}/ and are left out (the "
-                      "first is {})",
-                      (folder_ / which).string(), std::ranges::count_if(numbers, lonely),
-                      numbers.size(), &files == &color_ ? "depth" : "color", *first));
+      notes_.push_back(fmt::format("{}: {} of {} {} (the first is {})", (folder_ / which).string(),
+                                   std::ranges::count_if(numbers, is_alone), numbers.size(), what,
+                                   *first));
   }
 
-  /// Poses without images are what a damaged download leaves.
-  void note_poses_alone() {
+  /// Files without their counterparts are what a damaged download leaves.
+  void note_files_alone() {
+    const auto without = [](const NumberedFiles& others) {
+      return [&](std::uint32_t number) { return !others.contains(number); };
+    };
+    note_alone("color", color_.numbers(), without(depth_),
+               "images have no partner in depth/ and are left out");
+    note_alone("depth", depth_.numbers(), without(color_),
+               "images have no partner in color/ and are left out");
     if (!is_folder(folder_ / "pose")) return;
-    const std::vector<std::uint32_t> poses = NumberedFiles(folder_ / "pose", {".txt"}).numbers();
-    const auto alone = [&](std::uint32_t number) {
+    const auto without_image = [&](std::uint32_t number) {
       return !color_.contains(number) && !depth_.contains(number);
     };
-    if (const auto first = std::ranges::find_if(poses, alone); first != poses.end())
-      notes_.push_back(fmt::format("{}: {} of {} poses are of no image (the first is {})",
-                                   (folder_ / "pose").string(), std::ranges::count_if(poses, alone),
-                                   poses.size(), *first));
+    note_alone("pose", NumberedFiles(folder_ / "pose", {".txt"}).numbers(), without_image,
+               "poses are of no image");
   }
 
   std::optional<SE3> read_pose(std::uint32_t number) {

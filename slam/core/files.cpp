@@ -168,6 +168,10 @@ bool is_there(const fs::path& path) {
   return look_at(path) != FileObservation::Kind::kAbsent;
 }
 
+fs::path without_trailing_slash(fs::path path) {
+  return path.has_filename() ? std::move(path) : path.parent_path();
+}
+
 std::vector<std::string> list_folder(const fs::path& folder, const std::string& pattern) {
   std::vector<std::string> names;
   std::error_code error;

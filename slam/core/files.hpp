@@ -33,6 +33,9 @@ bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 bool is_there(const std::filesystem::path& path);
 
+/// "room/" as "room", so that it has a last component.
+std::filesystem::path without_trailing_slash(std::filesystem::path path);
+
 /// Returns the names in a folder that match a pattern (* ? [...], as in a shell), sorted; empty if
 /// the folder does not exist.
 std::vector<std::string> list_folder(const std::filesystem::path& folder,

@@ -412,15 +412,10 @@ TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
 // well to its end and one that does not. Each is counted once, and the share is that of the
 // settled.
 TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
-  const fs::path program = folder_ / "program";
-  std::ofstream(program) << "#!/bin/sh\n[ \"$1\" = well ]\n";
-  fs::permissions(program, fs::perms::owner_all);
   Store store(folder_ / "r.sqlite");
   store.put("done", some_run("a"), {});
   store.put_failure("failed", some_run("b").spec, "x", {});
-  PoolOptions options;
-  options.executable = program;
-  options.work_folder = folder_;
+  PoolOptions options = pool_of("[ \"$1\" = well ]\n");
   options.arguments = [&](const Job& job, const fs::path&) {
     if (job.key == "well") store.put(job.key, some_run("c"), {});
     return std::vector<std::string>{job.key};
@@ -469,20 +464,16 @@ TEST_F(StoreFile, RunsThatSeeTheSameImagesFollowOneAnother) {
 }
 
 TEST_F(StoreFile, TwoAtATimeAreAtImagesOfTheirOwnAsLongAsThereAreTwo) {
-  const fs::path program = folder_ / "program";
-  std::ofstream(program) << "#!/bin/sh\nwhile [ ! -e \"$1\" ]; do sleep 0.02; done\nexit 1\n";
-  fs::permissions(program, fs::perms::owner_all);
   Store store(folder_ / "r.sqlite");
   std::vector<std::string> started;
-  PoolOptions options;
+  PoolOptions options = pool_of("while [ ! -e \"$1\" ]; do sleep 0.02; done\nexit 1\n");
   options.jobs = 2;
-  options.executable = program;
-  options.work_folder = folder_;
   options.arguments = [&](const Job& job, const fs::path&) {
     started.push_back(job.key);
     const fs::path gate = folder_ / "gate";
     if (job.key == "b2") std::ofstream(gate) << "open";
-    return std::vector<std::string>{job.key == "a1" ? gate : program};  // waits for that file
+    return std::vector<std::string>{job.key == "a1" ? gate
+                                                    : options.executable};  // waits for that file
   };
   std::vector<Job> jobs;
   for (const char* key : {"a1", "a2", "b1", "b2"})
