@@ -37,7 +37,8 @@ auto noted(std::vector<InputDigest>& inputs, std::string name, const std::filesy
 /// outside systems only.
 std::vector<InputDigest> inputs_of_program(const RunSpec& spec);
 
-/// Reads the inputs of runs, each source once, before the runs: what build_world() will note.
+/// Reads the inputs of runs before they start, each source once. The digests are those that
+/// build_world() will note.
 class InputReader {
  public:
   /// @param say  receives which scene is being read

@@ -7,8 +7,8 @@
 
 namespace mh {
 
-/// How an entry of a suite's `environments` names them, and which it creates: {i} from first to
-/// end - 1; if several, `name` contains {i}.
+/// The names of the environments that one entry of a suite's `environments` creates: one for each i
+/// from first to end - 1. If there are several, `name` contains {i}.
 struct EntryNames {
   std::string category, name;
   int first = 0, end = 1;

@@ -19,8 +19,9 @@ struct RunTamper {
   std::function<void(std::size_t call, SystemReport&)> report;  ///< of track calls
 };
 
-/// The system of a run: our own SLAM with the run's settings, or an outside one in
-/// conversation or in a library; null for one that runs on a recorded folder instead.
+/// The system of a run: our own SLAM with the run's settings, or an outside one, either a program
+/// that exchanges messages with us or a shared library. Null for an outside program that processes
+/// a folder of recorded frames instead.
 /// @param folder  for the log of an outside program
 /// @param status  receives what a library is being asked for
 /// @throws InputError if settings are out of range; OutsideError if the program does not start.
@@ -34,8 +35,8 @@ RandomStream mapping_stream(const RunSpec& spec);
 /// The stream that the queries of a set draw from (bench/protocol/query.hpp).
 RandomStream query_stream(const RunSpec& spec, QuerySet set);
 
-/// What a run receives in addition to its spec and world; only `tamper` and `occupancy` can change
-/// a result.
+/// What a run receives in addition to its spec and world; only `system`, `tamper` and
+/// `occupancy` can change a result.
 struct RunTools {
   std::filesystem::path folder = ".";  ///< exists; an outside program's files go there
   /// Receives the share of the work that is done, in [0, 1]; a rewind does not reduce it.

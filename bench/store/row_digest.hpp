@@ -11,8 +11,8 @@ namespace mh {
 
 // Each row of a results file, except in `claims`, has as its last column a digest of its table's
 // name and its other values: SQLite has no checksums, and a number with a flipped bit is still a
-// number. `runs` counts the other rows of each run, and `suite` those of `plan`: a lost row has no
-// digest that could fail.
+// number. `runs` also stores how many rows each run has in the other tables, and `suite` how many
+// `plan` has, because a lost row has no digest left to check.
 
 /// The tables whose rows carry one, in the order of the schema.
 inline constexpr const char* kDigestedTables[] = {"suite", "plan",   "runs",    "points", "metrics",

@@ -12,9 +12,9 @@
 
 namespace mh {
 
-/// A system in an outside shared library (include/modelhouse/system.h), loaded into this process,
-/// so its crash is ours: a suite gives each run its own process. A library is loaded once and stays
-/// loaded; each system is created from scratch.
+/// A system in an outside shared library (include/modelhouse/system.h), loaded into this process.
+/// If it crashes, so does this process; a suite therefore gives each run its own. A library is
+/// loaded once and stays loaded; each system is created from scratch.
 /// @param log       file for what the library prints
 /// @param on_call   receives each call before it is made, "track (call 20)": a crash ends this
 ///                  process without another word

@@ -72,8 +72,8 @@ std::pair<std::string, std::filesystem::path> split_sequence(const std::string& 
 /// The inverse: joins a layout and a path to a name.
 std::string join_sequence(const std::string& layout, const std::filesystem::path& path);
 
-/// A message about a recording without the place where that lies: a result must not depend on it,
-/// and the cache gives it to copies elsewhere.
+/// Removes a recording's path from the start of a message: a result must not depend on where the
+/// recording lies, and the cache serves copies of it elsewhere.
 std::string without_place(const std::string& message, const std::string& source);
 
 /// The layout of a recording: by its name, otherwise by the files at its path.
