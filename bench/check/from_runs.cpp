@@ -101,6 +101,7 @@ std::string gate_suite_digest(const Suite& suite) {
           std::pair("query_scene", e.query_scene), std::pair("sensors", e.sensors),
           std::pair("pedestrian", e.pedestrian)})
       text += content(what, source, inputs);
+    if (e.frame != SceneFrame{}) text += fmt::format("frame={};", to_json(e.frame).dump());
   }
   return hex(digest_bytes(text.data(), text.size()));
 }

@@ -58,7 +58,8 @@ class GateDigest : public testing::Test {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
-  std::string digest(const std::string& more = "", const std::string& scene = "house.obj") const {
+  std::string digest(const std::string& more = "") const { return digest_of("house.obj", more); }
+  std::string digest_of(const std::string& scene, const std::string& more = "") const {
     write("suite.yaml", "environments: [{category: hall, scene: " + scene +
                             ", mapping_tour: tour, query_tour: tour, query_scene: later.obj, "
                             "pedestrian: pedestrian}]\n"
@@ -83,6 +84,9 @@ TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   EXPECT_NE(digest("trials: 3"), before);
   EXPECT_NE(digest("seed: 3"), before);
   EXPECT_NE(digest("protocol: {rewind_frames: 49}"), before);
+  const std::string turned = digest_of("house.obj, up: y");
+  EXPECT_NE(turned, before);
+  EXPECT_NE(digest_of("house.obj, up: y, floor_z_m: 0.5"), turned);
   const std::string graded = digest("graded: {distance_m: [0, 1], angle_deg: [0, 30]}");
   EXPECT_NE(graded, before);
   EXPECT_NE(digest("graded: {distance_m: [0, 2], angle_deg: [0, 30]}"), graded);
