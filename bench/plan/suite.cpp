@@ -230,6 +230,11 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   }
   if (const auto sweep = yaml.find("parameters")) {
     suite.sweep = read_sweep(*sweep, suite.slam);
+    if (yaml.has("study"))
+      sweep->fail(
+          "a sweep in a stated study would choose among its points by the rooms that evaluate "
+          "them. "
+          "Sweep over tuning rooms, in a suite without 'study', and state the point chosen");
     if (!any_system_varies(suite))
       sweep->fail(
           "no system of the suite uses what is varied: the plain one ignores what is of "

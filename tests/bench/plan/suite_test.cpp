@@ -94,6 +94,16 @@ TEST_F(SuiteFile, RefusesADesignThatChangedSinceItWasStated) {
   EXPECT_NE(error("study: {design: none.md, xxh3: '0'}\n").find("none.md"), std::string::npos);
 }
 
+TEST_F(SuiteFile, RefusesToSweepInAStatedStudy) {
+  std::ofstream(folder_ / "design.md") << "The question, and how it is answered.\n";
+  const std::string study = "study: {design: design.md, xxh3: 'ca917f622f4946c3'}\n";
+  const std::string sweep = "parameters: {map: fixed, semantics.gamma: [0.5, 1]}\n";
+  EXPECT_EQ(error(sweep), "");
+  const std::string message = error(study + sweep);
+  EXPECT_NE(message.find("suite.yaml:9: parameters: a sweep in a stated study"), std::string::npos)
+      << message;
+}
+
 TEST_F(SuiteFile, IsReadElsewhereWhereTheFilesThatItNamesNeedNotBe) {
   const Suite here = load("");
   const std::string content = read_file(here.file);
