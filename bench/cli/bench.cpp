@@ -18,10 +18,12 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/set_option.hpp"
+#include "bench/cli/to_parent.hpp"
 #include "bench/cli/write_audit.hpp"
 #include "bench/episodes/report.hpp"
 #include "bench/protocol/config.hpp"
 #include "bench/run/run.hpp"
+#include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/run/slurm.hpp"
 #include "slam/core/counted.hpp"
@@ -47,7 +49,10 @@ struct BenchArguments {
   bool audit = false;
   std::optional<std::size_t> slurm;
   std::string sbatch;
-  std::vector<std::string> of_share;  // arguments as given, for each share of --slurm
+  // As given, for the process of a share of --slurm or of a library's episodes.
+  std::vector<std::string> arguments_of_part;
+  std::optional<std::string> only_run;  // the episodes of this run; its process tells `parent`
+  int parent = 0;
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
   double images_limit_gb = BenchOptions{}.images_limit_gb;
@@ -76,6 +81,18 @@ std::filesystem::path usual_folder(const Suite& suite) {
   return std::filesystem::path("out") / name;
 }
 
+/// The episodes of one run, in a process of their own.
+void run_only(const Suite& suite, EpisodeOptions episodes, const BenchArguments& options) {
+  die_with(options.parent);
+  ToParent parent;
+  episodes.only = options.only_run;
+  episodes.say = [&](std::string_view stage) { parent.say(stage); };
+  episodes.progress = [&](double share) { parent.share(share); };
+  episodes.status = [&](std::string_view status) { parent.status(status); };
+  for (const EpisodeRun& run : run_episodes(suite, episodes))
+    if (!run.failure.empty()) throw MachineError(run.failure);
+}
+
 /// A suite of kidnappings: no queries are asked in it.
 void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   if (options.audit) throw InputError("--audit: a suite with `episodes` asks no queries");
@@ -88,6 +105,9 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   episodes.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
   episodes.jobs = options.jobs;
   episodes.cache = cache_folder(options);
+  if (options.only_run) return run_only(suite, std::move(episodes), options);
+  episodes.arguments = {"bench", options.suite, "--out=" + episodes.out.string()};
+  std::ranges::copy(options.arguments_of_part, std::back_inserter(episodes.arguments));
   std::vector<std::string> names;
   if (!std::filesystem::exists(episodes.out / "episodes.sqlite"))
     names.assign(std::begin(kEpisodeFiles), std::end(kEpisodeFiles));
@@ -125,7 +145,7 @@ void run_shares(const Suite& suite, const SuiteOverrides& overrides, BenchOption
   SlurmOptions slurm{.shares = *options.slurm,
                      .sbatch = words_in("--sbatch", options.sbatch),
                      .arguments = {"bench", options.suite}};
-  std::ranges::copy(options.of_share, std::back_inserter(slurm.arguments));
+  std::ranges::copy(options.arguments_of_part, std::back_inserter(slurm.arguments));
   std::vector<std::string> names = names_written(bench.out, suite);
   if (!names.empty()) names.emplace_back("slurm");
   const OutputFolder folder(bench.out, "bench", names);
@@ -238,6 +258,8 @@ void add_bench(CLI::App& app) {
                    "GB of disk, in --out, for images that runs share; 0 = each makes its own")
       ->check(number_between(0.0, 1e6));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
+  command->add_option("--only-run", options->only_run)->group("");  // for bench alone: not listed
+  command->add_option("--parent", options->parent)->group("");
   command->add_flag_callback(
       "--print-settings",
       [] {
@@ -249,15 +271,15 @@ void add_bench(CLI::App& app) {
       "Examples:\n  modelhouse bench model_house --jobs 2\n"
       "  modelhouse bench my_suite.yaml --scene house.glb --frames 600");
   command->callback([=] {
-    // What the submitting command alone does; a share has a folder of its own.
-    const std::set<std::string> not_of_share{"suite",   "--out",   "--json",  "--shard",
-                                             "--audit", "--slurm", "--sbatch"};
+    // What the starting command alone does; a share has a folder of its own.
+    const std::set<std::string> not_of_part{"suite",   "--out",   "--json",  "--shard",
+                                            "--audit", "--slurm", "--sbatch"};
     for (const CLI::Option* option : command->get_options()) {
       const std::string name = option->get_name();
-      if (option->count() == 0 || not_of_share.contains(name)) continue;
+      if (option->count() == 0 || not_of_part.contains(name)) continue;
       const bool flag = option->get_items_expected_max() == 0;
       for (const std::string& value : option->results())
-        options->of_share.push_back(flag ? name : name + "=" + value);
+        options->arguments_of_part.push_back(flag ? name : name + "=" + value);
     }
     run(*options);
   });

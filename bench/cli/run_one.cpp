@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "bench/cli/commands.hpp"
+#include "bench/cli/to_parent.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/run_process.hpp"
 
@@ -23,9 +20,7 @@ struct RunOneArguments {
 
 void run(const RunOneArguments& options) {
   if (options.parent != 0) die_with(options.parent);
-  int last = -1;
-  std::chrono::steady_clock::time_point reported;
-  std::string last_stage;
+  ToParent parent;
   execute_run({.description = options.description,
                .store = options.store,
                .folder = options.folder,
@@ -37,31 +32,9 @@ void run(const RunOneArguments& options) {
                .session_start = options.session_start,
                .jobs = options.jobs,
                .metrics_only = options.metrics_only,
-               .say =
-                   [](std::string_view stage) {
-                     fmt::print("{}\n", stage);
-                     std::fflush(stdout);
-                   },
-               .progress =
-                   [&](double share) {
-                     const int step = static_cast<int>(200 * share);
-                     if (step == last) return;
-                     last = step;
-                     fmt::print("{:.4f}\n", share);
-                     std::fflush(stdout);
-                   },
-               .status =
-                   [&](std::string_view status) {
-                     // Frames pass faster than anyone can read; a new stage is reported at once.
-                     constexpr auto kBetween = std::chrono::milliseconds(500);
-                     const auto now = std::chrono::steady_clock::now();
-                     const std::string begins(status.substr(0, status.find(' ')));
-                     if (begins == last_stage && now - reported < kBetween) return;
-                     reported = now;
-                     last_stage = begins;
-                     fmt::print("{}{}\n", kStatusMark, status);
-                     std::fflush(stdout);
-                   }});
+               .say = [&](std::string_view stage) { parent.say(stage); },
+               .progress = [&](double share) { parent.share(share); },
+               .status = [&](std::string_view status) { parent.status(status); }});
 }
 
 }  // namespace

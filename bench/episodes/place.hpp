@@ -67,6 +67,7 @@ struct MapTools {
   Cache maps = Cache();          ///< finished maps of systems that can save them
   std::string key;               ///< of the map
   std::function<void(double)> progress = [](double) {};
+  std::function<void(std::string_view)> status = {};  ///< receives what a library is asked for
 };
 
 /// Maps the tour with the system of a run, or takes its map from the cache, and makes the robot's

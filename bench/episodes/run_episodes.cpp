@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/episodes/episode_store.hpp"
+#include "bench/episodes/own_process.hpp"
 #include "bench/inputs/inputs.hpp"
 #include "bench/inputs/run_key.hpp"
 #include "bench/plan/find_program.hpp"
@@ -184,15 +185,21 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
     }
   }
   EpisodeStore store(options.out / "episodes.sqlite");
-  const std::size_t each = suite.episodes->variants.size() * suite.episodes->starts;
+  const std::size_t all =
+      suite.episodes->variants.size() * suite.episodes->starts * (options.only ? 1 : runs.size());
   std::size_t done = 0;
+  const auto report = [&](double more) {
+    options.progress((static_cast<double>(done) + more) / static_cast<double>(all));
+  };
   const std::function<void()> one_done = [&] {
-    options.progress(static_cast<double>(++done) / static_cast<double>(each * runs.size()));
+    ++done;
+    report(0);
   };
   std::optional<EpisodeWorld> world;
   std::optional<RunSpec> world_of;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     EpisodeRun& run = runs[r];
+    if (options.only && run.spec.name != *options.only) continue;
     std::map<Slot, EpisodeScore> known;
     for (EpisodeScore& score : store.load(run.key))
       known.emplace(Slot{score.variant, score.start}, std::move(score));
@@ -212,20 +219,29 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
       }
       const std::filesystem::path folder = options.out / run.spec.name;
       if (run.spec.system.is_outside()) make_output_folder(folder);
-      options.say(fmt::format("{}: maps the tour", run.spec.name));
-      try {
-        MappedSystem mapped =
-            map_tour(run.spec, *world, {.folder = folder, .maps = cache, .key = map_keys[r]});
-        options.say(fmt::format("{}: {} of {} frames mapped, {} objects; {} kidnappings",
-                                run.spec.name, mapped.tracked, mapped.offered,
-                                mapped.map.objects.size(), todo.size()));
-        const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
-        Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs);
-        mapped.system->finish();
-      } catch (const OutsideError& error) {
-        run.failure = error.what();
-        options.say(fmt::format("{}: {}", run.spec.name, run.failure));
+      if (run.spec.system.is_library() && !options.arguments.empty()) {
+        const auto episodes = static_cast<double>(todo.size());
+        run.failure =
+            run_in_own_process(run.spec, options, [&](double share) { report(share * episodes); });
+        done += todo.size();
+      } else {
+        options.say(fmt::format("{}: maps the tour", run.spec.name));
+        try {
+          MappedSystem mapped = map_tour(
+              run.spec, *world,
+              {.folder = folder, .maps = cache, .key = map_keys[r], .status = options.status});
+          options.say(fmt::format("{}: {} of {} frames mapped, {} objects; {} kidnappings",
+                                  run.spec.name, mapped.tracked, mapped.offered,
+                                  mapped.map.objects.size(), todo.size()));
+          const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
+          Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs);
+          mapped.system->finish();
+        } catch (const OutsideError& error) {
+          run.failure = error.what();
+        }
       }
+      if (!run.failure.empty() && !options.only)
+        options.say(fmt::format("{}: {}", run.spec.name, run.failure));
       for (EpisodeScore& score : store.load(run.key))
         known.insert_or_assign(Slot{score.variant, score.start}, std::move(score));
     }

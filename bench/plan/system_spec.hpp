@@ -30,6 +30,8 @@ struct SystemSpec {
 
   // Its capabilities; no other code checks its kind.
   bool is_outside() const { return kind == SystemKind::kOutside; }
+  /// Its code runs in the process of the bench that asks it.
+  bool is_library() const { return is_outside() && outside.mode == OutsideMode::kLibrary; }
   bool sees_labels() const { return kind != SystemKind::kPlain; }
   /// Has the settings of SlamConfig. It needs a vocabulary, and reports candidates, matches and how
   /// far a relocalization got; for an outside system all of that is optional.

@@ -229,25 +229,10 @@ class Pool {
     note_end(job, false);
   }
 
-  /// What a process that reported nothing was last seen doing, and the foreign code in it.
-  static std::string where(const Running& ended) {
-    const SystemSpec& system = ended.what.job.spec.system;
-    const std::string& status = ended.process->status();
-    std::string text = status.empty() ? "" : ", last seen at '" + status + "'";
-    if (system.is_outside() && system.outside.mode == OutsideMode::kLibrary)
-      text += fmt::format(", with outside library '{}' ({}) in its process", system.name,
-                          system.outside.library);
-    return text;
-  }
-
   static std::string describe(const Running& ended, const ProcessEnd& end) {
     if (!ended.cut_off.empty()) return ended.cut_off;
-    const std::string last = end.message.empty() ? "" : ": " + end.message;
-    if (end.signal != 0)
-      return fmt::format("ended by signal {} ({}){}{}", end.signal, strsignal(end.signal),
-                         where(ended), last);
-    if (end.good) return "ended without a result" + where(ended);
-    if (!end.reported) return fmt::format("exited with code {}{}{}", end.code, where(ended), last);
+    if (end.signal != 0 || !end.reported)
+      return unreported_end(end, ended.what.job.spec.system, ended.process->status());
     return end.code == kBadInputCode ? std::string(kBadInputMark) + end.message : end.message;
   }
 

@@ -233,7 +233,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
                                     std::function<void(std::string_view)> status) {
   if (spec.system.is_outside()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
-    if (spec.system.outside.mode == OutsideMode::kLibrary)
+    if (spec.system.is_library())
       return make_library_system(spec.system.outside, world.mapping->camera(), spec.seed,
                                  folder / "outside.log", std::move(status));
     return make_conversation_system(spec.system.outside, world.mapping->camera(), spec.seed,

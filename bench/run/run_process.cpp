@@ -58,6 +58,20 @@ double seconds(const timeval& t) {
 
 }  // namespace
 
+std::string unreported_end(const ProcessEnd& end, const SystemSpec& system,
+                           const std::string& status) {
+  std::string where = status.empty() ? "" : ", last seen at '" + status + "'";
+  if (system.is_library())
+    where += fmt::format(", with outside library '{}' ({}) in its process", system.name,
+                         system.outside.library);
+  const std::string last = end.message.empty() ? "" : ": " + end.message;
+  if (end.signal != 0)
+    return fmt::format("ended by signal {} ({}){}{}", end.signal, strsignal(end.signal), where,
+                       last);
+  if (end.good) return "ended without a result" + where;
+  return fmt::format("exited with code {}{}{}", end.code, where, last);
+}
+
 RunProcess::RunProcess(const std::filesystem::path& executable,
                        const std::vector<std::string>& arguments, std::filesystem::path log)
     : log_(std::move(log)), start_(std::chrono::steady_clock::now()) {

@@ -39,6 +39,12 @@ struct ProcessEnd {
   RunCost cost;
 };
 
+/// Why a process ended that reported nothing: by which signal or exit code, what it was last seen
+/// doing, and whose code was in it.
+/// @param status  RunProcess::status()
+std::string unreported_end(const ProcessEnd& end, const SystemSpec& system,
+                           const std::string& status);
+
 /// A process of our own executable that executes one run. It dies with this one. On standard output
 /// it prints the share of the work done, one per line, and the names of long stages.
 class RunProcess {

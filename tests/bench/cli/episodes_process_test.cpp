@@ -20,14 +20,15 @@ class EpisodeCommands : public testing::Test {
  protected:
   EpisodeCommands() { write_suite("sofa"); }
 
-  void write_suite(const std::string& goal) const {
+  void write_suite(const std::string& goal, const std::string& systems = "[plain]") const {
     const std::string root = MH_SOURCE_DIR;
     std::ofstream(suite()) << "robot: " << root << "/robots/pepper/pepper.yaml\nenvironments:\n"
                            << "- {category: room, scene: " << root
                            << "/bench/scenarios/room.yaml, mapping_tour: " << root
                            << "/bench/scenarios/tours/room.yaml}\nvocabulary: " << root
                            << "/assets/vocabulary.mhvoc\nlevels: [" << root
-                           << "/sim/sensors/levels/pepper.yaml]\nsystems: [plain]\nlabels: "
+                           << "/sim/sensors/levels/pepper.yaml]\nsystems: " << systems
+                           << "\nlabels: "
                               "[exact]\nprotocol: {test_interval: 0}\nepisodes: {starts: 2, "
                               "limit_s: 25, goals: ["
                            << goal << "]}\n";
@@ -65,6 +66,31 @@ TEST_F(EpisodeCommands, OneEpisodeIsTheOneThatTheSuiteScored) {
   // Done once: the second time nothing is driven.
   ASSERT_EQ(run("bench " + suite().string() + " --out " + out("all") + cache), 0) << said();
   EXPECT_EQ(content(out("all") + "/episodes.json"), text);
+}
+
+TEST_F(EpisodeCommands, ACrashOfALibraryEndsItsEpisodesAlone) {
+  fs::copy_file(TINY_LIBRARY, work_.path() / "libtiny.so");
+  std::ofstream(work_.path() / "crash") << "crash";
+  write_suite("sofa",
+              "[{name: crash, library: libtiny.so, settings: crash}, {name: still, library: "
+              "libtiny.so}, plain]");
+  const std::string bench = "bench " + suite().string() + " --out " + out("all") +
+                            " --cache " MH_TEST_CACHE "/modelhouse-cache";
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    EXPECT_EQ(run(bench), 3);
+    EXPECT_NE(said().find("crash-exact-pepper-0: ended by signal 6 (Aborted), last seen at 'track "
+                          "(call 3)', with outside library 'crash' (libtiny.so) in its process\n"),
+              std::string::npos)
+        << said();
+    const json all = json::parse(content(out("all") + "/episodes.json"));
+    for (const json& system : all.at("runs")) {
+      const bool crashes = system.at("system") == "crash";
+      for (const json& episode : system.at("episodes"))
+        EXPECT_EQ(episode.at("reason") == "system_failed", crashes) << episode.dump();
+    }
+    ASSERT_EQ(all.at("runs").size(), 3U);
+    EXPECT_EQ(all.at("runs")[1].at("episodes").size(), 2U);
+  }
 }
 
 TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
