@@ -70,10 +70,10 @@ TEST_F(EpisodeCommands, OneEpisodeIsTheOneThatTheSuiteScored) {
 
 TEST_F(EpisodeCommands, ACrashOfALibraryEndsItsEpisodesAlone) {
   fs::copy_file(TINY_LIBRARY, work_.path() / "libtiny.so");
-  std::ofstream(work_.path() / "crash") << "crash";
+  for (const char* word : {"crash", "exit"}) std::ofstream(work_.path() / word) << word;
   write_suite("sofa",
-              "[{name: crash, library: libtiny.so, settings: crash}, {name: still, library: "
-              "libtiny.so}, plain]");
+              "[{name: crash, library: libtiny.so, settings: crash}, {name: exit, library: "
+              "libtiny.so, settings: exit}, {name: still, library: libtiny.so}, plain]");
   const std::string bench = "bench " + suite().string() + " --out " + out("all") +
                             " --cache " MH_TEST_CACHE "/modelhouse-cache";
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -82,14 +82,18 @@ TEST_F(EpisodeCommands, ACrashOfALibraryEndsItsEpisodesAlone) {
                           "(call 3)', with outside library 'crash' (libtiny.so) in its process\n"),
               std::string::npos)
         << said();
+    EXPECT_NE(said().find("exit-exact-pepper-0: ended without a result, last seen at 'track (call "
+                          "3)', with outside library 'exit' (libtiny.so) in its process\n"),
+              std::string::npos)
+        << said();
     const json all = json::parse(content(out("all") + "/episodes.json"));
     for (const json& system : all.at("runs")) {
-      const bool crashes = system.at("system") == "crash";
+      const bool crashes = system.at("system") == "crash" || system.at("system") == "exit";
       for (const json& episode : system.at("episodes"))
         EXPECT_EQ(episode.at("reason") == "system_failed", crashes) << episode.dump();
     }
-    ASSERT_EQ(all.at("runs").size(), 3U);
-    EXPECT_EQ(all.at("runs")[1].at("episodes").size(), 2U);
+    ASSERT_EQ(all.at("runs").size(), 4U);
+    EXPECT_EQ(all.at("runs")[2].at("episodes").size(), 2U);
   }
 }
 
