@@ -7,7 +7,6 @@
 // neighbors here: equation 5 then adds the same few sums to both. Both must choose the same, to the
 // bit. CPU time of this thread, medians over the queries. Run from the repository's root, or name
 // the vocabulary: MH_VOCABULARY=FILE.
-#include <time.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -16,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/micro/timing.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
 #include "slam/pipeline/map_file.hpp"
@@ -26,17 +26,6 @@ namespace {
 using namespace mh;
 
 constexpr std::uint64_t kQueries = 20;
-
-double thread_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 /// Each member of either vector with probability 1/2, with its weight there.
 void add_half(std::vector<WeightedMember>& to, const std::vector<WeightedMember>& from,

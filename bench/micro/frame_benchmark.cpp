@@ -4,7 +4,6 @@
 // those of docs/measurements/cost_of_the_bench.md.
 // Usage: frame_benchmark SCENE MOTION ROBOT LEVEL [frames]
 #include <malloc.h>
-#include <time.h>
 
 #include <algorithm>
 #include <exception>
@@ -15,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/micro/timing.hpp"
 #include "sim/sensors/depth_noise.hpp"
 #include "sim/sensors/develop.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -24,22 +24,12 @@
 namespace mh {
 namespace {
 
-double thread_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
 struct Stage {
   std::string name;
   std::function<void(std::size_t frame)> work;
   std::vector<double> spent_ms = {};
 
-  double median() const {
-    std::vector<double> sorted = spent_ms;
-    std::ranges::sort(sorted);
-    return sorted[sorted.size() / 2];
-  }
+  double median() const { return mh::median(spent_ms); }
   double mean() const {
     double sum = 0;
     for (const double ms : spent_ms) sum += ms;

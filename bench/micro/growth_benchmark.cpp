@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <ctime>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -21,6 +20,7 @@
 
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/metrics/evaluate.hpp"
+#include "bench/micro/timing.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -40,12 +40,6 @@ struct Options {
   std::string folder, settings, cache;
   int laps = 12;
 };
-
-double thread_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
-}
 
 struct Times {
   std::vector<double> ms;

@@ -3,7 +3,6 @@
 // closure moved, the octree's memory, a plan over the floor; beside OctoMap's own
 // insertPointCloud() of the same points in the same run. CPU time of the process.
 // Usage: occupancy_benchmark SCENE.yaml TOUR.yaml ROBOT.yaml LEVEL.yaml [every n-th frame = 15]
-#include <time.h>
 
 #include <algorithm>
 #include <memory>
@@ -14,6 +13,7 @@
 #include <octomap/OcTree.h>
 #include <opencv2/core/utility.hpp>
 
+#include "bench/micro/timing.hpp"
 #include "robots/navigation/grid.hpp"
 #include "robots/navigation/plan.hpp"
 #include "scenes/load.hpp"
@@ -28,23 +28,11 @@
 namespace mh {
 namespace {
 
-double cpu_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
 template <class Work>
 double time_ms(const Work& work) {
-  const double before = cpu_ms();
+  const double before = clock_ms(CLOCK_PROCESS_CPUTIME_ID);
   work();
-  return cpu_ms() - before;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
+  return clock_ms(CLOCK_PROCESS_CPUTIME_ID) - before;
 }
 
 /// The points that a mapper uses of a keyframe, camera frame.

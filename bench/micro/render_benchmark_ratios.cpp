@@ -5,7 +5,6 @@
 // by wall time, which is what a user waits: quiet machines only (the load is printed). The CPU time
 // of all their threads is also printed. Usage: render_ratios [--portable] [repeats]
 #include <malloc.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "bench/micro/render_benchmark_room.hpp"
+#include "bench/micro/timing.hpp"
 #include "sim/render/packet.hpp"
 #include "sim/render/renderer.hpp"
 #include "slam/core/error.hpp"
@@ -32,13 +32,7 @@ struct Cost {
   double wall_ms = 0;
 
   static Cost now() {
-    const auto read_ms = [](clockid_t clock) {
-      timespec time{};
-      clock_gettime(clock, &time);
-      return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-    };
-    return {read_ms(CLOCK_THREAD_CPUTIME_ID), read_ms(CLOCK_PROCESS_CPUTIME_ID),
-            read_ms(CLOCK_MONOTONIC)};
+    return {mh::thread_ms(), clock_ms(CLOCK_PROCESS_CPUTIME_ID), clock_ms(CLOCK_MONOTONIC)};
   }
   Cost since(const Cost& begin) const {
     return {thread_ms - begin.thread_ms, process_ms - begin.process_ms, wall_ms - begin.wall_ms};

@@ -3,7 +3,6 @@
 // wall time and CPU time of all threads; and the process's memory.
 // Usage: sequence_benchmark SCENE MOTION ROBOT LEVEL OUT [frames]
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
 
+#include "bench/micro/timing.hpp"
 #include "sim/render/parallel.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/render_sequence.hpp"
@@ -39,9 +39,7 @@ struct Speed {
 };
 
 double seconds(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  return 1e-3 * clock_ms(clock);
 }
 
 template <class Work>

@@ -6,7 +6,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <ctime>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -19,6 +18,7 @@
 
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/metrics/evaluate.hpp"
+#include "bench/micro/timing.hpp"
 #include "bench/provenance/digest.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/error.hpp"
@@ -33,12 +33,6 @@ struct Options {
   std::size_t frames = SIZE_MAX;
   bool plain = false;
 };
-
-double thread_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
-}
 
 /// Runs work and appends its time.
 template <class Work>
