@@ -130,20 +130,88 @@ std::optional<SE3> find_map_frame(const MapBuildArguments& options, const Source
   return floor->floor_from_world;
 }
 
-void score(const MapBuildArguments& options, const Trajectory& truth, const Scene& scene,
-           const OccupancyMapper& mapper, const MapStudy& study, const SceneLasers* lasers) {
-  const MapScores scores = score_map(scene, mapper, truth, study,
+/// The source's keyframes, by SLAM or at given poses; the mapper keeps their depth.
+struct Keyframes {
+  Posed posed;
+  std::size_t kept = 0;
+};
+
+Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
+                         OccupancyMapper& mapper) {
+  Keyframes keyframes;
+  bool any_depth = false;
+  const auto keep = [&](const RgbdFrame& frame) {
+    mapper.keep(frame);
+    ++keyframes.kept;
+    any_depth = any_depth || std::ranges::any_of(frame.depth_m, [](float z) { return z > 0; });
+  };
+  if (!options.poses.empty()) {
+    keyframes.posed.poses = poses_of_frames(*source.frames, read_trajectory(options.poses));
+    keep_posed(options, source, keyframes.posed.poses, keep);
+  } else {
+    const auto vocabulary =
+        std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
+    if (options.map.empty()) {
+      keyframes.posed = run_slam(options, source, vocabulary, keep);
+    } else {
+      keyframes.posed = posed_by(load_slam(options.map, vocabulary));
+      keep_posed(options, source, keyframes.posed.poses, keep);
+    }
+  }
+  if (!any_depth)
+    throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without",
+                                 options.source, counted(keyframes.kept, "keyframe")));
+  return keyframes;
+}
+
+/// A scene that is mapped, and its robot's lasers if they are asked for.
+struct MappedScene {
+  Scene scene;
+  std::optional<SceneLasers> lasers;
+};
+
+std::unique_ptr<const MappedScene> load_mapped_scene(const MapBuildArguments& options) {
+  if (!options.is_scene()) return nullptr;
+  const fs::path file = find_scene(options.source.substr(kSceneSource.size()));
+  auto mapped =
+      std::make_unique<MappedScene>(load_scene(file, nullptr, options.frame.frame()), std::nullopt);
+  if (options.lasers) mapped->lasers.emplace(mapped->scene, load_robot(options.robot_file()));
+  return mapped;
+}
+
+/// What is mapped over the floor: grid, costs, objects.
+/// @param poses  of the keyframes, in the map's frame
+MapStudy study_floor(const MapBuildArguments& options, const Source& source,
+                     const MappedScene* mapped, const VoxelMap& map, const Trajectory& poses) {
+  std::optional<ScanGrid> scans;
+  if (mapped != nullptr && mapped->lasers)
+    scans = mapped->lasers->scans(poses, *source.frames->truth(), options.resolution_m);
+  // The frame of a recording's map is on the floor.
+  const double floor_z_m = mapped != nullptr ? mapped->scene.floor.middle_m.z() : 0;
+  MapStudy study = study_of(map, {.floor_z_m = floor_z_m, .robot_height_m = options.height_m},
+                            scans ? &*scans : nullptr);
+  if (study.grid.cells.empty())
+    fmt::print(stderr,
+               "map: warning: the grid is empty: nothing was seen from {:g} to {:g} m above the "
+               "floor\n",
+               ObstacleGridConfig{}.ground_m, options.height_m);
+  return study;
+}
+
+void score(const MapBuildArguments& options, const Trajectory& truth, const MappedScene& mapped,
+           const OccupancyMapper& mapper, const MapStudy& study) {
+  const MapScores scores = score_map(mapped.scene, mapper, truth, study,
                                      {.resolution_m = options.resolution_m,
-                                      .floor_z_m = scene.floor.middle_m.z(),
+                                      .floor_z_m = mapped.scene.floor.middle_m.z(),
                                       .robot_height_m = options.height_m},
-                                     lasers);
+                                     mapped.lasers ? &*mapped.lasers : nullptr);
   const fs::path out = options.out;
   write_atomically(out / "score.json", scores_json(scores));
   write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores.plan));
   fmt::print("{}", scores_text(scores));
 }
 
-void run(MapBuildArguments options) {
+void check(const MapBuildArguments& options) {
   options.check();
   if (!options.map.empty() && !options.poses.empty())
     throw InputError("--map and --poses: one of them says where the frames are");
@@ -152,41 +220,18 @@ void run(MapBuildArguments options) {
   if (options.lasers && !(options.is_scene() && is_driven(options.tour)))
     throw InputError(
         "--lasers are a robot's: the source must be scene:FILE, with a tour that it drives");
+}
+
+void run(MapBuildArguments options) {
+  check(options);
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
   const Source source = open_source(options);
-  std::optional<Scene> scene;
-  if (options.is_scene())
-    scene = load_scene(find_scene(options.source.substr(kSceneSource.size())), nullptr,
-                       options.frame.frame());
-  std::optional<SceneLasers> lasers;
-  if (options.lasers) lasers.emplace(*scene, load_robot(options.robot_file()));
+  const auto mapped = load_mapped_scene(options);
   const OutputFolder folder(options.out, "map build", {kMapFiles.begin(), kMapFiles.end()});
   OccupancyMapper mapper(source.frames->camera(),
                          {.depth = {.resolution_m = options.resolution_m}});
-  std::size_t kept = 0, with_depth = 0;
-  const auto keep = [&](const RgbdFrame& frame) {
-    mapper.keep(frame);
-    ++kept;
-    with_depth += std::ranges::any_of(frame.depth_m, [](float z) { return z > 0; }) ? 1 : 0;
-  };
-  Posed posed;
-  if (!options.poses.empty()) {
-    posed.poses = poses_of_frames(*source.frames, read_trajectory(options.poses));
-    keep_posed(options, source, posed.poses, keep);
-  } else {
-    const auto vocabulary =
-        std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
-    if (options.map.empty()) {
-      posed = run_slam(options, source, vocabulary, keep);
-    } else {
-      posed = posed_by(load_slam(options.map, vocabulary));
-      keep_posed(options, source, posed.poses, keep);
-    }
-  }
-  if (with_depth == 0)
-    throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without",
-                                 options.source, counted(kept, "keyframe")));
+  auto [posed, kept] = keep_keyframes(options, source, mapper);
   const std::optional<SE3> frame = find_map_frame(options, source, mapper, posed.poses);
   const SE3 map_from_world = frame.value_or(SE3());
   mapper.update(posed.poses, map_from_world);
@@ -204,30 +249,17 @@ void run(MapBuildArguments options) {
     fmt::print("{}\n", built);
     return;
   }
+  for (TimedPose& pose : posed.poses)
+    pose.world_from_camera = map_from_world * pose.world_from_camera;
   for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
-  std::optional<ScanGrid> scans;
-  if (lasers) {
-    Trajectory at = posed.poses;
-    for (TimedPose& pose : at) pose.world_from_camera = map_from_world * pose.world_from_camera;
-    scans = lasers->scans(at, *source.frames->truth(), options.resolution_m);
-  }
-  const double floor_z_m = scene ? scene->floor.middle_m.z() : 0;  // a recording's frame is on it
-  const MapStudy study =
-      study_of(mapper.map(), {.floor_z_m = floor_z_m, .robot_height_m = options.height_m},
-               scans ? &*scans : nullptr);
-  if (study.grid.cells.empty())
-    fmt::print(stderr,
-               "map: warning: the grid is empty: nothing was seen from {:g} to {:g} m above the "
-               "floor\n",
-               ObstacleGridConfig{}.ground_m, options.height_m);
+  const MapStudy study = study_floor(options, source, mapped.get(), mapper.map(), posed.poses);
   write_map_files(options.out, mapper.map(), study);
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
   write_image(fs::path(options.out) / "grid_classes.png",
               draw_classes_over(study.grid, posed.landmarks));
   fmt::print("{}, grid of {} x {} cells, {}\n", built, study.grid.cells.width(),
              study.grid.cells.height(), counted(study.objects.size(), "object"));
-  if (options.score)
-    score(options, *source.frames->truth(), *scene, mapper, study, lasers ? &*lasers : nullptr);
+  if (options.score) score(options, *source.frames->truth(), *mapped, mapper, study);
 }
 
 }  // namespace

@@ -45,7 +45,6 @@ void SourceOptions::add_to(CLI::App& command) {
                   sequence_forms() + ", a path whose layout is recognized, or scene:FILE")
       ->required();
   command.add_option("--settings", settings,
-
                      "Settings (YAML), also ORB-SLAM2's, or the name of shipped ones (default: the "
                      "folder's camera.yaml)");
   command.add_option("--classes", classes,
