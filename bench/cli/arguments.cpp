@@ -69,6 +69,12 @@ CLI::Validator one_of_words(std::vector<std::string> words) {
       std::move(described), "word");
 }
 
+CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); }, "",
+      "not empty");
+}
+
 void resolve(std::string& word, Shipped what) {
   word = (what == Shipped::kScene ? find_scene(word) : find_shipped(word, what)).string();
 }
@@ -96,6 +102,14 @@ void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
                                  fs::is_directory(file, error) ? "a folder" : "no file"));
   for (const fs::path& input : read) require_other_file(file, input);
   make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
+}
+
+void require_replaceable(const fs::path& file, std::string_view head, std::string_view kind,
+                         const std::vector<fs::path>& read) {
+  if (is_file(file) && !read_file(file).starts_with(head))
+    throw InputError(
+        fmt::format("{}: is there already, and not from {}: name another", file.string(), kind));
+  require_writable(file, read);
 }
 
 namespace {

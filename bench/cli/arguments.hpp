@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +24,9 @@ CLI::Validator seed_number();
 /// Accepts one of the given words; for a misspelling, the error suggests the nearest.
 CLI::Validator one_of_words(std::vector<std::string> words);
 
+/// Accepts any text but the empty one, which an unset variable of a shell leaves.
+CLI::Validator not_empty();
+
 /// Replaces a shipped name by its file (find_shipped; find_scene for scenes); leaves an empty one
 /// alone.
 void resolve(std::string& word, Shipped what);
@@ -32,6 +36,12 @@ void resolve(std::string& word, Shipped what);
 /// @throws InputError naming file or folder; DiskFullError.
 void require_writable(const std::filesystem::path& file,
                       const std::vector<std::filesystem::path>& read = {});
+
+/// As require_writable(), for a file that its own command may replace, but no other.
+/// @param head  what such a file begins with
+/// @param kind  "`modelhouse map plan`", what writes it
+void require_replaceable(const std::filesystem::path& file, std::string_view head,
+                         std::string_view kind, const std::vector<std::filesystem::path>& read);
 
 /// Checks, before anything is written, that the output file is not one that was read; for a scene,
 /// that means every file it was loaded from.

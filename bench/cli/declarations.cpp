@@ -130,8 +130,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& app) {
   if (!left.empty() && !own.front().commands.empty())
     return fmt::format("'{}' is not a command of {}{}", left.front(), path,
                        hint(left.front(), own.front().commands));
-  if (!left.empty())
-    return fmt::format("{}: '{}' is one word more than it takes{}", path, left.front(), see);
+  if (!left.empty()) return fmt::format("{}: unexpected argument '{}'{}", path, left.front(), see);
   return error.what() + (dynamic_cast<const CLI::RequiredError*>(&error) ? see : std::string());
 }
 

@@ -15,6 +15,7 @@
 #include "bench/episodes/run_episodes.hpp"
 #include "bench/episodes/strip.hpp"
 #include "bench/provenance/json_fields.hpp"
+#include "bench/systems/outside_error.hpp"
 #include "scenes/images/write_image.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -88,9 +89,14 @@ void run(EpisodeArguments options) {
   const VariantPlace& variant = *std::ranges::find_if(one.world.variants, named);
   const EpisodeStart& start = variant.starts[options.start];
   EpisodeRecord record(one.mapped.map, start);
-  const EpisodeScore score =
-      run_episode(episode_place(chosen, one.world, variant, one.mapped), *suite.episodes, start,
-                  [&](const EpisodeMoment& moment) { record.add(moment); });
+  EpisodeScore score;
+  try {
+    score = run_episode(episode_place(chosen, one.world, variant, one.mapped), *suite.episodes,
+                        start, [&](const EpisodeMoment& moment) { record.add(moment); });
+  } catch (const OutsideError&) {  // what led there may say why
+    write_atomically(out / "log.txt", record.log_so_far());
+    throw;
+  }
   const std::string log = record.log(score);
   write_atomically(out / "log.txt", log);
   write_atomically(out / "episode.json", json_of(score).dump(2) + "\n");

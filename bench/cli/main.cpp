@@ -50,6 +50,16 @@ int finish_output(int code) {
   return fail(kMachineFailed, "standard output: cannot be written" + why);
 }
 
+/// The first word of the form "--out=", for whose value CLI11 would take the next word; nullptr if
+/// there is none.
+const char* option_without_value(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (const std::string_view word = argv[i];
+        word.starts_with("--") && word.ends_with('=') && word.find('=') == word.size() - 1)
+      return argv[i];
+  return nullptr;
+}
+
 bool has_commands(const CLI::App& app) {
   return !app.get_subcommands([](const CLI::App*) { return true; }).empty();
 }
@@ -92,6 +102,8 @@ int run(int argc, char** argv) {
   mh::cli::add_vocabulary(app);
   mh::cli::add_reference(app);
   mh::cli::add_declarations(app);
+  if (const char* word = option_without_value(argc, argv))
+    return fail(kBadInput, fmt::format("'{}': the value is missing behind it", word));
   try {
     app.parse(argc, argv);
     return kGood;

@@ -61,6 +61,9 @@ void add_band(CLI::App& command, ObstacleGridConfig& band) {
       ->check(number_between(-1000.0, 1000.0));
 }
 
+/// What a file of a path begins with.
+constexpr std::string_view kPathHead = "x_m,y_m\n";
+
 std::string place(const Vector2d& p) {
   return fmt::format("({:.2f}, {:.2f})", p.x(), p.y());
 }
@@ -105,7 +108,10 @@ void run(const MapCostArguments& options) {
     throw InputError(
         fmt::format("--inflation: {} m is less than the robot's radius, {} m (--radius)",
                     options.config.inflation_radius_m, options.config.inscribed_radius_m));
-  const CostMap costs = cost_map(load_map_server(options.grid), options.config);
+  std::vector<std::string> warnings;
+  const OccupancyGrid grid = load_map_server(options.grid, &warnings);
+  for (const std::string& warning : warnings) fmt::print(stderr, "map: warning: {}\n", warning);
+  const CostMap costs = cost_map(grid, options.config);
   save_cost_map(costs, options.out);
   save_map_server(as_published(costs), published, GridMode::kRaw);
   fmt::print("{} x {} cells of {} m\n", costs.costs.width(), costs.costs.height(),
@@ -113,7 +119,8 @@ void run(const MapCostArguments& options) {
 }
 
 void run(const MapObjectsArguments& options) {
-  if (!options.out.empty()) require_writable(options.out, {options.map});
+  if (!options.out.empty())
+    require_replaceable(options.out, "{\n  \"resolution_m\": ", "`modelhouse map`", {options.map});
   const VoxelMap map = VoxelMap::load_ot(options.map);
   const std::vector<MapObject> objects = find_objects(map);
   if (!options.out.empty())
@@ -175,15 +182,15 @@ Vector2d place_beside(const MapObject& object, const FloorGrid& grid, const Vect
 void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& grid,
                    const FloorGrid& floor, double clearance_m) {
   const auto cell = grid.cell_of(at);
-  if (!cell) throw InputError(fmt::format("{} {}: is outside of the map", what, place(at)));
+  if (!cell) throw InputError(fmt::format("{} {} is outside of the map", what, place(at)));
   const std::int8_t state = grid.cells(cell->x(), cell->y());
   if (state == kUnknownCell)
-    throw InputError(fmt::format("{} {}: is in unknown space", what, place(at)));
+    throw InputError(fmt::format("{} {} is in unknown space", what, place(at)));
   if (state == kOccupiedCell)
-    throw InputError(fmt::format("{} {}: is inside of an obstacle", what, place(at)));
+    throw InputError(fmt::format("{} {} is inside of an obstacle", what, place(at)));
   if (const double has_m = floor.clearance_at(at); has_m < clearance_m)
     throw InputError(
-        fmt::format("{} {}: has {:.2f} m to the nearest obstacle or unknown space, "
+        fmt::format("{} {} has {:.2f} m to the nearest obstacle or unknown space, "
                     "and the robot needs {:.2f} m",
                     what, place(at), has_m, clearance_m));
 }
@@ -191,7 +198,8 @@ void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& gr
 void run(const MapPlanArguments& options) {
   if (options.to.empty() == options.thing.empty())
     throw InputError("plan: the goal is either --to or --to-object");
-  if (!options.out.empty()) require_writable(options.out, {options.map});
+  if (!options.out.empty())
+    require_replaceable(options.out, kPathHead, "`modelhouse map plan`", {options.map});
   const VoxelMap map = VoxelMap::load_ot(options.map);
   const OccupancyGrid grid = grid_of(map, options.map, options.band);
   const FloorGrid floor =
@@ -210,10 +218,10 @@ void run(const MapPlanArguments& options) {
   }
   const auto way = plan_way(floor, from, to, clearance_m);
   if (!way)
-    throw InputError(fmt::format("goal {}: no way leads there from {} that keeps {:.2f} m clear",
+    throw InputError(fmt::format("goal {}: no path leads there from {} that keeps {:.2f} m clear",
                                  place(to), place(from), clearance_m));
   double length_m = 0;
-  std::string text = "x_m,y_m\n";
+  std::string text(kPathHead);
   for (std::size_t i = 0; i < way->size(); ++i) {
     if (i > 0) length_m += ((*way)[i] - (*way)[i - 1]).norm();
     text += fmt::format("{:.3f},{:.3f}\n", (*way)[i].x(), (*way)[i].y());
@@ -260,7 +268,8 @@ void add_objects(CLI::App& map) {
   CLI::App* command =
       map.add_subcommand("objects", "The objects of a saved octree, or those of a name.");
   command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
-  command->add_option("name", options->name, "Class or object: refrigerator, \"chair 2\"");
+  command->add_option("name", options->name, "Class or object: refrigerator, \"chair 2\"")
+      ->check(not_empty());
   command->add_option("--out", options->out, "JSON file of all objects");
   command->footer("Example:\n  modelhouse map objects out/map/map.ot refrigerator");
   command->callback([options] { run(*options); });
@@ -280,7 +289,7 @@ void add_messages(CLI::App& map) {
 
 void add_plan(CLI::App& map) {
   auto options = std::make_shared<MapPlanArguments>();
-  CLI::App* command = map.add_subcommand("plan", "A way over the floor of a saved octree.");
+  CLI::App* command = map.add_subcommand("plan", "A path over the floor of a saved octree.");
   command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
   command->add_option("--from", options->from, "Start: x y, m")
       ->expected(2)
@@ -289,12 +298,13 @@ void add_plan(CLI::App& map) {
   command->add_option("--to", options->to, "Goal: x y, m")
       ->expected(2)
       ->check(number_between(-1e6, 1e6));
-  command->add_option("--to-object", options->thing, "Goal: a place beside this object");
+  command->add_option("--to-object", options->thing, "Goal: a place beside this object")
+      ->check(not_empty());
   command->add_option("--radius", options->radius_m, "Of the robot's disc, m")
       ->check(number_between(0.0, 10.0));
   command->add_option("--margin", options->margin_m, "Kept beyond the radius, m")
       ->check(number_between(0.0, 10.0));
-  command->add_option("--out", options->out, "CSV file of the way's corners");
+  command->add_option("--out", options->out, "CSV file of the path's corners");
   add_band(*command, options->band);
   command->footer(
       "Example:\n  modelhouse map plan out/map/map.ot --from 1.5 2.5 --to-object refrigerator");
@@ -305,7 +315,7 @@ void add_plan(CLI::App& map) {
 
 void add_map(CLI::App& app) {
   CLI::App* map = app.add_subcommand(
-      "map", "Space, grids, costs, objects and ways from what a robot has mapped.");
+      "map", "Space, grids, costs, objects and paths from what a robot has mapped.");
   map->require_subcommand(1);
   add_map_build(*map);
   add_grid(*map);

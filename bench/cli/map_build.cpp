@@ -11,6 +11,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/sequence_source.hpp"
+#include "bench/studies/depth_comparison.hpp"
 #include "bench/studies/laser_scans.hpp"
 #include "bench/studies/map_images.hpp"
 #include "bench/studies/map_score.hpp"
@@ -154,8 +155,14 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
     if (options.map.empty()) {
       keyframes.posed = run_slam(options, source, vocabulary, keep);
     } else {
-      keyframes.posed = posed_by(load_slam(options.map, vocabulary));
-      keep_posed(options, source, keyframes.posed.poses, keep);
+      const SlamState state = load_slam(options.map, vocabulary);
+      keyframes.posed = posed_by(state);
+      DepthComparison comparison(state.map, source.frames->camera());
+      keep_posed(options, source, keyframes.posed.poses, [&](const RgbdFrame& frame) {
+        keep(frame);
+        comparison.add(frame);
+      });
+      comparison.require_same(options.map, options.source);
     }
   }
   if (!any_depth)
@@ -226,9 +233,9 @@ void run(MapBuildArguments options) {
   check(options);
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
+  const OutputFolder folder(options.out, "map build", {kMapFiles.begin(), kMapFiles.end()});
   const Source source = open_source(options);
   const auto mapped = load_mapped_scene(options);
-  const OutputFolder folder(options.out, "map build", {kMapFiles.begin(), kMapFiles.end()});
   OccupancyMapper mapper(source.frames->camera(),
                          {.depth = {.resolution_m = options.resolution_m}});
   auto [posed, kept] = keep_keyframes(options, source, mapper);

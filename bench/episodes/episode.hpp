@@ -24,7 +24,8 @@ struct EpisodeScore {
   double start_x_m = 0, start_y_m = 0, start_heading_deg = 0;
   bool success = false;  ///< it said "arrived", and was within arrival_m of such a thing
   /// Empty for a success, else: no_map, never_relocalized, false_pose, object_not_in_map, no_path,
-  /// stuck, collision_stop, time_out, wrong_arrival; system_failed: of an outside system.
+  /// stuck, collision_stop, time_out, wrong_arrival; of an outside system also system_failed, and
+  /// not_run: it had failed before.
   std::string reason = {};
   bool said_arrived = false;
   bool wrong_arrival = false;                  ///< said so, and was not

@@ -6,6 +6,7 @@
 
 #include "bench/store/columns.hpp"
 #include "bench/store/database.hpp"
+#include "bench/store/guard.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
@@ -24,20 +25,19 @@ std::string episodes_schema() {
 }  // namespace
 
 EpisodeStore::EpisodeStore(const std::filesystem::path& file) : file_(file) {
-  try {
+  guarded(file, [&] {
     database_ = std::make_unique<SQLite::Database>(
         file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusy_ms);
     add_row_digest(*database_);
+    require_whole_pages(*database_, file);
     const int version = database_->execAndGet("PRAGMA user_version").getInt();
-    if (version == kVersion) return;
+    if (version == kVersion) return require_whole_table(*database_, file, "episodes");
     if (version != 0 || database_->execAndGet("SELECT count(*) FROM sqlite_master").getInt() != 0)
       throw InputError(fmt::format(
           "{}: is no file of episodes of this version: move it away and run again", file.string()));
     database_->exec(episodes_schema());
     database_->exec(fmt::format("PRAGMA user_version = {}", kVersion));
-  } catch (const SQLite::Exception& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
-  }
+  });
 }
 
 EpisodeStore::~EpisodeStore() = default;

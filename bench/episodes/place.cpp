@@ -112,6 +112,7 @@ MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapT
   const Unlabeled unlabeled(frames);
   double furthest = 0;
   const auto map_now = [&] {
+    tools.say(fmt::format("{}: maps the tour", spec.name));
     map_sequence(*mapped.system,
                  spec.system.sees_labels() ? frames : static_cast<const Sequence&>(unlabeled),
                  spec.protocol, stream,

@@ -66,6 +66,7 @@ struct MapTools {
   std::filesystem::path folder;  ///< for an outside program's log; exists
   Cache maps = Cache();          ///< finished maps of systems that can save them
   std::string key;               ///< of the map
+  std::function<void(std::string_view)> say = [](std::string_view) {};  ///< as EpisodeOptions
   std::function<void(double)> progress = [](double) {};
   std::function<void(std::string_view)> status = {};  ///< receives what a library is asked for
 };

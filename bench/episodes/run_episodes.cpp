@@ -22,6 +22,7 @@
 #include "bench/provenance/digest.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "scenes/load.hpp"
+#include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/labels.hpp"
@@ -225,14 +226,16 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
             run_in_own_process(run.spec, options, [&](double share) { report(share * episodes); });
         done += todo.size();
       } else {
-        options.say(fmt::format("{}: maps the tour", run.spec.name));
         try {
-          MappedSystem mapped = map_tour(
-              run.spec, *world,
-              {.folder = folder, .maps = cache, .key = map_keys[r], .status = options.status});
-          options.say(fmt::format("{}: {} of {} frames mapped, {} objects; {} kidnappings",
-                                  run.spec.name, mapped.tracked, mapped.offered,
-                                  mapped.map.objects.size(), todo.size()));
+          MappedSystem mapped = map_tour(run.spec, *world,
+                                         {.folder = folder,
+                                          .maps = cache,
+                                          .key = map_keys[r],
+                                          .say = options.say,
+                                          .status = options.status});
+          options.say(fmt::format(
+              "{}: {} of {} frames mapped, {}; {}", run.spec.name, mapped.tracked, mapped.offered,
+              counted(mapped.map.objects.size(), "object"), counted(todo.size(), "kidnapping")));
           const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
           Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs);
           mapped.system->finish();
@@ -245,16 +248,19 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
       for (EpisodeScore& score : store.load(run.key))
         known.insert_or_assign(Slot{score.variant, score.start}, std::move(score));
     }
+    bool failed = false;
     for (std::size_t v = 0; v < suite.episodes->variants.size(); ++v)
       for (std::size_t s = 0; s < suite.episodes->starts; ++s) {
         const std::string& variant = suite.episodes->variants[v].name;
-        const auto found = known.find({variant, s});
-        run.scores.push_back(found != known.end()
-                                 ? found->second
-                                 : EpisodeScore{.variant = variant,
-                                                .start = s,
-                                                .goal = world->variants[v].starts[s].goal,
-                                                .reason = "system_failed"});
+        if (const auto found = known.find({variant, s}); found != known.end()) {
+          run.scores.push_back(found->second);
+          continue;
+        }
+        run.scores.push_back({.variant = variant,
+                              .start = s,
+                              .goal = world->variants[v].starts[s].goal,
+                              .reason = failed ? "not_run" : "system_failed"});
+        failed = true;  // they run in this order: it failed in the first that is missing
       }
   }
   return runs;
@@ -267,10 +273,12 @@ OneEpisode prepare_episode(const Suite& suite, const RunSpec& run, const Episode
   OneEpisode one{.world = build_episode_world(labeled(run, suite), *suite.episodes, options.jobs,
                                               cache, options.say),
                  .mapped = {}};
-  options.say(fmt::format("{}: maps the tour", run.name));
-  one.mapped = map_tour(
-      run, one.world,
-      {.folder = options.out, .maps = cache, .key = keys.map, .progress = options.progress});
+  one.mapped = map_tour(run, one.world,
+                        {.folder = options.out,
+                         .maps = cache,
+                         .key = keys.map,
+                         .say = options.say,
+                         .progress = options.progress});
   return one;
 }
 

@@ -20,6 +20,7 @@ constexpr int kShots = 8;
 constexpr double kShotWidth = 236, kShotHeight = 177, kGap = 8, kMargin = 16, kTitle = 46;
 constexpr double kMapHeight = 660, kLegendWidth = 430;
 constexpr double kEvery_s = 0.5;  // a shot is kept this often
+constexpr double kApart_px = 14;  // marks nearer than this would cover each other
 
 constexpr Rgb8 kDark{35, 38, 45}, kPale{120, 126, 136}, kOccupied{86, 94, 108},
     kUnknown{214, 217, 222}, kFree{250, 250, 248}, kTrue{38, 150, 84}, kBelieved{36, 84, 196},
@@ -123,13 +124,20 @@ void EpisodeRecord::add(const EpisodeMoment& moment) {
                                moment.believed ? place(*moment.believed) : "nothing", answer));
 }
 
+std::string EpisodeRecord::log_so_far() const {
+  std::string text;
+  for (const std::string& line : lines_) text += line + "\n";
+  return text;
+}
+
 std::string EpisodeRecord::log(const EpisodeScore& score) const {
   std::string text = fmt::format(
       "start {} ({}): put at [{:.2f}, {:.2f}] m, {:.0f} deg, to find: {} ({:.1f} m away by the "
-      "shortest way)\n",
+      "shortest path)\nplaces are in the world, except 'in its map': that begins where its tour "
+      "began\n",
       score.start, score.variant, score.start_x_m, score.start_y_m, score.start_heading_deg,
       score.goal, score.shortest_m);
-  for (const std::string& line : lines_) text += line + "\n";
+  text += log_so_far();
   text += score.success
               ? fmt::format("success: {:.1f} s, {:.1f} m, SPL {:.2f}\n", score.time_s,
                             score.length_m, score.spl)
@@ -199,11 +207,16 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
              kPale);
   if (!steps_.empty())
     draw_robot(canvas, view, map_from_world * steps_.back().world_from_base, kTrue);
-  for (std::size_t i = 0; i < shots.size(); ++i) {
-    const cv::Point2d at = view(map_from_world * shots[i]->world_from_base.place_m);
-    canvas.disc(at, 3, kDark);
-    canvas.text(std::to_string(i + 1), {at.x + 6, at.y - 6 - 3 * static_cast<double>(i % 3)}, 9,
-                kDark, Canvas::Align::kLeft, true);
+  for (std::size_t i = 0; i < shots.size();) {  // images from one place share a mark: "1-4"
+    const auto at = [&](std::size_t k) {
+      return view(map_from_world * shots[k]->world_from_base.place_m);
+    };
+    std::size_t end = i + 1;
+    while (end < shots.size() && cv::norm(at(end) - at(i)) < kApart_px) ++end;
+    canvas.disc(at(i), 3, kDark);
+    canvas.text(end == i + 1 ? std::to_string(end) : fmt::format("{}-{}", i + 1, end),
+                {at(i).x + 6, at(i).y - 6}, 9, kDark, Canvas::Align::kLeft, true);
+    i = end;
   }
   const double x = view({view.high_m.x(), view.low_m.y()}).x + 2 * kMargin;
   double y = map_top + 14;
@@ -215,9 +228,10 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
   legend(kPale, "where it was put");
   legend(kTrue, "where it drove (truth)");
   legend(kBelieved, "where it believed to be");
-  legend(kPlan, "ways that it planned");
+  legend(kPlan, "paths that it planned");
   legend(kGoalBox, fmt::format("'{}' in its own map", score.goal));
-  legend(kOccupied, "occupied; gray: unknown");
+  legend(kOccupied, "occupied in its map");
+  legend(kUnknown, "unknown");
   y += 10;
   const auto line = [&](const std::string& text, Rgb8 color = kDark) {
     canvas.text(text, {x, y}, 10, color);
@@ -227,7 +241,7 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
                                      *score.located_s, score.located_error_m.value_or(0))
                        : "never knew its place",
        score.located_s ? kDark : kWrong);
-  line(fmt::format("drove {:.1f} m, shortest way {:.1f} m", score.length_m, score.shortest_m));
+  line(fmt::format("drove {:.1f} m, shortest path {:.1f} m", score.length_m, score.shortest_m));
   line(fmt::format("SPL {:.2f}; {:.2f} m from it in the end", score.spl, score.end_distance_m));
   line(fmt::format("{} contacts, the fastest {:.2f} m/s", score.contacts,
                    score.worst_contact_m_per_s),

@@ -143,7 +143,9 @@ bool is_generated(const fs::path& source) {
 }
 
 fs::path named_file(const YamlReader& node, const SuitePaths& paths, std::optional<Shipped> what) {
-  return resolve(node.as_string(), node, paths, what);
+  const std::string text = node.as_string();
+  if (what == Shipped::kScene && is_generated(text)) return text;
+  return resolve(text, node, paths, what);
 }
 
 Environments read_environments(const YamlReader& list, const SuitePaths& paths,

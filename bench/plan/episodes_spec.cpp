@@ -44,7 +44,7 @@ EpisodeVariant read_variant(YamlReader& node, const SuitePaths& paths) {
 EpisodesSpec read_episodes(YamlReader node, const SuitePaths& paths) {
   EpisodesSpec spec;
   YamlReader goals = node.at("goals");
-  for (const YamlReader& goal : goals.items()) spec.goals.push_back(read_goal(goal));
+  for (const YamlReader& goal : goals.items()) add_once(spec.goals, read_goal(goal), goal);
   if (spec.goals.empty()) goals.fail("is empty: at least one is needed");
   spec.starts = static_cast<std::size_t>(
       node.integer_or("starts", static_cast<std::int64_t>(spec.starts), 1, 100000));

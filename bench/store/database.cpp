@@ -78,14 +78,6 @@ void require_version(SQLite::Database& db, const fs::path& file) {
                         file.string(), version, kSchemaVersion));
 }
 
-/// SQLite's own check of its pages; require_whole_rows() checks rows.
-void require_whole_pages(SQLite::Database& db, const fs::path& file) {
-  if (const std::string found = db.execAndGet("PRAGMA quick_check(1)").getString(); found != "ok")
-    throw InputError(
-        fmt::format("{}: is damaged ({}): put back a copy, or move it away and run again",
-                    file.string(), found));
-}
-
 /// Whether SQLite may write the file and its log next to it.
 bool may_be_written(const fs::path& file) {
   const fs::path folder = fs::absolute(file).parent_path();
@@ -108,6 +100,13 @@ std::string as_immutable(const fs::path& file) {
 }
 
 }  // namespace
+
+void require_whole_pages(SQLite::Database& db, const fs::path& file) {
+  if (const std::string found = db.execAndGet("PRAGMA quick_check(1)").getString(); found != "ok")
+    throw InputError(
+        fmt::format("{}: is damaged ({}): put back a copy, or move it away and run again",
+                    file.string(), found));
+}
 
 std::unique_ptr<SQLite::Database> open_to_write(const fs::path& file) {
   auto database = open(fs::absolute(file).string(), SQLite::OPEN_CREATE);

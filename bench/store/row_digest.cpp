@@ -59,18 +59,18 @@ void row_digest(sqlite3_context* context, int count, sqlite3_value** values) {
 struct Columns {
   std::string values;  ///< "'plan', position, name, key": the arguments of row_digest()
   std::string key;     ///< "position || ', ' || name": the name of a row
+  std::string digest;  ///< the last one
 };
 
 Columns columns_of(SQLite::Database& db, const std::string& table) {
-  Columns columns{fmt::format("'{}'", table), ""};
+  Columns columns{fmt::format("'{}'", table), "", ""};
   SQLite::Statement s(db, "SELECT name, pk FROM pragma_table_info(?) ORDER BY cid");
   s.bind(1, table);
   while (s.executeStep()) {
-    const std::string name = s.getColumn(0).getString();
-    if (name == "digest") continue;
-    columns.values += ", \"" + name + "\"";
+    if (!columns.digest.empty()) columns.values += ", " + columns.digest;
+    columns.digest = fmt::format("\"{}\"", s.getColumn(0).getString());
     if (s.getColumn(1).getInt() > 0)
-      columns.key += (columns.key.empty() ? "" : " || ', ' || ") + ("\"" + name + "\"");
+      columns.key += (columns.key.empty() ? "" : " || ', ' || ") + columns.digest;
   }
   return columns;
 }
@@ -134,18 +134,20 @@ std::string insert_row(const std::string& table, int values, const char* verb) {
   return fmt::format("{0} INTO {1} VALUES ({2}, row_digest('{1}', {2}))", verb, table, marks);
 }
 
+void require_whole_table(SQLite::Database& db, const std::filesystem::path& file,
+                         const std::string& table) {
+  const Columns columns = columns_of(db, table);
+  SQLite::Statement s(db, fmt::format("SELECT {} FROM {} WHERE {} IS NOT row_digest({}) LIMIT 1",
+                                      columns.key, table, columns.digest, columns.values));
+  if (s.executeStep())
+    throw InputError(fmt::format(
+        "{}: is damaged: row ({}) of its table '{}': put back a copy, or move it away and run "
+        "again",
+        file.string(), printable(s.getColumn(0).getString()), table));
+}
+
 void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file) {
-  for (const std::string table : kDigestedTables) {
-    const Columns columns = columns_of(db, table);
-    SQLite::Statement s(db, fmt::format("SELECT {} FROM {} WHERE digest IS NOT row_digest({}) "
-                                        "LIMIT 1",
-                                        columns.key, table, columns.values));
-    if (s.executeStep())
-      throw InputError(fmt::format(
-          "{}: is damaged: row ({}) of its table '{}': put back a copy, or move it away and run "
-          "again",
-          file.string(), printable(s.getColumn(0).getString()), table));
-  }
+  for (const char* table : kDigestedTables) require_whole_table(db, file, table);
   require_all_rows(db, file);
 }
 

@@ -32,6 +32,11 @@ int column_count(SQLite::Database& db, const std::string& table);
 /// "INSERT INTO plan VALUES (?1, ?2, ?3, row_digest('plan', ?1, ?2, ?3))" for that many values.
 std::string insert_row(const std::string& table, int values, const char* verb = "INSERT");
 
+/// Checks every row of a table whose last column is a row digest. @throws InputError naming file,
+/// table and the first row whose digest does not match its values.
+void require_whole_table(SQLite::Database& db, const std::filesystem::path& file,
+                         const std::string& table);
+
 /// Checks every row, and that none is missing. @throws InputError naming file, table and the first
 /// row whose digest does not match its values, or the first run that has lost rows.
 void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file);

@@ -65,21 +65,12 @@ std::vector<MapPoint> points_of(const VoxelMap& map) {
 
 cv::Mat draw_classes_over(const OccupancyGrid& grid, const std::vector<MapPoint>& points,
                           double ceiling_m) {
-  constexpr Rgb8 kFloorTone{246, 246, 246}, kWallTone{90, 90, 90};
+  constexpr Rgb8 kFloorTone{232, 234, 237}, kWallTone{90, 90, 90};
   constexpr double kSlant = 0.62, kRise = 0.78;  // px per px of depth, of height
   const auto [low, high] = known_part(grid);
   const Vector2i size = high - low;
   const double px = (kMapWidth - 2 * kMapMargin) / std::max(1, size.x());  // per cell
-  const double px_per_m = px / grid.resolution_m, top = kMapMargin + 1.0 * px_per_m;
-  const int height = static_cast<int>(top + size.y() * px * kSlant + 110);
-  Canvas canvas(static_cast<int>(kMapWidth), height);
-  for (int y = high.y() - 1; y >= low.y(); --y)
-    for (int x = low.x(); x < high.x(); ++x) {
-      const std::int8_t cell = grid.cells(x, y);
-      if (cell == kUnknownCell) continue;
-      canvas.fill(kMapMargin + (x - low.x()) * px, top + (high.y() - 1 - y) * px * kSlant, px + 0.5,
-                  px * kSlant + 0.5, cell == kOccupiedCell ? kWallTone : kFloorTone);
-    }
+  const double px_per_m = px / grid.resolution_m;
   const Vector2d corner = grid.origin_m + grid.resolution_m * low.cast<double>();
   std::vector<MapPoint> shown;
   std::map<ClassId, int> count;
@@ -92,18 +83,37 @@ cv::Mat draw_classes_over(const OccupancyGrid& grid, const std::vector<MapPoint>
     shown.push_back(p);
     ++count[p.label];
   }
+  const auto rise_px = [&](const MapPoint& p) { return p.point_m.z() * px_per_m * kRise; };
+  // Below the north edge of the grid, px.
+  const auto down_px = [&](const MapPoint& p) {
+    return (size.y() * grid.resolution_m - (p.point_m.y() - corner.y())) * px_per_m * kSlant;
+  };
+  double above_px = 0;
+  for (const MapPoint& p : shown) above_px = std::max(above_px, rise_px(p) - down_px(p));
+  const double top = kMapMargin + above_px;
+  const int height = static_cast<int>(top + size.y() * px * kSlant + 134);
+  Canvas canvas(static_cast<int>(kMapWidth), height);
+  for (int y = high.y() - 1; y >= low.y(); --y)
+    for (int x = low.x(); x < high.x(); ++x) {
+      const std::int8_t cell = grid.cells(x, y);
+      if (cell == kUnknownCell) continue;
+      canvas.fill(kMapMargin + (x - low.x()) * px, top + (high.y() - 1 - y) * px * kSlant, px + 0.5,
+                  px * kSlant + 0.5, cell == kOccupiedCell ? kWallTone : kFloorTone);
+    }
   // The farthest first, so that what is in front covers it; then the lowest.
   std::ranges::stable_sort(shown, [](const MapPoint& a, const MapPoint& b) {
     return std::make_pair(-a.point_m.y(), a.point_m.z()) <
            std::make_pair(-b.point_m.y(), b.point_m.z());
   });
   for (const MapPoint& p : shown) {
-    const Vector2d at = p.point_m.head<2>() - corner;
-    canvas.disc({kMapMargin + at.x() * px_per_m,
-                 top + (size.y() * grid.resolution_m - at.y()) * px_per_m * kSlant -
-                     p.point_m.z() * px_per_m * kRise},
-                1.5, color_of(p.label));
+    canvas.disc(
+        {kMapMargin + (p.point_m.x() - corner.x()) * px_per_m, top + down_px(p) - rise_px(p)}, 1.5,
+        color_of(p.label));
   }
+  canvas.text(
+      "Seen from above and from the south: the grid on the floor, the points at their height; "
+      "white: unknown.",
+      {kMapMargin, height - 102.0}, 10);
   std::vector<std::pair<std::string, Rgb8>> entries{{"free", kFloorTone}, {"occupied", kWallTone}};
   for (const auto& [label, times] : count)
     if (times >= 20) entries.emplace_back(std::string(classes()[label].name), color_of(label));

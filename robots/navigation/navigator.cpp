@@ -166,7 +166,7 @@ Twist2d Navigator::step(const Perception& now) {
   if (state_ != NavigatorState::kBacking && touched(now)) return Twist2d::Zero();
   if (belief_.known() && !was_known_) {
     const Pose2 at = map_from_base(now.odom_from_base);
-    say(fmt::format("knows its place: [{:.2f}, {:.2f}] m, {:.0f} deg", at.place_m.x(),
+    say(fmt::format("knows its place in its map: [{:.2f}, {:.2f}] m, {:.0f} deg", at.place_m.x(),
                     at.place_m.y(), at.heading_rad * 180 / M_PI));
     if (state_ != NavigatorState::kBacking) enter(NavigatorState::kPlanning, now.time_s);
   }

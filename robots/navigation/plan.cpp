@@ -20,6 +20,7 @@ using Cell = FloorGrid::Cell;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr double kNarrowPrice = 2.0;  // a meter at the minimum clearance costs three
+constexpr double kPoint_m = 1e-6;     // blocked cells have no clearance: not even a point passes
 
 /// Shortest paths from one of some cells, each step weighted by `price`; stops early at `goal`.
 struct Search {
@@ -65,6 +66,7 @@ struct Search {
 /// The nearest free cell within a cell and a half, to start from: a place may be on the border of
 /// the free cells.
 std::optional<Cell> free_cell(const FloorGrid& grid, const Vector2d& place_m, double clearance_m) {
+  clearance_m = std::max(clearance_m, kPoint_m);
   const auto cell = grid.cell_of(place_m);
   if (!cell) return std::nullopt;
   std::optional<Cell> best;
@@ -109,6 +111,7 @@ std::vector<Vector2d> straightened(const FloorGrid& grid, const std::vector<Vect
 
 std::optional<std::vector<Vector2d>> plan_way(const FloorGrid& grid, const Vector2d& from_m,
                                               const Vector2d& to_m, double clearance_m) {
+  clearance_m = std::max(clearance_m, kPoint_m);
   const auto start = free_cell(grid, from_m, clearance_m);
   const auto goal = free_cell(grid, to_m, clearance_m);
   if (!start || !goal) return std::nullopt;
@@ -131,6 +134,7 @@ std::optional<std::vector<Vector2d>> plan_way(const FloorGrid& grid, const Vecto
 
 Grid2d<float> way_lengths(const FloorGrid& grid, std::span<const Vector2d> from_m,
                           double clearance_m) {
+  clearance_m = std::max(clearance_m, kPoint_m);
   std::vector<Cell> starts;
   for (const Vector2d& place_m : from_m)
     if (const auto start = free_cell(grid, place_m, clearance_m)) starts.push_back(*start);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -25,14 +27,16 @@ struct MapImage {
 std::array<std::filesystem::path, 2> map_image_files(const std::filesystem::path& stem);
 
 /// @throws InputError if one of the two is there and not from write_map_image(), or if the stem
-/// names no file.
+/// names no file or ends in .pgm or .yaml.
 void require_replaceable_map_image(const std::filesystem::path& stem);
 
 /// Writes stem.pgm (upper row = north) and stem.yaml. @throws InputError naming the file.
 void write_map_image(const MapImage& map, const std::filesystem::path& stem, const char* mode);
 
 /// Reads the keys image, resolution and origin, and the image. The caller reads the others.
+/// @param warnings  receives what was ignored; may be null
 /// @throws InputError naming file, line, field and value.
-MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file);
+MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
+                        std::vector<std::string>* warnings = nullptr);
 
 }  // namespace mh

@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 #include <yaml-cpp/emitter.h>
 
+#include "slam/core/counted.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/suggest.hpp"
 #include "slam/core/yaml.hpp"
 #include "slam/occupancy/map_image.hpp"
 #include "slam/occupancy/occupancy_grid.hpp"
@@ -40,8 +42,13 @@ std::uint8_t gray(std::int8_t cell, GridMode mode) {
   return cell == kUnknownCell ? kUnknownGray : cell == kFreeCell ? kFreeGray : kOccupiedGray;
 }
 
+/// The keys of a map's YAML file that map_server defines.
+constexpr std::array kKeys = {"image",           "mode",       "resolution", "origin", "negate",
+                              "occupied_thresh", "free_thresh"};
+
 /// Reads a binary PGM, upper row first.
-Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file) {
+Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file,
+                              std::vector<std::string>* warnings) {
   const std::string content = read_file(file);
   std::istringstream in(content);
   std::string magic;
@@ -59,13 +66,20 @@ Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file) {
   if (width < 1 || height < 1 || width > 65536 || height > 65536)
     throw InputError(
         fmt::format("{}: {} x {} pixels, not 1 to 65536 each", file.string(), width, height));
-  in.get();
+  const int blank = in.get();
   const std::string_view pixels = std::string_view(content).substr(
       std::min(content.size(), static_cast<std::size_t>(in.tellg())));
-  if (pixels.size() < static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
-    throw InputError(fmt::format("{}: is truncated", file.string()));
+  const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (pixels.size() < size) throw InputError(fmt::format("{}: is truncated", file.string()));
+  // One blank separates header and pixels; a line that ends in CR LF has two.
+  const bool two_blanks = pixels.size() == size + 1 && pixels[0] == '\n' && blank == '\r';
+  const std::size_t left = pixels.size() - size - (two_blanks ? 1 : 0);
+  if (left > 0 && warnings != nullptr)
+    warnings->push_back(fmt::format("{}: {} behind its {} x {} pixels {} ignored", file.string(),
+                                    counted(left, "byte"), width, height,
+                                    left == 1 ? "is" : "are"));
   Grid2d<std::uint8_t> image(width, height);
-  std::memcpy(image.data(), pixels.data(), image.size());
+  std::memcpy(image.data(), pixels.data() + (two_blanks ? 1 : 0), image.size());
   return image;
 }
 
@@ -99,6 +113,9 @@ void require_replaceable_map_image(const std::filesystem::path& stem) {
         fmt::format("'{}': names no file: a path without extension is needed, to "
                     "which .pgm and .yaml are added",
                     stem.string()));
+  if (const auto end = stem.extension(); end == ".pgm" || end == ".yaml")
+    throw InputError(fmt::format("{}: .pgm and .yaml are added to it: name it without {}",
+                                 stem.string(), end.string()));
   const auto [pgm, yaml] = map_image_files(stem);
   if (is_file(yaml) ? read_file(yaml).starts_with(kOurs) : !is_there(pgm) && !is_there(yaml))
     return;
@@ -121,7 +138,8 @@ void write_map_image(const MapImage& map, const std::filesystem::path& stem, con
                         map.origin_m.x(), map.origin_m.y(), kOccupiedThreshold, kFreeThreshold));
 }
 
-MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file) {
+MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
+                        std::vector<std::string>* warnings) {
   const std::filesystem::path file = yaml.string("image");
   MapImage map;
   map.resolution_m = yaml.number("resolution", 1e-4, 100.0);
@@ -133,19 +151,27 @@ MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file
     yaml.at("origin").fail(
         fmt::format("({}, {}) m is farther than {} m", origin[0], origin[1], kFurthest_m));
   const Grid2d<std::uint8_t> image =
-      read_pgm(file.is_absolute() ? file : yaml_file.parent_path() / file);
+      read_pgm(file.is_absolute() ? file : yaml_file.parent_path() / file, warnings);
   map.levels = Grid2d<std::uint8_t>(image.width(), image.height());
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) map.levels(x, y) = image(x, image.height() - 1 - y);
   return map;
 }
 
-OccupancyGrid load_map_server(const std::filesystem::path& yaml_file) {
+OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
+                              std::vector<std::string>* warnings) {
   YamlReader yaml = YamlReader::load(yaml_file);
-  const std::string mode = yaml.string("mode", "trinary");
+  for (const auto& [key, value] : yaml.entries())
+    if (warnings != nullptr && std::ranges::find(kKeys, key) == kKeys.end())
+      warnings->push_back(fmt::format("{}:{}: key '{}' is none of map_server's and is ignored{}",
+                                      yaml_file.string(), value.line(), key,
+                                      did_you_mean(key, words_of(kKeys))));
+  std::string mode = yaml.string("mode", "trinary");
+  for (char& c : mode)  // nav2_map_server takes capitals, too
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   if (mode != "trinary" && mode != "raw")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary and raw are");
-  const MapImage map = read_map_image(yaml, yaml_file);
+  const MapImage map = read_map_image(yaml, yaml_file, warnings);
   const std::string negated = yaml.string("negate");  // map_server takes both spellings
   const bool negate = negated == "1" || negated == "true";
   if (!negate && negated != "0" && negated != "false")
@@ -157,16 +183,23 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file) {
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(map.levels.width(), map.levels.height()),
                      .resolution_m = map.resolution_m,
                      .origin_m = map.origin_m};
+  std::size_t out_of_range = 0;
   for (int y = 0; y < grid.cells.height(); ++y)
     for (int x = 0; x < grid.cells.width(); ++x) {
       const std::uint8_t level = map.levels(x, y);
       if (mode == "raw") {  // as nav2_map_server: what is not 0 to 100 is unknown
+        out_of_range += level > kOccupiedCell && level != kUnknownRaw ? 1 : 0;
         grid.cells(x, y) = level <= kOccupiedCell ? static_cast<std::int8_t>(level) : kUnknownCell;
         continue;
       }
       const double p = negate ? level / 255.0 : 1.0 - level / 255.0;
       grid.cells(x, y) = p > occupied ? kOccupiedCell : p < free ? kFreeCell : kUnknownCell;
     }
+  if (out_of_range > 0 && warnings != nullptr)
+    warnings->push_back(
+        fmt::format("{}: {} from 101 to 254, which mode raw takes for unknown (a cost map? "
+                    "`map cost` writes what can be read as NAME_published)",
+                    yaml_file.string(), counted(out_of_range, "cell is", "cells are")));
   return grid;
 }
 

@@ -255,9 +255,12 @@ std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& co
 std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
                                        std::string_view name) {
   std::vector<std::size_t> meant;
-  const std::optional<ClassId> class_id = class_by_name(name);
+  std::string plain(name);  // as names are written: "Potted_Plant" is "potted plant"
+  for (char& c : plain)
+    c = c == '_' ? ' ' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::optional<ClassId> class_id = class_by_name(plain);
   for (std::size_t i = 0; i < objects.size(); ++i)
-    if (objects[i].name == name || (class_id && objects[i].class_id == *class_id))
+    if (objects[i].name == plain || (class_id && objects[i].class_id == *class_id))
       meant.push_back(i);
   if (meant.empty()) {
     std::vector<std::string> there;
@@ -265,10 +268,10 @@ std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
       const std::string_view of_class = classes()[object.class_id].name;
       if (there.empty() || there.back() != of_class) there.emplace_back(of_class);
     }
-    throw InputError(
-        fmt::format("object '{}': {}{}", name,
-                    class_id ? "the map holds none" : "no class and no object has this name",
-                    hint(name, there)));
+    const char* why = !class_id             ? "no class and no object has this name"
+                      : is_thing(*class_id) ? "the map holds none"
+                                            : "is never an object of a map";
+    throw InputError(fmt::format("object '{}': {}{}", name, why, hint(plain, there)));
   }
   std::ranges::stable_sort(meant, std::ranges::greater(),
                            [&](std::size_t i) { return objects[i].score; });

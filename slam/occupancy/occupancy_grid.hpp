@@ -44,9 +44,11 @@ enum class GridMode {
 void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& stem,
                      GridMode mode = GridMode::kTrinary);
 
-/// Reads such a pair by its YAML file (trinary or raw, no rotation). Keys that map_server does not
-/// define are left alone, as it does.
+/// Reads such a pair by its YAML file: trinary or raw, no rotation, a binary 8-bit PGM.
+/// @param warnings  receives what was ignored: keys that map_server does not define, bytes behind
+///                  the image, values out of range; may be null
 /// @throws InputError naming file, line, field and value.
-OccupancyGrid load_map_server(const std::filesystem::path& yaml_file);
+OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
+                              std::vector<std::string>* warnings = nullptr);
 
 }  // namespace mh

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The counts that follow the tree in an .ot file, little-endian:
-//   the line "modelhouse voxel counts 2"
+//   the line "modelhouse voxel counts 3"
 //   u64  size of the content
 //   content: f64 resolution (m)
 //     u32       voxels of detected objects; for each, by place: 3 x i16 voxel, u16 object
 //     u32       pairs of objects that are apart; for each, ascending: 2 x u16
-//     (version 1 has neither)
+//     (version 1 has neither of the two)
 //   for each block of 8 x 8 x 8 voxels with any known voxel:
 //     3 x i16   index of the block
 //     8 x u64   known voxels, bit x + 8 y of word z
 //     for each of them, by place: hits, misses, number of votes; then class and views of each vote
 //     (numbers in groups of 7 bits, the lowest first; the top bit says that another group follows)
-//   u64  xxh3-64 of the content
+//   u64  xxh3-64 of all bytes before it, from the beginning of the file (versions 1 and 2: of the
+//        content alone)
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -45,8 +46,10 @@ class QuietErrors {
 
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie");
 
-constexpr std::string_view kTreeMagic = "# Octomap OcTree file";
-constexpr std::string_view kCountsMagic = "modelhouse voxel counts 2\n",
+constexpr std::string_view kTreeMagic = "# Octomap OcTree file",
+                           kBinaryMagic = "# Octomap OcTree binary file";
+constexpr std::string_view kCountsMagic = "modelhouse voxel counts 3\n",
+                           kSecondCountsMagic = "modelhouse voxel counts 2\n",
                            kFirstCountsMagic = "modelhouse voxel counts 1\n";
 
 template <class T>
@@ -226,12 +229,14 @@ void read_block(CountsReader& in, VoxelTree& tree) {
   if (!tree.nodeHasChildren(&block)) in.fail("an empty block");
 }
 
-/// Skips a node of a ColorOcTree and everything below it.
-void skip_node(CountsReader& in, unsigned levels_left) {
+/// Skips a node of a ColorOcTree and everything below it; returns how many nodes these are.
+std::size_t skip_node(CountsReader& in, unsigned levels_left) {
   in.take(sizeof(float) + 3);  // log-odds, color
   const auto children = in.get<std::uint8_t>();
   if (children != 0 && levels_left == 0) in.fail("its tree is too deep");
-  for (int i = 0; i < std::popcount(children); ++i) skip_node(in, levels_left - 1);
+  std::size_t nodes = 1;
+  for (int i = 0; i < std::popcount(children); ++i) nodes += skip_node(in, levels_left - 1);
+  return nodes;
 }
 
 struct OtHeader {
@@ -242,15 +247,21 @@ struct OtHeader {
 
 /// Reads the lines before the tree.
 OtHeader read_header(std::istream& in, const std::string& name) {
-  std::string line, key;
+  std::string line, key, word;
   std::getline(in, line);
+  if (line.starts_with(kBinaryMagic))
+    throw InputError(fmt::format(
+        "{}: is an octree in OctoMap's binary format (.bt), which knows no classes: name the .ot "
+        "file of `map build`",
+        name));
   if (!line.starts_with(kTreeMagic))
     throw InputError(fmt::format("{}: is not an OctoMap file (.ot)", name));
   OtHeader header;
   while (in >> key && key != "data") {
     if (key == "id") in >> header.type;
     if (key == "size") in >> header.size;
-    if (key == "res") in >> header.resolution_m;
+    if (key == "res" && in >> word && (std::istringstream(word) >> header.resolution_m).fail())
+      throw InputError(fmt::format("{}: its resolution '{}' is no number", name, word));
     if (key[0] == '#') std::getline(in, line);
   }
   in.get();  // the end of the line "data"
@@ -290,40 +301,49 @@ void VoxelMap::write_ot(std::ostream& out) const {
   }
   if (tree.size() > 0) tree.updateInnerOccupancy();
   tree.prune();
+  std::ostringstream whole;
   {
     const QuietErrors quiet;
-    tree.write(out);
+    tree.write(whole);
   }
+  std::string bytes = std::move(whole).str();
   const std::string counts = counts_of(impl_->tree, impl_->detected);
-  std::string end(kCountsMagic);
-  put(end, static_cast<std::uint64_t>(counts.size()));
-  end += counts;
-  put(end, static_cast<std::uint64_t>(XXH3_64bits(counts.data(), counts.size())));
-  out.write(end.data(), static_cast<std::streamsize>(end.size()));
+  bytes += kCountsMagic;
+  put(bytes, static_cast<std::uint64_t>(counts.size()));
+  bytes += counts;
+  put(bytes, static_cast<std::uint64_t>(XXH3_64bits(bytes.data(), bytes.size())));
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
-  const OtHeader header = read_header(in, name);
-  std::ostringstream rest;
-  rest << in.rdbuf();
-  const std::string bytes = std::move(rest).str();
-  CountsReader reader(bytes, name);
-  if (header.size > 0) skip_node(reader, 16);
+  std::ostringstream read;
+  read << in.rdbuf();
+  const std::string bytes = std::move(read).str();
+  std::istringstream lines(bytes);
+  const OtHeader header = read_header(lines, name);
+  const auto tree_at = static_cast<std::size_t>(lines.tellg());
+  CountsReader reader(std::string_view(bytes).substr(tree_at), name);
+  if (header.size > 0 && skip_node(reader, 16) != header.size)
+    reader.fail(fmt::format("its tree has not the {} nodes that it says", header.size));
   if (reader.at_end())
     throw InputError(fmt::format(
         "{}: has no counts after its tree: it is from another program, or was edited", name));
   const std::string_view magic = reader.take(kCountsMagic.size());
-  if (magic != kCountsMagic && magic != kFirstCountsMagic) reader.fail("its counts do not begin");
+  if (magic != kCountsMagic && magic != kSecondCountsMagic && magic != kFirstCountsMagic)
+    reader.fail("its counts do not begin");
   const std::string_view content = reader.take(reader.get<std::uint64_t>());
-  if (XXH3_64bits(content.data(), content.size()) != reader.get<std::uint64_t>())
-    reader.fail("the checksum of its counts is wrong");
+  const std::string_view summed =
+      magic == kCountsMagic ? std::string_view(bytes.data(), content.data() + content.size())
+                            : content;
+  if (XXH3_64bits(summed.data(), summed.size()) != reader.get<std::uint64_t>())
+    reader.fail("its checksum is wrong");
   if (!reader.at_end()) reader.fail("it goes on after its end");
   CountsReader counts(content, name);
   const auto resolution_m = counts.get<double>();  // the header's is rounded
   if (!(std::abs(resolution_m - header.resolution_m) <= 1e-4 * header.resolution_m))
     counts.fail("its counts have another resolution");
   VoxelMap map(resolution_m);
-  if (magic == kCountsMagic) map.set_detected(read_detected(counts));
+  if (magic != kFirstCountsMagic) map.set_detected(read_detected(counts));
   while (!counts.at_end()) read_block(counts, map.impl_->tree);
   return map;
 }

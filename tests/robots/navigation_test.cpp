@@ -92,6 +92,14 @@ TEST(PlanWay, ThereIsNoneThroughADoorThatIsTooNarrow) {
   EXPECT_TRUE(plan_way(grid, {2, 2}, {2, 9}, 0.26).has_value());
 }
 
+TEST(PlanWay, APointDoesNotGoThroughWallsEither) {
+  const FloorGrid grid = make_floor_grid(two_rooms(0.5F));
+  EXPECT_FALSE(plan_way(grid, {2, 2}, {5, 2}, 0).has_value());
+  const auto way = plan_way(grid, {2, 2}, {8, 2}, 0);
+  ASSERT_TRUE(way.has_value());
+  EXPECT_GT(length_m(*way), 11.0);  // by the door
+}
+
 TEST(PlanWay, RoundTripsAreNoLongerThanTheOrderGiven) {
   const FloorGrid grid = make_floor_grid(empty_room());
   // Twelve places on a circle, in a scrambled order: the round is the circle's polygon.

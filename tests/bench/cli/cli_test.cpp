@@ -885,6 +885,42 @@ TEST_F(CommandLine, PosesOfAMapMayHaveOtherStampsThanTheFrames) {
                  "has no frame at the time of a pose of ");
 }
 
+TEST_F(CommandLine, AMapOfAnotherSequenceIsRefused) {
+  const auto path = [&](const char* name) { return (folder_ / name).string(); };
+  for (const char* room : {"bedroom", "office"}) {
+    ASSERT_EQ(run("render generated:" + std::string(room) +
+                  ":0 --motion handheld:0:60 --level pepper --frames 20 --out " + path(room)),
+              0)
+        << err_;
+  }
+  ASSERT_EQ(run("slam tum:" + path("bedroom") + " --out " + path("slam") + " --save-map " +
+                path("bedroom.mhmap")),
+            0)
+      << err_;
+  const std::string build = " --map " + path("bedroom.mhmap") + " --out " + path("map");
+  EXPECT_EQ(run("map build tum:" + path("bedroom") + build), 0) << err_;
+  expect_refused("map build tum:" + path("office") + build, "is the map of another sequence");
+}
+
+TEST_F(CommandLine, FilesOfOthersAreNotReplacedByObjectsAndPaths) {
+  const std::string map = (folder_ / "map").string(), file = (folder_ / "file").string();
+  ASSERT_EQ(
+      run("map build scene:generated:bathroom:0 --tour auto:0 --level ideal --frames 8 --out " +
+          map),
+      0)
+      << err_;
+  const std::string objects = "map objects " + map + "/map.ot --out ";
+  write("file", "a thesis");
+  expect_refused(objects + file, "is there already, and not from `modelhouse map`");
+  expect_refused("map plan " + map + "/map.ot --from 1 1 --to 1 1 --out " + file,
+                 "is there already, and not from `modelhouse map plan`");
+  EXPECT_EQ(content(file), "a thesis");
+  ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;
+  ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;
+  EXPECT_EQ(content(map + "/more.json"), content(map + "/objects.json"));
+  expect_refused("map objects " + map + "/map.ot ''", "is empty");
+}
+
 TEST_F(CommandLine, WithoutAFloorTheOctreeAloneIsWritten) {
   const std::string tour = (folder_ / "tour").string(), out = (folder_ / "map").string();
   // A robot in front of a wall.

@@ -239,6 +239,38 @@ TEST(MapServer, ReadsWhatOthersWrite) {
   EXPECT_THROW(cells("yes"), InputError);
 }
 
+TEST(MapServer, DirtyFilesAreReadWithAWarning) {
+  const std::string pgm = testing::TempDir() + "dirty.pgm",
+                    file = testing::TempDir() + "dirty.yaml";
+  const auto write = [&](const std::string& image, const std::string& more) {
+    write_atomically(pgm, image);
+    write_atomically(file,
+                     "image: dirty.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n"
+                     "occupied_thresh: 0.65\nfree_thresh: 0.196\n" +
+                         more);
+  };
+  const auto read = [&](std::vector<std::string> expected) {
+    std::vector<std::string> warnings;
+    const OccupancyGrid grid = load_map_server(file, &warnings);
+    EXPECT_EQ(warnings.size(), expected.size());
+    for (std::size_t i = 0; i < std::min(expected.size(), warnings.size()); ++i)
+      EXPECT_NE(warnings[i].find(expected[i]), std::string::npos) << warnings[i];
+    return std::pair(int{grid.cells(0, 0)}, int{grid.cells(1, 0)});
+  };
+  const std::string pixels = std::string("\xFE") + '\0';
+  const std::pair<int, int> right{0, 100};
+  write("P5\r\n2 1\r\n255\r\n" + pixels, "mode: Trinary\n");
+  EXPECT_EQ(read({}), right);
+  write("P5\n2 1\n255\n" + pixels + "\n", "");
+  EXPECT_EQ(read({"1 byte behind its 2 x 1 pixels is ignored"}), right);
+  write("P5\n2 1\n255\n" + pixels, "mdoe: raw\n");
+  EXPECT_EQ(read({"dirty.yaml:7: key 'mdoe' is none of map_server's and is ignored; did you mean "
+                  "'mode'?"}),
+            right);
+  write("P5\n2 1\n255\n" + pixels, "mode: raw\n");
+  EXPECT_EQ(read({"1 cell is from 101 to 254"}), std::pair(-1, 0));
+}
+
 TEST(MapServer, NamesThatYamlWouldMisreadAreQuoted) {
   const OccupancyGrid grid{.cells = Grid2d<std::int8_t>(1, 1, kFreeCell)};
   const std::string stem = testing::TempDir() + "it's: odd #1";
@@ -259,6 +291,7 @@ TEST(MapServer, FilesOfOthersAreNotReplaced) {
   EXPECT_THROW(require_replaceable_map_image(stem), InputError);
   EXPECT_THROW(require_replaceable_map_image(testing::TempDir() + "folder/"), InputError);
   EXPECT_THROW(require_replaceable_map_image(""), InputError);
+  EXPECT_THROW(require_replaceable_map_image(testing::TempDir() + "new.pgm"), InputError);
 }
 
 }  // namespace

@@ -173,27 +173,28 @@ TEST(VoxelMap, FilesKeepDetectedObjects) {
   EXPECT_NE(bytes_of(map), before);
 }
 
-/// A file as it was written before maps knew detected objects.
-TEST(VoxelMap, FilesOfTheFirstVersionAreRead) {
+/// The first version knew no detected objects; up to the second, the checksum left out the tree.
+TEST(VoxelMap, FilesOfOlderVersionsAreRead) {
   const OccupancyMapper mapper = mapped_room();
-  std::string bytes = bytes_of(mapper.map());
-  const std::string magic = "modelhouse voxel counts 2\n";
-  const std::size_t at = bytes.find(magic);
+  const std::string now = bytes_of(mapper.map());
+  const std::string magic = "modelhouse voxel counts 3\n";
+  const std::size_t at = now.find(magic);
   ASSERT_NE(at, std::string::npos);
-  std::string content = bytes.substr(at + magic.size() + 8);
-  content.resize(content.size() - 8);  // the checksum
-  ASSERT_EQ(content.substr(8, 8), std::string(8, '\0'));
-  content.erase(8, 8);
-  bytes.resize(at);
-  bytes += "modelhouse voxel counts 1\n";
-  const auto put = [&](std::uint64_t number) {
-    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-  };
-  put(content.size());
-  bytes += content;
-  put(XXH3_64bits(content.data(), content.size()));
-  std::istringstream in(bytes);
-  EXPECT_EQ(bytes_of(VoxelMap::read_ot(in, "it")), bytes_of(mapper.map()));
+  for (const char* version : {"1", "2"}) {
+    std::string content = now.substr(at + magic.size() + 8);
+    content.resize(content.size() - 8);  // the checksum
+    ASSERT_EQ(content.substr(8, 8), std::string(8, '\0'));
+    if (*version == '1') content.erase(8, 8);
+    std::string bytes = now.substr(0, at) + "modelhouse voxel counts " + version + "\n";
+    const auto put = [&](std::uint64_t number) {
+      bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+    };
+    put(content.size());
+    bytes += content;
+    put(XXH3_64bits(content.data(), content.size()));
+    std::istringstream in(bytes);
+    EXPECT_EQ(bytes_of(VoxelMap::read_ot(in, "it")), now) << version;
+  }
 }
 
 void expect_refused(const std::string& bytes, const std::string& message) {
@@ -216,6 +217,19 @@ TEST(VoxelMap, DamagedFilesAreRefused) {
   std::string flipped = good;
   flipped[good.size() - 100] = static_cast<char>(flipped[good.size() - 100] ^ 4);
   expect_refused(flipped, "checksum");
+  flipped = good;  // the log-odds of the root, which octovis would show
+  const std::size_t tree = good.find("\ndata\n") + 6;
+  flipped[tree] = static_cast<char>(flipped[tree] ^ 4);
+  expect_refused(flipped, "checksum");
+  const auto with_header = [&](const std::string& key, const std::string& value) {
+    const std::size_t at = good.find("\n" + key + " ") + key.size() + 2;
+    return good.substr(0, at) + value + good.substr(good.find('\n', at));
+  };
+  expect_refused(with_header("size", "1"), "its tree has not the 1 nodes that it says");
+  expect_refused(with_header("res", "nan"), "its resolution 'nan' is no number");
+  std::ostringstream binary;
+  mapped_room().map().write_bt(binary);
+  expect_refused(binary.str(), "binary format (.bt)");
   expect_refused(good + "x", "after its end");
   octomap::ColorOcTree other(0.05);
   other.updateNode(octomap::point3d(0, 0, 0), true);
