@@ -69,9 +69,11 @@ EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episod
   place.ticks_per_frame = episodes.ticks_per_frame;
   place.world = build_world(spec, threads, cache, say);
   const Robot& robot = place.world.simulated->robot;
-  if (!robot.equipment || robot.equipment->lasers.empty())
-    throw InputError(fmt::format("{}: robot '{}' has no lasers: it cannot drive on its own",
-                                 spec.environment.robot.string(), robot.name));
+  const bool lasers = robot.equipment && !robot.equipment->lasers.empty();
+  if (!lasers || robot.equipment->bumpers.empty())
+    throw InputError(fmt::format("{}: robot '{}' has no {}: it cannot drive on its own",
+                                 spec.environment.robot.string(), robot.name,
+                                 lasers ? "bumpers" : "lasers"));
   place.mapping = std::make_shared<EveryNth>(place.world.mapping,
                                              static_cast<std::size_t>(episodes.ticks_per_frame));
   place.world.mapping = place.mapping;  // systems are made for a camera of that rate

@@ -146,19 +146,29 @@ TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {
   EXPECT_GT(EpisodeRecord(mapped.map, start).strip("plain, start 0", score).total(), 0U);
 }
 
-TEST(Episodes, ARobotWithoutLasersIsRefused) {
+TEST(Episodes, ARobotWithoutLasersOrBumpersIsRefused) {
   Suite suite = small_suite();
   const TemporaryFolder work(fs::temp_directory_path());
-  std::string text = read_file(suite.environments.front().robot);
-  text = text.substr(0, text.find("equipment:"));
-  write_atomically(work.path() / "blind.yaml", text);
-  suite.environments.front().robot = work.path() / "blind.yaml";
-  try {
-    build_episode_world(labeled(episode_runs(suite).front(), suite), *suite.episodes, 2, Cache(),
-                        {});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("has no lasers"), std::string::npos) << error.what();
+  const fs::path pepper = suite.environments.front().robot;
+  const std::string text = read_file(pepper);
+  const auto replaced = [](std::string in, const std::string& old, const std::string& by) {
+    return in.replace(in.find(old), old.size(), by);
+  };
+  const std::string bumpers = "[BumperFL_frame, BumperFR_frame, BumperB_frame]";
+  const std::string numb = replaced(replaced(text, bumpers, "[]"), "urdf: pepper.urdf",
+                                    "urdf: " + (pepper.parent_path() / "pepper.urdf").string());
+  for (const auto& [robot, lacks] :
+       {std::pair(text.substr(0, text.find("equipment:")), "lasers"), std::pair(numb, "bumpers")}) {
+    write_atomically(work.path() / "robot.yaml", robot);
+    suite.environments.front().robot = work.path() / "robot.yaml";
+    try {
+      build_episode_world(labeled(episode_runs(suite).front(), suite), *suite.episodes, 2, Cache(),
+                          {});
+      ADD_FAILURE() << "was taken without " << lacks;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(std::string("has no ") + lacks), std::string::npos)
+          << error.what();
+    }
   }
 }
 
