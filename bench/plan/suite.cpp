@@ -240,6 +240,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
           "no system of the suite uses what is varied: the plain one ignores what is of "
           "labels, an outside one all settings of SLAM");
   }
+  if (yaml.has("episodes")) suite.protocol = live_feed();  // nobody takes a robot back
   SettingsReader protocol(yaml);
   protocol.section("protocol");
   fields(suite.protocol, protocol);

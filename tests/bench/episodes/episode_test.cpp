@@ -32,7 +32,6 @@ environments:
                          R"(/bench/scenarios/tours/room.yaml}
 vocabulary: )" + root + R"(/assets/vocabulary.mhvoc
 levels: [)" + root + R"(/sim/sensors/levels/pepper.yaml]
-protocol: {test_interval: 0}
 episodes: {starts: 2, limit_s: 90, goals: [sofa]}
 systems: )" + systems + "\n" +
                          more,
@@ -170,6 +169,13 @@ TEST(Episodes, ARobotWithoutLasersOrBumpersIsRefused) {
           << error.what();
     }
   }
+}
+
+TEST(Episodes, MappingIsALiveFeed) {
+  EXPECT_EQ(small_suite().protocol, live_feed());
+  EXPECT_EQ(small_suite("pepper", "[plain]", "labels: [exact]\nprotocol: {on_failure: rewind}\n")
+                .protocol.on_failure,
+            OnFailure::kRewind);
 }
 
 TEST(Episodes, ASuiteWithoutThemIsRefused) {
