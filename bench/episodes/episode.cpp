@@ -58,21 +58,23 @@ class Episode {
   }
 
   EpisodeScore run() {
-    if (place_.map.empty()) return failed("no_map");
-    std::optional<NavigatorGoal> goal;
+    if (place_.map.empty()) return failed("no_map", "has no map");
+    std::vector<NavigatorGoal> goals;
     try {
-      goal = goal_named(place_.map, start_.goal);
-    } catch (const InputError&) {
-      return failed("object_not_in_map");
+      goals = goals_named(place_.map, start_.goal);
+    } catch (const InputError& error) {
+      return failed("object_not_in_map", error.what());
     }
+    NavigatorConfig config;
+    config.reach_m = spec_.arrival_m - kMapError_m;
     std::optional<Navigator> navigator;
-    try {
-      NavigatorConfig config;
-      config.reach_m = spec_.arrival_m - kMapError_m;
-      navigator.emplace(place_.map.known, place_.robot, *goal, config);
-    } catch (const InputError&) {
-      return failed("no_path");
-    }
+    std::string why;
+    for (std::size_t i = 0; i < goals.size() && !navigator; ++i) try {
+        navigator.emplace(place_.map.known, place_.robot, goals[i], config);
+      } catch (const InputError& error) {  // nowhere to stand: the next one may do
+        if (why.empty()) why = error.what();
+      }
+    if (!navigator) return failed("no_path", why);
     Simulation simulation(place_.scene, place_.robot, place_.level,
                           {.start_m = start_.place_m,
                            .start_heading_rad = start_.heading_rad,
@@ -87,8 +89,14 @@ class Episode {
   }
 
  private:
-  EpisodeScore failed(const char* reason) {
+  /// Ends an episode before it began.
+  EpisodeScore failed(const char* reason, const std::string& why) {
     score_.reason = reason;
+    if (observe_)
+      observe_({.world_from_base = {start_.place_m, start_.heading_rad},
+                .believed = {},
+                .world_from_map = world_from_map_,
+                .said = {why}});
     return std::move(score_);
   }
 

@@ -100,11 +100,11 @@ struct EpisodeMoment {
   double time_s = 0;
   const RgbdFrame* frame = nullptr;  ///< null if none arrived
   const SystemReport* report = nullptr;
-  Pose2 world_from_base;          ///< truth
-  std::optional<Pose2> believed;  ///< world, as the truth aligns the robot's map
-  Pose2 world_from_map;           ///< the same alignment
-  const Navigator* navigator = nullptr;
-  std::vector<std::string> said;
+  Pose2 world_from_base;                 ///< truth
+  std::optional<Pose2> believed;         ///< world, as the truth aligns the robot's map
+  Pose2 world_from_map;                  ///< the same alignment
+  const Navigator* navigator = nullptr;  ///< null if the episode ended before it began
+  std::vector<std::string> said = {};
 };
 using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
 

@@ -116,9 +116,11 @@ RobotMap build_robot_map(const MapInput& input) {
   return map;
 }
 
-NavigatorGoal goal_named(const RobotMap& map, const std::string& name) {
-  const std::size_t best = objects_named(map.objects, name).front();
-  return {map.objects[best].name, map.footprints_m[best]};
+std::vector<NavigatorGoal> goals_named(const RobotMap& map, const std::string& name) {
+  std::vector<NavigatorGoal> goals;
+  for (const std::size_t i : objects_named(map.objects, name))
+    goals.push_back({map.objects[i].name, map.footprints_m[i]});
+  return goals;
 }
 
 }  // namespace mh

@@ -45,8 +45,8 @@ struct MapInput {
 /// An empty map if nothing was tracked, or no free floor was seen.
 RobotMap build_robot_map(const MapInput& input);
 
-/// The object meant by a name, as a goal; the best-scored if several.
+/// The objects meant by a name, as goals, the best-scored first.
 /// @throws InputError with suggestions if the map has none.
-NavigatorGoal goal_named(const RobotMap& map, const std::string& name);
+std::vector<NavigatorGoal> goals_named(const RobotMap& map, const std::string& name);
 
 }  // namespace mh

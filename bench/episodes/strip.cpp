@@ -93,6 +93,9 @@ cv::Mat small_image(const RgbdFrame& frame) {
 
 void EpisodeRecord::add(const EpisodeMoment& moment) {
   world_from_map_ = moment.world_from_map;
+  for (const std::string& said : moment.said)
+    lines_.push_back(fmt::format("{:7.1f} s  {}", moment.time_s, said));
+  if (moment.navigator == nullptr) return;
   steps_.push_back({moment.time_s, moment.world_from_base, moment.believed});
   const std::string state(name(moment.navigator->state()));
   if (moment.frame != nullptr &&
@@ -103,8 +106,6 @@ void EpisodeRecord::add(const EpisodeMoment& moment) {
     return fmt::format("[{:6.2f}, {:6.2f}] {:4.0f} deg", pose.place_m.x(), pose.place_m.y(),
                        degrees(pose.heading_rad));
   };
-  for (const std::string& said : moment.said)
-    lines_.push_back(fmt::format("{:7.1f} s  {}", moment.time_s, said));
   if (moment.believed && moment.navigator->path().size() > 1 &&
       (moment.navigator->state() == NavigatorState::kDriving) &&
       (plans_.empty() || !moment.said.empty()))

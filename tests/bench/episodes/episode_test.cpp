@@ -184,19 +184,30 @@ TEST(Episodes, ASuiteWithoutThemIsRefused) {
   EXPECT_THROW(episode_runs(suite), InputError);
 }
 
-TEST(GoalNamed, AnUnknownNameGetsASuggestion) {
+TEST(GoalsNamed, AnUnknownNameGetsASuggestion) {
   RobotMap map;
   map.objects = {{.name = "bed 1", .class_id = *class_by_name("bed"), .score = 0.9},
                  {.name = "desk 1", .class_id = *class_by_name("desk"), .score = 0.8}};
   map.footprints_m = {{{1, 1}}, {{2, 2}}};
-  EXPECT_EQ(goal_named(map, "desk").name, "desk 1");
+  EXPECT_EQ(goals_named(map, "desk").at(0).name, "desk 1");
   try {
-    goal_named(map, "dexk");
+    goals_named(map, "dexk");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("desk"), std::string::npos) << error.what();
   }
-  EXPECT_THROW(goal_named(map, "toilet"), InputError);  // not in this map
+  EXPECT_THROW(goals_named(map, "toilet"), InputError);  // not in this map
+}
+
+TEST(GoalsNamed, TheBestScoredComesFirst) {
+  RobotMap map;
+  map.objects = {{.name = "bed 1", .class_id = *class_by_name("bed"), .score = 0.7},
+                 {.name = "bed 2", .class_id = *class_by_name("bed"), .score = 0.9}};
+  map.footprints_m = {{{1, 1}}, {{2, 2}}};
+  const std::vector<NavigatorGoal> goals = goals_named(map, "bed");
+  ASSERT_EQ(goals.size(), 2U);
+  EXPECT_EQ(goals[0].name, "bed 2");
+  EXPECT_EQ(goals[1].places_m, map.footprints_m[0]);
 }
 
 }  // namespace
