@@ -2,6 +2,7 @@
 #include "bench/episodes/place.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -26,6 +27,14 @@ void require_level_floor(const Scene& scene) {
   if (!scene.floor.is_level_zero())
     throw InputError(fmt::format(
         "{}: its floor is not at z = 0: episodes drive in houses and generated rooms", scene.name));
+}
+
+void require_equipped(const RunSpec& spec, const Robot& robot) {
+  const bool lasers = robot.equipment && !robot.equipment->lasers.empty();
+  if (!lasers || robot.equipment->bumpers.empty())
+    throw InputError(fmt::format("{}: robot '{}' has no {}: it cannot drive on its own",
+                                 spec.environment.robot.string(), robot.name,
+                                 lasers ? "bumpers" : "lasers"));
 }
 
 VariantPlace variant_place(const EpisodeVariant& variant, const EpisodesSpec& episodes,
@@ -62,6 +71,22 @@ EveryNth::EveryNth(std::shared_ptr<const Sequence> all, std::size_t n)
   for (std::size_t i = 0; i < all_->truth()->size(); i += n) truth_.push_back((*all_->truth())[i]);
 }
 
+void require_goals(const RunSpec& spec, const EpisodesSpec& episodes) {
+  const Robot robot = load_robot(spec.environment.robot);
+  require_equipped(spec, robot);
+  EpisodesSpec one = episodes;
+  one.starts = 1;
+  std::set<std::filesystem::path> seen;
+  for (const EpisodeVariant& variant : episodes.variants) {
+    const std::filesystem::path file = variant.scene.value_or(spec.environment.scene);
+    if (!seen.insert(file).second) continue;
+    const Scene scene =
+        load_scene(file, nullptr, variant.scene ? SceneFrame{} : spec.environment.frame);
+    require_level_floor(scene);
+    draw_starts(one, scene, robot);
+  }
+}
+
 EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episodes, int threads,
                                  const Cache& cache, const Say& say) {
   EpisodeWorld place;
@@ -69,11 +94,7 @@ EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episod
   place.ticks_per_frame = episodes.ticks_per_frame;
   place.world = build_world(spec, threads, cache, say);
   const Robot& robot = place.world.simulated->robot;
-  const bool lasers = robot.equipment && !robot.equipment->lasers.empty();
-  if (!lasers || robot.equipment->bumpers.empty())
-    throw InputError(fmt::format("{}: robot '{}' has no {}: it cannot drive on its own",
-                                 spec.environment.robot.string(), robot.name,
-                                 lasers ? "bumpers" : "lasers"));
+  require_equipped(spec, robot);
   place.mapping = std::make_shared<EveryNth>(place.world.mapping,
                                              static_cast<std::size_t>(episodes.ticks_per_frame));
   place.world.mapping = place.mapping;  // systems are made for a camera of that rate

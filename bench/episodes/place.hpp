@@ -48,6 +48,11 @@ struct EpisodeWorld {
   std::vector<VariantPlace> variants;
 };
 
+/// Checks, before anything is mapped, that there is something to find in an environment.
+/// @throws InputError as draw_starts(), in any variant; if a scene's floor is not z = 0, or the
+/// robot cannot drive on its own.
+void require_goals(const RunSpec& spec, const EpisodesSpec& episodes);
+
 /// @param spec  a run of this environment, level and labels
 /// @throws InputError as build_world(), and as draw_starts(); if a scene's floor is not z = 0, or
 /// the robot cannot drive on its own.

@@ -6,6 +6,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -188,6 +189,13 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
   EpisodeStore store(options.out / "episodes.sqlite");
   const std::size_t all =
       suite.episodes->variants.size() * suite.episodes->starts * (options.only ? 1 : runs.size());
+  if (!options.only) {  // what cannot be found is said before anything is mapped
+    std::set<std::string> checked;
+    for (const EpisodeRun& run : runs)
+      if (store.load(run.key).size() < suite.episodes->variants.size() * suite.episodes->starts &&
+          checked.insert(run.spec.environment.name).second)
+        require_goals(run.spec, *suite.episodes);
+  }
   std::size_t done = 0;
   const auto report = [&](double more) {
     options.progress((static_cast<double>(done) + more) / static_cast<double>(all));

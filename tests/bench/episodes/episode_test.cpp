@@ -171,6 +171,27 @@ TEST(Episodes, ARobotWithoutLasersOrBumpersIsRefused) {
   }
 }
 
+TEST(Episodes, GoalsThatNoPlaceHasAreRefusedBeforeTheWork) {
+  Suite suite = small_suite("pepper", "[plain]");
+  suite.environments.push_back(suite.environments.front());
+  suite.environments.back().name = "bathroom";
+  suite.environments.back().scene = "generated:bathroom:0";
+  const TemporaryFolder work(fs::temp_directory_path());
+  EpisodeOptions options;
+  options.out = work.path();
+  options.say = [](std::string_view stage) {
+    EXPECT_EQ(stage.find("maps the tour"), std::string_view::npos) << stage;
+  };
+  try {
+    run_episodes(suite, options);
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("bathroom-0: has none of the goals"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Episodes, MappingIsALiveFeed) {
   EXPECT_EQ(small_suite().protocol, live_feed());
   EXPECT_EQ(small_suite("pepper", "[plain]", "labels: [exact]\nprotocol: {on_failure: rewind}\n")
