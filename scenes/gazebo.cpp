@@ -22,6 +22,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/lower_case.hpp"
 
 namespace mh {
 namespace {
@@ -38,11 +39,6 @@ Eigen::Affine3d affine_of(const ignition::math::Pose3d& pose) {
 
 std::uint8_t level_of(float share) {
   return static_cast<std::uint8_t>(255.0F * std::clamp(share, 0.0F, 1.0F) + 0.5F);
-}
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 class WorldReader {
@@ -207,7 +203,7 @@ class WorldReader {
   /// The submesh that a visual names, moved to the center if the visual says so.
   Scene submesh_of(const Scene& mesh, const sdf::Mesh& wanted) {
     const auto found = std::ranges::find_if(mesh.instances, [&](const Instance& instance) {
-      return lower(instance.name) == lower(wanted.Submesh());
+      return lower_case(instance.name) == lower_case(wanted.Submesh());
     });
     if (found == mesh.instances.end()) {
       collected_.add(

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 #include <utility>
 
@@ -20,6 +19,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/legible.hpp"
+#include "slam/core/lower_case.hpp"
 
 namespace mh {
 
@@ -71,8 +71,7 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
   if (is_scannet_scene(file) || is_folder(file))
     return settled(turned(load_scannet(file, warnings), frame), frame, warnings);
   constexpr std::array<std::string_view, 5> kMeshes = {".dae", ".glb", ".gltf", ".obj", ".ply"};
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(file.extension().string());
   if (std::ranges::find(kMeshes, ending) != kMeshes.end())
     return settled(load_turned_mesh(file, frame.up, warnings), frame, warnings);
   if (ending == ".yaml" || ending == ".yml") {

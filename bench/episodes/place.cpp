@@ -30,11 +30,9 @@ void require_level_floor(const Scene& scene) {
 }
 
 void require_equipped(const RunSpec& spec, const Robot& robot) {
-  const bool lasers = robot.equipment && !robot.equipment->lasers.empty();
-  if (!lasers || robot.equipment->bumpers.empty())
+  if (const char* part = lacking_to_drive(robot))
     throw InputError(fmt::format("{}: robot '{}' has no {}: it cannot drive on its own",
-                                 spec.environment.robot.string(), robot.name,
-                                 lasers ? "bumpers" : "lasers"));
+                                 spec.environment.robot.string(), robot.name, part));
 }
 
 VariantPlace variant_place(const EpisodeVariant& variant, const EpisodesSpec& episodes,

@@ -187,13 +187,12 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
     }
   }
   EpisodeStore store(options.out / "episodes.sqlite");
-  const std::size_t all =
-      suite.episodes->variants.size() * suite.episodes->starts * (options.only ? 1 : runs.size());
+  const std::size_t of_run = suite.episodes->variants.size() * suite.episodes->starts;
+  const std::size_t all = of_run * (options.only ? 1 : runs.size());
   if (!options.only) {  // what cannot be found is said before anything is mapped
     std::set<std::string> checked;
     for (const EpisodeRun& run : runs)
-      if (store.load(run.key).size() < suite.episodes->variants.size() * suite.episodes->starts &&
-          checked.insert(run.spec.environment.name).second)
+      if (store.load(run.key).size() < of_run && checked.insert(run.spec.environment.name).second)
         require_goals(run.spec, *suite.episodes);
   }
   std::size_t done = 0;

@@ -4,9 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -19,6 +17,7 @@
 #include "bench/systems/outside_system.hpp"
 #include "scenes/recorded/frame_files.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/trajectory_io.hpp"
 
 namespace mh {
@@ -174,9 +173,7 @@ class Conversation {
     } catch (const Json::out_of_range&) {
       fail(fmt::format("wrote a number that is too large: '{}'", shortened(line)));
     } catch (const Json::exception&) {
-      std::string small = line;
-      std::transform(small.begin(), small.end(), small.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      const std::string small = lower_case(line);
       const bool nan = small.starts_with("{") && (small.find("nan") != std::string::npos ||
                                                   small.find("inf") != std::string::npos);
       fail(fmt::format("wrote {}: '{}'",

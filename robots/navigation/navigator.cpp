@@ -92,6 +92,11 @@ std::optional<Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>&
   return best;
 }
 
+const char* lacking_to_drive(const Robot& robot) {
+  if (!robot.equipment || robot.equipment->lasers.empty()) return "lasers";
+  return robot.equipment->bumpers.empty() ? "bumpers" : nullptr;
+}
+
 Navigator::Navigator(const KnownMap& map, const Robot& robot, const NavigatorGoal& goal,
                      const NavigatorConfig& config)
     : map_(map),
@@ -100,12 +105,10 @@ Navigator::Navigator(const KnownMap& map, const Robot& robot, const NavigatorGoa
       config_(config),
       away_m_(distances_m(map, goal.places_m, config.reach_m + kReachSlack_m)),
       belief_(config.belief) {
-  for (const char* part : {"lasers", "bumpers"})
-    if (!robot.equipment ||
-        (part[0] == 'l' ? robot.equipment->lasers.empty() : robot.equipment->bumpers.empty()))
-      throw InputError(
-          fmt::format("robot '{}' has no {}: it cannot drive on its own (its file: equipment.{})",
-                      robot.name, part, part));
+  if (const char* part = lacking_to_drive(robot))
+    throw InputError(
+        fmt::format("robot '{}' has no {}: it cannot drive on its own (its file: equipment.{})",
+                    robot.name, part, part));
   for (const Vector2d& place : goal.places_m)
     middle_m_ += place / static_cast<double>(goal.places_m.size());
   double nearest_m = std::numeric_limits<double>::infinity();

@@ -76,6 +76,9 @@ inline bool is_end(NavigatorState state) {
   return state >= NavigatorState::kArrived;
 }
 
+/// What a robot lacks to drive on its own: "lasers" or "bumpers"; nullptr if it lacks neither.
+const char* lacking_to_drive(const Robot& robot);
+
 /// Drives a robot to a place of its own map, from wherever it was put: looks around until it knows
 /// where it is, plans over the map and what its sensors show, follows the way, stops for what is in
 /// it, and says when it has arrived, is stuck or gives up. It receives what the robot measures and

@@ -5,7 +5,6 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -32,6 +31,7 @@
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/held_bytes.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/narrowed.hpp"
 #include "slam/core/text_file.hpp"
 
@@ -46,8 +46,7 @@ struct Format {
 };
 
 Format format_of(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(file.extension().string());
   const bool gltf = ending == ".glb" || ending == ".gltf";
   return {.ply = ending == ".ply",
           .gltf = gltf,

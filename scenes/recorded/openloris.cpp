@@ -2,7 +2,6 @@
 #include "scenes/recorded/openloris.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/core/yaml.hpp"
 
@@ -55,9 +55,7 @@ RecordedCamera read_sensors(const fs::path& file) {
   camera.cy_px = k[3];
   if (auto model = color.find("distortion_model")) {
     const std::string name = model->as_string();
-    std::string lower = name;
-    std::ranges::transform(lower, lower.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = lower_case(name);
     for (const char* other : {"equidistant", "fisheye", "kannala", "omni", "fov"})
       if (lower.find(other) != std::string::npos)
         model->fail(fmt::format("'{}' is read of no lens but radial-tangential ones", name));

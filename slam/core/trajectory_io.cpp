@@ -19,6 +19,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/legible.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/number_in.hpp"
 #include "slam/core/text_file.hpp"
 
@@ -130,7 +131,7 @@ std::string named_columns(std::string_view line) {
   for (std::string& name : names) {
     name.resize(std::min(name.find('['), name.size()));
     name.resize(name.find_last_not_of(' ') + 1);
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    name = lower_case(std::move(name));
   }
   std::erase(names, "");
   for (std::size_t first = 1; first + 7 <= names.size() && (!commas || first == 1); ++first)

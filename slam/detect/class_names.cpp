@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
@@ -59,9 +59,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kAlsoCall
 }};
 
 ClassId class_named(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) {
-    return c == '_' ? ' ' : static_cast<char>(std::tolower(c));
-  });
+  name = lower_case(std::move(name));
+  std::ranges::replace(name, '_', ' ');
   for (const auto& [also, ours] : kAlsoCalled)
     if (also == name) name = ours;
   return class_by_name(name).value_or(kVoid);

@@ -12,6 +12,7 @@
 
 #include "slam/core/counted.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/suggest.hpp"
 #include "slam/core/yaml.hpp"
 #include "slam/occupancy/map_image.hpp"
@@ -166,9 +167,7 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
       warnings->push_back(fmt::format("{}:{}: key '{}' is none of map_server's and is ignored{}",
                                       yaml_file.string(), value.line(), key,
                                       did_you_mean(key, words_of(kKeys))));
-  std::string mode = yaml.string("mode", "trinary");
-  for (char& c : mode)  // nav2_map_server takes capitals, too
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string mode = lower_case(yaml.string("mode", "trinary"));  // as nav2_map_server
   if (mode != "trinary" && mode != "raw")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary and raw are");
   const MapImage map = read_map_image(yaml, yaml_file, warnings);

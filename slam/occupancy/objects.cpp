@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/suggest.hpp"
 
 namespace mh {
@@ -255,9 +256,8 @@ std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& co
 std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
                                        std::string_view name) {
   std::vector<std::size_t> meant;
-  std::string plain(name);  // as names are written: "Potted_Plant" is "potted plant"
-  for (char& c : plain)
-    c = c == '_' ? ' ' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::string plain = lower_case(std::string(name));  // "Potted_Plant" is "potted plant"
+  std::ranges::replace(plain, '_', ' ');
   const std::optional<ClassId> class_id = class_by_name(plain);
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (objects[i].name == plain || (class_id && objects[i].class_id == *class_id))

@@ -84,7 +84,9 @@ class VoxelMap {
   /// class: octovis shows it, and every reader of OctoMap reads it. The counts follow after the
   /// tree, where those readers stop, so that read_ot() restores this map exactly.
   void write_ot(std::ostream& out) const;
-  /// Reads what write_ot() wrote. @param name  the file's name in messages
+  /// Reads what write_ot() wrote.
+  /// @param in    seekable
+  /// @param name  the file's name in messages
   /// @throws InputError if it is damaged or without counts (another program's file).
   static VoxelMap read_ot(std::istream& in, const std::string& name);
 

@@ -316,13 +316,14 @@ void VoxelMap::write_ot(std::ostream& out) const {
 }
 
 VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
-  std::ostringstream read;
-  read << in.rdbuf();
-  const std::string bytes = std::move(read).str();
-  std::istringstream lines(bytes);
-  const OtHeader header = read_header(lines, name);
-  const auto tree_at = static_cast<std::size_t>(lines.tellg());
-  CountsReader reader(std::string_view(bytes).substr(tree_at), name);
+  const auto begin = in.tellg();
+  const OtHeader header = read_header(in, name);
+  const auto header_size = static_cast<std::size_t>(in.tellg() - begin);
+  in.seekg(begin);  // the checksum covers the header, too
+  std::ostringstream whole;
+  whole << in.rdbuf();
+  const std::string bytes = std::move(whole).str();
+  CountsReader reader(std::string_view(bytes).substr(header_size), name);
   if (header.size > 0 && skip_node(reader, 16) != header.size)
     reader.fail(fmt::format("its tree has not the {} nodes that it says", header.size));
   if (reader.at_end())

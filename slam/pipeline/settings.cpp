@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/lower_case.hpp"
 #include "slam/core/settings_io.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/features/undistort.hpp"
@@ -118,9 +119,7 @@ void refuse_unknown_keys(YamlReader& yaml) {
     if (key == "Camera.bFishEye" && node.as_string() != "0")
       node.fail("fisheye cameras are not supported");
     if (is_one_of(kOrbSlamKeys, key) || is_one_of(kOrbSlamOthers, key)) continue;
-    std::string section = key.substr(0, key.find('.'));
-    std::transform(section.begin(), section.end(), section.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string section = lower_case(key.substr(0, key.find('.')));
     if (section == "camera" || section == "orbextractor" || key.find('.') == std::string::npos)
       node.fail(fmt::format("is not a key of ORB-SLAM2's settings (known: {})",
                             fmt::join(kOrbSlamKeys, ", ")));
