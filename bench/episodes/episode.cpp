@@ -68,13 +68,11 @@ class Episode {
     NavigatorConfig config;
     config.reach_m = spec_.arrival_m - kMapError_m;
     std::optional<Navigator> navigator;
-    std::string why;
-    for (std::size_t i = 0; i < goals.size() && !navigator; ++i) try {
-        navigator.emplace(place_.map.known, place_.robot, goals[i], config);
-      } catch (const InputError& error) {  // nowhere to stand: the next one may do
-        if (why.empty()) why = error.what();
-      }
-    if (!navigator) return failed("no_path", why);
+    try {
+      navigator.emplace(place_.map.known, place_.robot, std::move(goals), config);
+    } catch (const InputError& error) {
+      return failed("no_path", error.what());
+    }
     Simulation simulation(place_.scene, place_.robot, place_.level,
                           {.start_m = start_.place_m,
                            .start_heading_rad = start_.heading_rad,

@@ -97,31 +97,40 @@ const char* lacking_to_drive(const Robot& robot) {
   return robot.equipment->bumpers.empty() ? "bumpers" : nullptr;
 }
 
-Navigator::Navigator(const KnownMap& map, const Robot& robot, const NavigatorGoal& goal,
+Navigator::Navigator(const KnownMap& map, const Robot& robot, std::vector<NavigatorGoal> goals,
                      const NavigatorConfig& config)
-    : map_(map),
-      robot_(robot),
-      goal_(goal),
-      config_(config),
-      away_m_(distances_m(map, goal.places_m, config.reach_m + kReachSlack_m)),
-      belief_(config.belief) {
+    : map_(map), robot_(robot), goals_(std::move(goals)), config_(config), belief_(config.belief) {
   if (const char* part = lacking_to_drive(robot))
     throw InputError(
         fmt::format("robot '{}' has no {}: it cannot drive on its own (its file: equipment.{})",
                     robot.name, part, part));
+  for (const NavigatorGoal& goal : goals_)
+    if (aim_at(goal)) return;
+  aim_at(goals_.front());
+  throw InputError(fmt::format(
+      "goal {} at [{:.2f}, {:.2f}] m: the robot cannot stand within {:.2f} m of it: it is inside a "
+      "wall or in space that the map does not know",
+      all_goals(), middle_m_.x(), middle_m_.y(), config.reach_m));
+}
+
+std::string Navigator::all_goals() const {
+  const std::string first = fmt::format("'{}'", goals_.front().name);
+  return goals_.size() == 1 ? first : fmt::format("{} (or {} more)", first, goals_.size() - 1);
+}
+
+bool Navigator::aim_at(const NavigatorGoal& goal) {
+  name_ = goal.name;
+  away_m_ = distances_m(map_, goal.places_m, config_.reach_m + kReachSlack_m);
+  middle_m_ = Vector2d::Zero();
   for (const Vector2d& place : goal.places_m)
     middle_m_ += place / static_cast<double>(goal.places_m.size());
-  double nearest_m = std::numeric_limits<double>::infinity();
-  const double clearance_m = robot.footprint_radius_m + config.least_margin_m;
+  const double clearance_m = robot_.footprint_radius_m + config_.least_margin_m;
   for (int y = 0; y < away_m_.height(); ++y)
     for (int x = 0; x < away_m_.width(); ++x)
-      if (static_cast<double>(map.grid.clearance_m(x, y)) >= clearance_m)
-        nearest_m = std::min(nearest_m, static_cast<double>(away_m_(x, y)));
-  if (nearest_m > config.reach_m)
-    throw InputError(fmt::format(
-        "goal '{}' at [{:.2f}, {:.2f}] m: the robot cannot stand within {:.2f} m of it: it is "
-        "inside a wall or in space that the map does not know",
-        goal.name, middle_m_.x(), middle_m_.y(), config.reach_m));
+      if (static_cast<double>(map_.grid.clearance_m(x, y)) >= clearance_m &&
+          static_cast<double>(away_m_(x, y)) <= config_.reach_m)
+        return true;
+  return false;
 }
 
 double Navigator::away_from_goal_m(const Vector2d& place_in_map_m) const {
@@ -273,16 +282,19 @@ bool Navigator::find_way(const Pose2& map_from_base) {
 
 Twist2d Navigator::plan(const Perception& now) {
   const Pose2 at = map_from_base(now.odom_from_base);
-  if (!find_way(at)) {
+  const bool found = std::ranges::any_of(
+      goals_, [&](const NavigatorGoal& goal) { return aim_at(goal) && find_way(at); });
+  if (!found) {
+    const std::string why = fmt::format("finds no path to {}", all_goals());
     if (recoveries_ < 2) {
-      recover(now, fmt::format("finds no way to {}", goal_.name));
+      recover(now, why);
     } else {
-      say(fmt::format("gives up: no way to {}", goal_.name));
+      say(why + ": gives up");
       enter(NavigatorState::kNoPath, now.time_s);
     }
     return Twist2d::Zero();
   }
-  say(fmt::format("drives to {}: {:.1f} m", goal_.name, length_m(path_)));
+  say(fmt::format("drives to {}: {:.1f} m", name_, length_m(path_)));
   enter(NavigatorState::kDriving, now.time_s);
   planned_s_ = progress_s_ = now.time_s;
   least_left_m_ = length_m(path_);
@@ -323,10 +335,10 @@ Twist2d Navigator::face(const Perception& now) {
   if (std::abs(left_rad) > kFaced_rad && now.time_s - since_s_ < 15)
     return turn_in_place(left_rad, robot_.limits, config_.follow, kFaced_rad);
   if (away_from_goal_m(at.place_m) > config_.reach_m) {
-    recover(now, fmt::format("is not at {} after all", goal_.name));
+    recover(now, fmt::format("is not at {} after all", name_));
     return Twist2d::Zero();
   }
-  say(fmt::format("has arrived at {}", goal_.name));
+  say(fmt::format("has arrived at {}", name_));
   enter(NavigatorState::kArrived, now.time_s);
   return Twist2d::Zero();
 }

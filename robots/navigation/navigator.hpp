@@ -87,9 +87,10 @@ class Navigator {
  public:
   /// @param map    outlives it
   /// @param robot  outlives it
-  /// @throws InputError if the robot has no lasers or bumpers, or the goal is not within reach of
-  /// any free place of the map.
-  Navigator(const KnownMap& map, const Robot& robot, const NavigatorGoal& goal,
+  /// @param goals  at least one; it drives to the first that a path leads to
+  /// @throws InputError if the robot has no lasers or bumpers, or no goal is within reach of any
+  /// free place of the map.
+  Navigator(const KnownMap& map, const Robot& robot, std::vector<NavigatorGoal> goals,
             const NavigatorConfig& config = {});
 
   /// The command for the next moments (base frame).
@@ -119,16 +120,21 @@ class Navigator {
   bool touched(const Perception& now);
   /// The map with what the sensors show now.
   FloorGrid present_grid(const Pose2& map_from_base) const;
+  /// Turns to one of the goals; false if it cannot stand within reach of it anywhere in the map.
+  bool aim_at(const NavigatorGoal& goal);
   bool find_way(const Pose2& map_from_base);
+  std::string all_goals() const;
   void recover(const Perception& now, const std::string& why);
   double away_from_goal_m(const Eigen::Vector2d& place_in_map_m) const;
 
   const KnownMap& map_;
   const Robot& robot_;
-  NavigatorGoal goal_;
+  std::vector<NavigatorGoal> goals_;
   NavigatorConfig config_;
-  Grid2d<float> away_m_;                                ///< of the map's cells from the goal
-  Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();  ///< of the goal
+  // Of the goal that it aims at: its name, the map's cells' distances from it, its center.
+  std::string name_;
+  Grid2d<float> away_m_;
+  Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();
   LocalMap local_;
   PlaceBelief belief_;
   NavigatorState state_ = NavigatorState::kLooking;

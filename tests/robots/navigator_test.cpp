@@ -121,7 +121,7 @@ TEST(Navigator, DrivesThroughTheGapAndSaysThatItHasArrived) {
   const Flat flat;
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
-  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Navigator navigator(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 1}, 2.0});
   driven.run(navigator, 120);
   EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
@@ -137,7 +137,7 @@ TEST(Navigator, TakesANarrowDoorInPlaceOfALongWay) {
     for (int y = 9; y < 22; ++y) flat.solid(x, y) = 0;
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
-  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Navigator navigator(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 0.6}, 0.0});
   driven.run(navigator, 3);
   EXPECT_LT(length_m(navigator.path()), 5.0) << driven.said;  // 8 m through the wide gap
@@ -150,7 +150,7 @@ TEST(Navigator, LostItLooksAroundElsewhere) {
   const Flat flat;
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
-  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Navigator navigator(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 1}, 2.0});
   driven.answers = false;
   driven.run(navigator, 60);
@@ -166,7 +166,7 @@ TEST(Navigator, AGoalInAWallOrBeyondTheMapIsRefused) {
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
   for (const NavigatorGoal& goal : {box_at(9.0, 1.0), box_at(-3, -3)}) try {
-      Navigator(map, robot, goal);
+      Navigator(map, robot, {goal});
       FAIL();
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("goal 'box 1'"), std::string::npos);
@@ -182,14 +182,14 @@ TEST(Navigator, ARobotWithoutLasersOrBumpersIsRefused) {
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
   equipment->bumpers.clear();
   robot.equipment = equipment;
-  EXPECT_THROW(Navigator(map, robot, box_at(5, 1)), InputError);
+  EXPECT_THROW(Navigator(map, robot, {box_at(5, 1)}), InputError);
   equipment = std::make_shared<Equipment>(*test::pepper().equipment);
   equipment->lasers.clear();
   robot.equipment = equipment;
-  EXPECT_THROW(Navigator(map, robot, box_at(5, 1)), InputError);
+  EXPECT_THROW(Navigator(map, robot, {box_at(5, 1)}), InputError);
   robot.equipment = nullptr;
   try {
-    Navigator(map, robot, box_at(5, 1));
+    Navigator(map, robot, {box_at(5, 1)});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("has no lasers"), std::string::npos);
@@ -200,7 +200,7 @@ TEST(Navigator, StuckItSaysSoAndStops) {
   const Flat flat;
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
-  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Navigator navigator(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 1}, 2.0});
   driven.wheels = [](Twist2d& command) { command.head<2>().setZero(); };  // they only turn it
   driven.run(navigator, 400);
@@ -213,23 +213,53 @@ TEST(Navigator, ItGivesUpWhereNoWayLeads) {
   for (int y = 0; y < 80; ++y) flat.solid(60, y) = 1;  // the gap is closed
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
-  Navigator navigator(map, robot, box_at(5.0, 0.6));
+  Navigator navigator(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 1}, 2.0});
   driven.run(navigator, 200);
   EXPECT_EQ(navigator.state(), NavigatorState::kNoPath) << driven.said;
+}
+
+TEST(Navigator, WhereNoWayLeadsToTheFirstItDrivesToTheNext) {
+  Flat flat;
+  for (int y = 0; y < 80; ++y) flat.solid(60, y) = 1;  // the gap is closed
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  NavigatorGoal behind = box_at(5.0, 0.6), near = box_at(0.7, 3.4);
+  near.name = "box 2";
+  Navigator navigator(map, robot, {box_at(9.0, 1.0), behind, near});
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.run(navigator, 120);
+  EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
+  EXPECT_NE(driven.said.find("has arrived at box 2"), std::string::npos) << driven.said;
+  EXPECT_LT((driven.at().place_m - Vector2d(0.7, 3.4)).norm(), 0.9 + 0.2);
+}
+
+TEST(Navigator, AWayThatItSeesShutDoesNotCount) {
+  Flat flat;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();  // the gap is open in the map
+  for (int y = 0; y < 80; ++y) flat.solid(60, y) = 1;
+  NavigatorGoal near = box_at(0.7, 3.4);
+  near.name = "box 2";
+  Navigator navigator(map, robot, {box_at(5.0, 0.6), near});
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.run(navigator, 200);
+  EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
+  EXPECT_NE(driven.said.find("has arrived at box 2"), std::string::npos) << driven.said;
+  EXPECT_GT(driven.nearest_m, 0.27);
 }
 
 TEST(Navigator, ABumperStopsItAndManyEndTheDrive) {
   const Flat flat;
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
-  Navigator once(map, robot, box_at(5.0, 0.6));
+  Navigator once(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 1}, 0});
   driven.bumper = [](double t) { return t > 3 && t < 3.1; };
   driven.run(once, 120);
   EXPECT_EQ(once.state(), NavigatorState::kArrived) << driven.said;
   EXPECT_NE(driven.said.find("bump 1"), std::string::npos);
-  Navigator always(map, robot, box_at(5.0, 0.6));
+  Navigator always(map, robot, {box_at(5.0, 0.6)});
   Driven pressed(flat, robot, {{1, 1}, 0});
   pressed.bumper = [](double) { return true; };
   pressed.run(always, 120);
