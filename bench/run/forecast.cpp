@@ -28,15 +28,10 @@ std::optional<double> Forecast::of(const RunSpec& run) const {
   return std::nullopt;
 }
 
-std::optional<double> Forecast::to_go_s(const std::vector<RunSpec>& waiting,
-                                        const std::vector<RunAtWork>& at_work, int jobs) const {
+std::optional<double> Forecast::to_go_s(double waiting_s, const std::vector<RunAtWork>& at_work,
+                                        int jobs) const {
   constexpr double kEnough = 0.1;  // of a run's work, to extrapolate the rest
-  double all_s = 0, longest_s = 0;
-  for (const RunSpec& run : waiting) {
-    const auto wall_s = of(run);
-    if (!wall_s) return std::nullopt;
-    all_s += *wall_s;
-  }
+  double all_s = waiting_s, longest_s = 0;
   for (const RunAtWork& run : at_work) {
     std::optional<double> left_s;
     if (run.share >= kEnough)

@@ -12,7 +12,7 @@ namespace mh {
 
 /// A run in progress.
 struct RunAtWork {
-  RunSpec spec;
+  const RunSpec& spec;
   double age_s = 0;      ///< since its start
   double working_s = 0;  ///< since it first reported progress
   double share = 0;      ///< of its work done, in [0, 1]
@@ -25,11 +25,11 @@ class Forecast {
   void note(const RunSpec& finished, double wall_s);
   /// Duration of such a run from start to end; nullopt before anything has finished.
   std::optional<double> of(const RunSpec& run) const;
-  /// nullopt if unknown: runs are waiting and none has finished, or the runs in progress are less
-  /// than 1/10 done.
-  /// @param jobs  runs in parallel
-  std::optional<double> to_go_s(const std::vector<RunSpec>& waiting,
-                                const std::vector<RunAtWork>& at_work, int jobs) const;
+  /// nullopt if unknown: nothing has finished, and a run in progress is less than 1/10 done.
+  /// @param waiting_s  sum of of() over the runs that have not begun
+  /// @param jobs       runs in parallel
+  std::optional<double> to_go_s(double waiting_s, const std::vector<RunAtWork>& at_work,
+                                int jobs) const;
 
  private:
   struct Mean {

@@ -62,6 +62,7 @@ class Pool {
   void work() {
     const SignalWatch watch;
     auto next_beat = Clock::now() + kBeat;
+    estimate_waiting();
     report();
     while (!waiting_.empty() || !running_.empty()) {
       if (watch.signal() != 0) {
@@ -114,7 +115,15 @@ class Pool {
   }
 
   void start_what_fits() {
-    while (another_fits() && start_next()) {
+    while (another_fits() && start_next()) estimate_waiting();
+  }
+
+  /// When runs begin or end, not at each report: there are thousands of them.
+  void estimate_waiting() {
+    waiting_s_ = 0;
+    for (const Waiting& w : waiting_) {
+      const auto wall_s = forecast_.of(w.job.spec);
+      waiting_s_ = wall_s && waiting_s_ ? std::optional(*waiting_s_ + *wall_s) : std::nullopt;
     }
   }
 
@@ -242,6 +251,7 @@ class Pool {
       begun_.erase(job.images);
       options_.forget_images(job.images);
     }
+    estimate_waiting();
     report();
   }
   static const std::string& images_of(const Waiting& w) { return w.job.images; }
@@ -265,13 +275,12 @@ class Pool {
   }
 
   std::optional<double> to_go_s() const {
-    std::vector<RunSpec> waiting;
+    if (!waiting_s_) return std::nullopt;
     std::vector<RunAtWork> at_work;
-    for (const Waiting& w : waiting_) waiting.push_back(w.job.spec);
     for (const Running& r : running_)
       at_work.push_back(
           {r.what.job.spec, r.process->age_s(), r.process->working_s(), r.process->share()});
-    return forecast_.to_go_s(waiting, at_work, options_.jobs);
+    return forecast_.to_go_s(*waiting_s_, at_work, options_.jobs);
   }
 
   Store& store_;
@@ -280,6 +289,7 @@ class Pool {
   double require_mb_ = 0;  ///< of one run, as measured so far
   Forecast forecast_;
   std::vector<Waiting> waiting_;
+  std::optional<double> waiting_s_;  ///< what they will take, if that can be told
   std::vector<Running> running_;
   std::set<std::string> begun_;  // images that a run has begun to make
 };
