@@ -7,6 +7,7 @@
 #include "bench/cache/cache.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
 #include "bench/cli/write_audit.hpp"
@@ -32,8 +33,7 @@ void run(AuditArguments options) {
   overrides.trials = options.trials;
   overrides.max_frames = options.frames;
   const Suite suite = load_suite(options.suite, overrides);
-  if (suite.episodes)
-    throw InputError(options.suite + ": a suite with `episodes` asks no queries to audit");
+  refuse_episodes(suite, "asks no queries to audit");
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / (suite.name + "-audit")
                                         : std::filesystem::path(options.out);

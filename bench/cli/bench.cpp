@@ -101,6 +101,12 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
     throw InputError("--shard: a suite with `episodes` runs as a whole; it resumes");
   if (options.slurm)
     throw InputError("--slurm: a suite with `episodes` runs as a whole, on one machine");
+  const BenchArguments unset;
+  if (options.time_limit_s != unset.time_limit_s ||
+      options.memory_limit_mb != unset.memory_limit_mb)
+    throw InputError(
+        "--time-limit, --memory-limit: are for runs of queries: an episode ends by "
+        "its suite's episodes.limit_s");
   EpisodeOptions episodes;
   episodes.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
   episodes.jobs = options.jobs;
@@ -108,9 +114,9 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   if (options.only_run) return run_only(suite, std::move(episodes), options);
   episodes.arguments = {"bench", options.suite, "--out=" + episodes.out.string()};
   std::ranges::copy(options.arguments_of_part, std::back_inserter(episodes.arguments));
-  std::vector<std::string> names;
-  if (!std::filesystem::exists(episodes.out / "episodes.sqlite"))
-    names.assign(std::begin(kEpisodeFiles), std::end(kEpisodeFiles));
+  std::vector<std::string> names(std::begin(kEpisodeFiles), std::end(kEpisodeFiles));
+  for (const RunSpec& run : episode_runs(suite))
+    if (run.system.is_outside()) names.push_back(run.name + "/outside.log");
   const OutputFolder folder(episodes.out, "bench", names);
   Progress progress("bench");
   episodes.say = [&](std::string_view stage) { progress.say(stage); };

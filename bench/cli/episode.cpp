@@ -70,10 +70,8 @@ void run(EpisodeArguments options) {
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / (suite.name + "-episode")
                                         : std::filesystem::path(options.out);
-  const std::vector<std::string> names{"log.txt", "strip.png", "episode.json"};
-  const OutputFolder folder(out, "episode", names);
-  std::error_code none_yet;
-  for (const std::string& name : names) std::filesystem::remove(out / name, none_yet);
+  const OutputFolder folder(out, "episode",
+                            {"log.txt", "strip.png", "episode.json", "outside.log"});
 
   Progress progress("episode");
   EpisodeOptions episodes;
@@ -94,6 +92,7 @@ void run(EpisodeArguments options) {
     score = run_episode(episode_place(chosen, one.world, variant, one.mapped), *suite.episodes,
                         start, [&](const EpisodeMoment& moment) { record.add(moment); });
   } catch (const OutsideError&) {  // what led there may say why
+    for (const char* name : {"strip.png", "episode.json"}) std::filesystem::remove(out / name);
     write_atomically(out / "log.txt", record.log_so_far());
     throw;
   }

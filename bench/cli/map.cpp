@@ -80,13 +80,14 @@ OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
 }
 
 /// Checks before the work that a pair of map image files can be written.
-void require_writable_map_image(const std::string& stem, const std::string& read) {
+void require_writable_map_image(const std::string& stem,
+                                const std::vector<std::filesystem::path>& read) {
   require_replaceable_map_image(stem);
-  for (const std::filesystem::path& file : map_image_files(stem)) require_writable(file, {read});
+  for (const std::filesystem::path& file : map_image_files(stem)) require_writable(file, read);
 }
 
 void run(const MapGridArguments& options) {
-  require_writable_map_image(options.out, options.map);
+  require_writable_map_image(options.out, {options.map});
   const OccupancyGrid grid = grid_of(VoxelMap::load_ot(options.map), options.map, options.band);
   save_map_server(grid, options.out, options.raw ? GridMode::kRaw : GridMode::kTrinary);
   std::size_t free = 0, occupied = 0;
@@ -102,14 +103,14 @@ void run(const MapGridArguments& options) {
 
 void run(const MapCostArguments& options) {
   const std::string published = options.out + "_published";
-  require_writable_map_image(options.out, options.grid);
-  require_writable_map_image(published, options.grid);
   if (options.config.inflation_radius_m < options.config.inscribed_radius_m)
     throw InputError(
         fmt::format("--inflation: {} m is less than the robot's radius, {} m (--radius)",
                     options.config.inflation_radius_m, options.config.inscribed_radius_m));
   std::vector<std::string> warnings;
   const OccupancyGrid grid = load_map_server(options.grid, &warnings);
+  for (const std::string& stem : {options.out, published})
+    require_writable_map_image(stem, {options.grid, image_of_map(options.grid)});
   for (const std::string& warning : warnings) fmt::print(stderr, "map: warning: {}\n", warning);
   const CostMap costs = cost_map(grid, options.config);
   save_cost_map(costs, options.out);
@@ -123,13 +124,13 @@ void run(const MapObjectsArguments& options) {
     require_replaceable(options.out, "{\n  \"resolution_m\": ", "`modelhouse map`", {options.map});
   const VoxelMap map = VoxelMap::load_ot(options.map);
   const std::vector<MapObject> objects = find_objects(map);
-  if (!options.out.empty())
-    write_atomically(options.out, objects_json(objects, map.resolution_m()));
   std::vector<std::size_t> shown;
   if (options.name.empty())
     for (std::size_t i = 0; i < objects.size(); ++i) shown.push_back(i);
   else
     shown = objects_named(objects, options.name);
+  if (!options.out.empty())
+    write_atomically(options.out, objects_json(objects, map.resolution_m()));
   fmt::print("{:<22}{:>7}  {:>24}  {:>20}\n", "object", "score", "center m", "size m");
   for (const std::size_t i : shown) {
     const MapObject& o = objects[i];
@@ -155,10 +156,10 @@ void run(const MapMessagesArguments& options) {
              counted(study.objects.size(), "object"), counted(map.voxel_count(), "voxel"));
 }
 
-/// A goal next to an object: the place with the clearance that is nearest to its box.
-Vector2d place_beside(const MapObject& object, const FloorGrid& grid, const Vector2d& from_m,
-                      double clearance_m) {
-  const Grid2d<float> ways = way_lengths(grid, from_m, clearance_m);
+/// A goal next to an object: the place that can be reached and is nearest to its box.
+/// @param ways  lengths from the start to each cell
+std::optional<Vector2d> place_beside(const MapObject& object, const FloorGrid& grid,
+                                     const Grid2d<float>& ways) {
   std::optional<Vector2d> best;
   double nearest_m = 1.5;  // farther than this is not at the object
   for (int y = 0; y < ways.height(); ++y)
@@ -171,11 +172,25 @@ Vector2d place_beside(const MapObject& object, const FloorGrid& grid, const Vect
       nearest_m = away_m;
       best = at;
     }
-  if (!best)
-    throw InputError(
-        fmt::format("goal '{}': no free place within 1.5 m of it can be reached from {}",
-                    object.name, place(from_m)));
-  return *best;
+  return best;
+}
+
+/// The same for the first object of a name, the best-scored first, that can be reached.
+Vector2d place_beside(const std::string& name, const VoxelMap& map, const FloorGrid& grid,
+                      const Vector2d& from_m, double clearance_m) {
+  const std::vector<MapObject> objects = find_objects(map);
+  const std::vector<std::size_t> meant = objects_named(objects, name);
+  const Grid2d<float> ways = way_lengths(grid, from_m, clearance_m);
+  for (const std::size_t i : meant)
+    if (const auto found = place_beside(objects[i], grid, ways)) {
+      if (meant.size() > 1) fmt::print(stderr, "map: of '{}': {}\n", name, objects[i].name);
+      return *found;
+    }
+  throw InputError(
+      fmt::format("goal '{}'{}: no free place within 1.5 m of it can be reached from {}",
+                  objects[meant.front()].name,
+                  meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
+                  place(from_m)));
 }
 
 /// @throws InputError if a robot cannot stand at a place of the grid.
@@ -209,9 +224,7 @@ void run(const MapPlanArguments& options) {
   require_clear("start", from, grid, floor, clearance_m);
   Vector2d to;
   if (!options.thing.empty()) {
-    const std::vector<MapObject> objects = find_objects(map);
-    to = place_beside(objects[objects_named(objects, options.thing).front()], floor, from,
-                      clearance_m);
+    to = place_beside(options.thing, map, floor, from, clearance_m);
   } else {
     to = {options.to[0], options.to[1]};
     require_clear("goal", to, grid, floor, clearance_m);

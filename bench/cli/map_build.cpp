@@ -243,6 +243,8 @@ void run(MapBuildArguments options) {
   const SE3 map_from_world = frame.value_or(SE3());
   mapper.update(posed.poses, map_from_world);
   mapper.associate_detections();
+  // What an earlier build left here goes: this one may write less.
+  for (const char* name : kMapFiles) fs::remove(fs::path(options.out) / name);
   const std::string built =
       fmt::format("{}, {} ({:.1f} MB as an octree)", counted(kept, "keyframe"),
                   counted(mapper.map().voxel_count(), "voxel"),
@@ -291,7 +293,7 @@ void add_map_build(CLI::App& map) {
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--resolution", options->resolution_m, "Side of a voxel, m")
-      ->check(number_between(0.01, 1.0));
+      ->check(number_between(0.016, 1.0));
   command
       ->add_option("--height", options->height_m, "Of the robot, m: what is higher is no obstacle")
       ->check(number_between(0.15, 10.0));

@@ -44,18 +44,10 @@ class Episode {
         spec_(spec),
         start_(start),
         observe_(observe),
+        score_(score_at_start(place.variant, start)),
         draws_(RandomStream(place.system_seed).fork(kDrawStream).fork(start.index)),
         world_from_map_(
-            from_above(place.truth_from_estimate * place.map.map_from_estimate.inverse())) {
-    score_.variant = place.variant;
-    score_.start = start.index;
-    score_.goal = start.goal;
-    score_.start_x_m = start.place_m.x();
-    score_.start_y_m = start.place_m.y();
-    score_.start_heading_deg = start.heading_rad * 180 / std::numbers::pi;
-    score_.shortest_m = start.shortest_m;
-    score_.end_distance_m = distance_to(start.boxes, start.place_m);
-  }
+            from_above(place.truth_from_estimate * place.map.map_from_estimate.inverse())) {}
 
   EpisodeScore run() {
     if (place_.map.empty()) return failed("no_map", "has no map");
@@ -233,14 +225,27 @@ class Episode {
   const EpisodesSpec& spec_;
   const EpisodeStart& start_;
   const EpisodeObserver& observe_;
+  EpisodeScore score_;
   RandomStream draws_;
   Pose2 world_from_map_;
   std::unique_ptr<RelocalizationSession> session_;
   Pose2 odometry_;
-  EpisodeScore score_;
 };
 
 }  // namespace
+
+EpisodeScore score_at_start(const std::string& variant, const EpisodeStart& start) {
+  EpisodeScore score;
+  score.variant = variant;
+  score.start = start.index;
+  score.goal = start.goal;
+  score.start_x_m = start.place_m.x();
+  score.start_y_m = start.place_m.y();
+  score.start_heading_deg = start.heading_rad * 180 / std::numbers::pi;
+  score.shortest_m = start.shortest_m;
+  score.end_distance_m = distance_to(start.boxes, start.place_m);
+  return score;
+}
 
 EpisodeScore run_episode(const EpisodePlace& place, const EpisodesSpec& spec,
                          const EpisodeStart& start, const EpisodeObserver& observe) {

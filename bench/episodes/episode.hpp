@@ -108,6 +108,9 @@ struct EpisodeMoment {
 };
 using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
 
+/// Scores of an episode before it begins: where the robot is, what it is to find.
+EpisodeScore score_at_start(const std::string& variant, const EpisodeStart& start);
+
 /// Kidnaps the robot: it is put at the start in the dark, the light goes on, it looks around,
 /// relocalizes, plans on its own map, and drives to the goal. Deterministic; what it sees depends
 /// on seed, variant and start, not on the system.

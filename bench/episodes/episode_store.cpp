@@ -7,13 +7,13 @@
 #include "bench/store/columns.hpp"
 #include "bench/store/database.hpp"
 #include "bench/store/guard.hpp"
+#include "bench/store/schema.hpp"
 #include "slam/core/error.hpp"
 
 namespace mh {
 namespace {
 
 constexpr int kBusy_ms = 60000;
-constexpr int kVersion = 1001;  // of this file's tables; results.sqlite counts from 1
 
 std::string episodes_schema() {
   return fmt::format(
@@ -31,12 +31,12 @@ EpisodeStore::EpisodeStore(const std::filesystem::path& file) : file_(file) {
     add_row_digest(*database_);
     require_whole_pages(*database_, file);
     const int version = database_->execAndGet("PRAGMA user_version").getInt();
-    if (version == kVersion) return require_whole_table(*database_, file, "episodes");
+    if (version == kEpisodesVersion) return require_whole_table(*database_, file, "episodes");
     if (version != 0 || database_->execAndGet("SELECT count(*) FROM sqlite_master").getInt() != 0)
       throw InputError(fmt::format(
           "{}: is no file of episodes of this version: move it away and run again", file.string()));
     database_->exec(episodes_schema());
-    database_->exec(fmt::format("PRAGMA user_version = {}", kVersion));
+    database_->exec(fmt::format("PRAGMA user_version = {}", kEpisodesVersion));
   });
 }
 

@@ -23,6 +23,7 @@
 #include "bench/provenance/digest.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "scenes/load.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -139,6 +140,17 @@ std::vector<RunSpec> episode_runs(const Suite& suite) {
       refuse(fmt::format("episodes.goals: '{}' is never an object of a map", goal));
   if (suite.labels.front() == Labels())
     refuse("labels: 'none' leaves maps without objects: episodes have no goals then");
+  if (suite.levels.size() > 1)
+    refuse(fmt::format("levels: {}: a place is mapped at one; episodes at others are `variants`",
+                       suite.levels.size()));
+  if (suite.sweep.points.size() > 1)
+    refuse("parameters: a suite with `episodes` sweeps none: give systems settings of their own");
+  for (const Environment& environment : suite.environments)
+    if (!environment.mapping_tour.empty() && !is_driven(environment.mapping_tour.string()))
+      refuse(
+          fmt::format("mapping_tour: '{}' is not driven by a robot: its lasers and the height "
+                      "of its camera are not known",
+                      environment.mapping_tour.string()));
   if (suite.trials != 1)
     refuse(fmt::format("trials: {}: episodes are repeated by their `starts`", suite.trials));
   for (const SystemSpec& system : suite.systems)
@@ -263,10 +275,8 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
           run.scores.push_back(found->second);
           continue;
         }
-        run.scores.push_back({.variant = variant,
-                              .start = s,
-                              .goal = world->variants[v].starts[s].goal,
-                              .reason = failed ? "not_run" : "system_failed"});
+        run.scores.push_back(score_at_start(variant, world->variants[v].starts[s]));
+        run.scores.back().reason = failed ? "not_run" : "system_failed";
         failed = true;  // they run in this order: it failed in the first that is missing
       }
   }

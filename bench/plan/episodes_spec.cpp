@@ -54,6 +54,9 @@ EpisodesSpec read_episodes(YamlReader node, const SuitePaths& paths) {
   spec.ticks_per_frame =
       static_cast<int>(node.integer_or("ticks_per_frame", spec.ticks_per_frame, 1, 60));
   spec.dark_s = node.number_or("dark_s", spec.dark_s, 0, 60);
+  if (spec.dark_s >= spec.limit_s)
+    node.fail(fmt::format("dark_s, {:g} s, leaves nothing of limit_s, {:g} s", spec.dark_s,
+                          spec.limit_s));
   if (const auto list = node.find("variants")) {
     spec.variants.clear();
     std::set<std::string> names;

@@ -357,6 +357,9 @@ void Navigator::recover(const Perception& now, const std::string& why) {
     return;
   }
   say(why + ": forgets what it saw and looks around");
+  // Another goal comes first now; among equals the order stays.
+  if (state_ == NavigatorState::kDriving || state_ == NavigatorState::kFacing)
+    std::ranges::stable_partition(goals_, [&](const auto& goal) { return goal.name != name_; });
   local_.clear();
   enter(NavigatorState::kLooking, now.time_s);
 }

@@ -87,7 +87,8 @@ class Navigator {
  public:
   /// @param map    outlives it
   /// @param robot  outlives it
-  /// @param goals  at least one; it drives to the first that a path leads to
+  /// @param goals  at least one, named differently; it drives to the first that a path leads to,
+  ///               and tries the others before one that it could not get to
   /// @throws InputError if the robot has no lasers or bumpers, or no goal is within reach of any
   /// free place of the map.
   Navigator(const KnownMap& map, const Robot& robot, std::vector<NavigatorGoal> goals,

@@ -29,7 +29,7 @@ struct CostMap {
 
 /// The cost at a distance from the nearest obstacle, as Nav2's inflation layer computes it: 254 at
 /// 0, 253 up to the inscribed radius, then 252 exp(-factor (distance - inscribed)), cut to an
-/// integer; 0 beyond the inflation radius.
+/// integer. The layer ends at the inflation radius, rounded up to whole cells.
 std::uint8_t cost_at_distance(double distance_m, const CostMapConfig& config);
 
 /// Inflates the obstacles of a grid. Distances are between centers of cells, exact. As in Nav2,

@@ -33,6 +33,9 @@ void require_replaceable_map_image(const std::filesystem::path& stem);
 /// Writes stem.pgm (upper row = north) and stem.yaml. @throws InputError naming the file.
 void write_map_image(const MapImage& map, const std::filesystem::path& stem, const char* mode);
 
+/// The image that a map's YAML file names.
+std::filesystem::path image_of_map(const std::filesystem::path& yaml_file);
+
 /// Reads the keys image, resolution and origin, and the image. The caller reads the others.
 /// @param warnings  receives what was ignored; may be null
 /// @throws InputError naming file, line, field and value.

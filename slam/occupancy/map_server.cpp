@@ -84,7 +84,16 @@ Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file,
   return image;
 }
 
+std::filesystem::path image_named(YamlReader& yaml, const std::filesystem::path& yaml_file) {
+  return yaml_file.parent_path() / yaml.string("image");  // an absolute path stays one
+}
+
 }  // namespace
+
+std::filesystem::path image_of_map(const std::filesystem::path& yaml_file) {
+  YamlReader yaml = YamlReader::load(yaml_file);
+  return image_named(yaml, yaml_file);
+}
 
 std::optional<Eigen::Vector2i> OccupancyGrid::cell_of(const Eigen::Vector2d& place_m) const {
   const Eigen::Vector2d p = (place_m - origin_m) / resolution_m;
@@ -109,7 +118,7 @@ std::array<std::filesystem::path, 2> map_image_files(const std::filesystem::path
 }
 
 void require_replaceable_map_image(const std::filesystem::path& stem) {
-  if (!stem.has_filename())
+  if (const auto name = stem.filename(); name.empty() || name == "." || name == "..")
     throw InputError(
         fmt::format("'{}': names no file: a path without extension is needed, to "
                     "which .pgm and .yaml are added",
@@ -141,7 +150,7 @@ void write_map_image(const MapImage& map, const std::filesystem::path& stem, con
 
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
                         std::vector<std::string>* warnings) {
-  const std::filesystem::path file = yaml.string("image");
+  const std::filesystem::path file = image_named(yaml, yaml_file);
   MapImage map;
   map.resolution_m = yaml.number("resolution", 1e-4, 100.0);
   const std::vector<double> origin = yaml.at("origin").as_numbers(3);
@@ -151,8 +160,7 @@ MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file
   if (map.origin_m.cwiseAbs().maxCoeff() > kFurthest_m)
     yaml.at("origin").fail(
         fmt::format("({}, {}) m is farther than {} m", origin[0], origin[1], kFurthest_m));
-  const Grid2d<std::uint8_t> image =
-      read_pgm(file.is_absolute() ? file : yaml_file.parent_path() / file, warnings);
+  const Grid2d<std::uint8_t> image = read_pgm(file, warnings);
   map.levels = Grid2d<std::uint8_t>(image.width(), image.height());
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) map.levels(x, y) = image(x, image.height() - 1 - y);
@@ -171,9 +179,12 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
   if (mode != "trinary" && mode != "raw")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary and raw are");
   const MapImage map = read_map_image(yaml, yaml_file, warnings);
-  const std::string negated = yaml.string("negate");  // map_server takes both spellings
-  const bool negate = negated == "1" || negated == "true";
-  if (!negate && negated != "0" && negated != "false")
+  const std::string negated = yaml.string("negate");
+  const auto is_one_of = [word = lower_case(negated)](auto... words) {
+    return ((word == words) || ...);
+  };
+  const bool negate = is_one_of("1", "true", "yes", "on");  // map_server takes YAML's spellings
+  if (!negate && !is_one_of("0", "false", "no", "off"))
     yaml.at("negate").fail("'" + negated + "' is not 0, 1, true or false");
   const double occupied = yaml.number("occupied_thresh", 0, 1);
   const double free = yaml.number("free_thresh", 0, 1);

@@ -249,6 +249,23 @@ TEST(Navigator, AWayThatItSeesShutDoesNotCount) {
   EXPECT_GT(driven.nearest_m, 0.27);
 }
 
+TEST(Navigator, WhatItCannotGetToComesLast) {
+  const Flat flat;
+  const Robot robot = test::pepper();
+  const KnownMap map = flat.map();
+  NavigatorGoal near = box_at(0.7, 3.4);
+  near.name = "box 2";
+  Navigator navigator(map, robot, {box_at(5.0, 0.6), near});
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.wheels = [&](Twist2d& command) {  // something that no sensor shows holds it
+    if ((driven.at() * Vector2d(0.1 * command.head<2>())).x() > 1.5) command.head<2>().setZero();
+  };
+  driven.run(navigator, 200);
+  EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
+  EXPECT_NE(driven.said.find("drives to box 1"), std::string::npos) << driven.said;
+  EXPECT_NE(driven.said.find("has arrived at box 2"), std::string::npos) << driven.said;
+}
+
 TEST(Navigator, ABumperStopsItAndManyEndTheDrive) {
   const Flat flat;
   const Robot robot = test::pepper();

@@ -919,6 +919,17 @@ TEST_F(CommandLine, FilesOfOthersAreNotReplacedByObjectsAndPaths) {
   ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;
   EXPECT_EQ(content(map + "/more.json"), content(map + "/objects.json"));
   expect_refused("map objects " + map + "/map.ot ''", "is empty");
+  expect_refused("map objects " + map + "/map.ot dexk --out " + map + "/none.json", "dexk");
+  EXPECT_FALSE(fs::exists(map + "/none.json"));
+  expect_refused("map grid " + map + "/map.ot --out .", "names no file");
+
+  // A grid whose image another file of ours would replace.
+  std::string grid = content(map + "/grid.yaml");
+  write("map/again.yaml", grid.substr(grid.find('\n') + 1));
+  const std::string image = content(map + "/grid.pgm");
+  expect_refused("map cost " + map + "/again.yaml --out " + map + "/grid",
+                 "grid.pgm: is read by this command");
+  EXPECT_EQ(content(map + "/grid.pgm"), image);
 }
 
 TEST_F(CommandLine, WithoutAFloorTheOctreeAloneIsWritten) {
@@ -927,6 +938,12 @@ TEST_F(CommandLine, WithoutAFloorTheOctreeAloneIsWritten) {
   ASSERT_EQ(
       run("render generated:bathroom:0 --motion auto:0 --level ideal --frames 3 --out " + tour), 0)
       << err_;
+  ASSERT_EQ(
+      run("map build scene:generated:bathroom:0 --tour auto:0 --level ideal --frames 8 --out " +
+          out),
+      0)
+      << err_;
+  EXPECT_TRUE(fs::exists(out + "/grid.yaml"));
   ASSERT_EQ(run("map build tum:" + tour + " --poses " + tour + "/groundtruth.txt --out " + out), 0)
       << err_;
   EXPECT_NE(err_.find("no floor was found under the camera's path"), std::string::npos) << err_;

@@ -92,6 +92,7 @@ TEST_F(EpisodeCommands, ACrashOfALibraryEndsItsEpisodesAlone) {
       const json& episodes = system.at("episodes");
       EXPECT_EQ(episodes.at(0).at("reason") == "system_failed", crashes) << episodes.dump();
       EXPECT_EQ(episodes.at(1).at("reason") == "not_run", crashes) << episodes.dump();
+      EXPECT_GT(episodes.at(1).at("shortest_m"), 0) << episodes.dump();
     }
     ASSERT_EQ(all.at("runs").size(), 4U);
     EXPECT_EQ(all.at("runs")[2].at("episodes").size(), 2U);
@@ -114,6 +115,9 @@ TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
   refused(episode + " one two", "unexpected argument 'one'");
   refused("episode " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --out " + out("none"),
           "episodes");
+  for (const std::string command : {"verify ", "check ", "audit "})
+    refused(command + suite().string(), "a suite with `episodes`");
+  refused("bench " + suite().string() + " --time-limit 5", "--time-limit");
   write_suite("soaf");
   refused(episode, "soaf");
   write_suite("sofa, sofa");

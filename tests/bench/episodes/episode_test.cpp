@@ -199,6 +199,26 @@ TEST(Episodes, MappingIsALiveFeed) {
             OnFailure::kRewind);
 }
 
+TEST(Episodes, WhatWouldMixInOneRowOrHasNoRobotIsRefused) {
+  const auto refused = [](const Suite& suite, const char* part) {
+    try {
+      episode_runs(suite);
+      ADD_FAILURE() << "not refused: " << part;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  Suite suite = small_suite();
+  suite.levels.push_back(suite.levels.front());
+  refused(suite, "levels: 2");
+  suite = small_suite();
+  suite.sweep.points.assign(2, suite.slam);
+  refused(suite, "parameters:");
+  suite = small_suite();
+  suite.environments.front().mapping_tour = "handheld:0:30";
+  refused(suite, "mapping_tour: 'handheld:0:30' is not driven by a robot");
+}
+
 TEST(Episodes, ASuiteWithoutThemIsRefused) {
   Suite suite = small_suite();
   suite.episodes.reset();

@@ -52,6 +52,8 @@ TEST(EpisodesSpec, IsReadAndItsMistakesAreNamed) {
   EXPECT_NE(refusal("  goals: [bed]\n  starts: 0\n").find("starts"), std::string::npos);
   EXPECT_NE(refusal("  goals: [bed]\n  variants: [{name: a}, {name: a}]\n").find("stands twice"),
             std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  limit_s: 5\n  dark_s: 5\n").find("leaves nothing of"),
+            std::string::npos);
   EXPECT_NE(refusal("  goals: [bed]\n  sleep: 1\n").find("sleep"), std::string::npos);
 }
 

@@ -113,7 +113,6 @@ TEST(CostMap, CostsDecayAsNav2PublishesIt) {
   EXPECT_EQ(cost_at_distance(0.26, config), 253);
   EXPECT_EQ(cost_at_distance(0.30, config), static_cast<int>(252 * std::exp(-3.0 * 0.04)));
   EXPECT_EQ(cost_at_distance(1.0, config), static_cast<int>(252 * std::exp(-3.0 * 0.74)));
-  EXPECT_EQ(cost_at_distance(1.01, config), 0);
 
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(61, 41, kFreeCell)};
   grid.cells(30, 20) = grid.cells(31, 20) = kOccupiedCell;
@@ -125,6 +124,24 @@ TEST(CostMap, CostsDecayAsNav2PublishesIt) {
       const int expected = x == 60 && y == 0 ? 255 : cost_at_distance(away_m, config);
       EXPECT_EQ(costs.costs(x, y), expected) << x << " " << y;  // (33, 20): the disc would touch
     }
+}
+
+// inflation_layer.cpp: the radius is rounded up to whole cells, cells at most so far get a cost.
+TEST(CostMap, EndsAtWholeCells) {
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(61, 1, kFreeCell)};
+  grid.cells(0, 0) = kOccupiedCell;
+  for (const auto& [radius_m, cells] : {std::pair(0.55, 11), {0.53, 11}, {0.50, 10}, {0.51, 11}}) {
+    const CostMap costs = cost_map(grid, {.inflation_radius_m = radius_m});
+    EXPECT_GT(costs.costs(cells, 0), 0) << radius_m;
+    EXPECT_EQ(costs.costs(cells + 1, 0), 0) << radius_m;
+  }
+}
+
+TEST(CostMap, AWideRadiusOverTinyCellsIsCutAtTheGrid) {
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(3, 2, kFreeCell), .resolution_m = 1e-4};
+  grid.cells(0, 0) = kOccupiedCell;
+  const CostMap costs = cost_map(grid, {.inscribed_radius_m = 0.1, .inflation_radius_m = 100});
+  EXPECT_EQ(costs.costs(2, 1), kInscribedCost);
 }
 
 TEST(CostMap, RefusesSettingsOutOfRange) {
