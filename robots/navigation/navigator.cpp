@@ -335,7 +335,7 @@ Twist2d Navigator::face(const Perception& now) {
   if (std::abs(left_rad) > kFaced_rad && now.time_s - since_s_ < 15)
     return turn_in_place(left_rad, robot_.limits, config_.follow, kFaced_rad);
   if (away_from_goal_m(at.place_m) > config_.reach_m) {
-    recover(now, fmt::format("is not at {} after all", name_));
+    recover(now, fmt::format("is not at {} after all", name_), false);
     return Twist2d::Zero();
   }
   say(fmt::format("has arrived at {}", name_));
@@ -350,17 +350,17 @@ Twist2d Navigator::back(const Perception& now) {
   return Twist2d::Zero();
 }
 
-void Navigator::recover(const Perception& now, const std::string& why) {
+void Navigator::recover(const Perception& now, const std::string& why, bool forget) {
   if (++recoveries_ > config_.most_recoveries) {
     say(why + ": it is stuck and stops");
     enter(NavigatorState::kStuck, now.time_s);
     return;
   }
-  say(why + ": forgets what it saw and looks around");
+  say(why + (forget ? ": forgets what it saw and looks around" : ": looks around"));
   // Another goal comes first now; among equals the order stays.
   if (state_ == NavigatorState::kDriving || state_ == NavigatorState::kFacing)
     std::ranges::stable_partition(goals_, [&](const auto& goal) { return goal.name != name_; });
-  local_.clear();
+  if (forget) local_.clear();
   enter(NavigatorState::kLooking, now.time_s);
 }
 

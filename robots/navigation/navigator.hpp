@@ -125,7 +125,8 @@ class Navigator {
   bool aim_at(const NavigatorGoal& goal);
   bool find_way(const Pose2& map_from_base);
   std::string all_goals() const;
-  void recover(const Perception& now, const std::string& why);
+  /// Looks around and plans again. @param forget  what the sensors showed: it may be wrong
+  void recover(const Perception& now, const std::string& why, bool forget = true);
   double away_from_goal_m(const Eigen::Vector2d& place_in_map_m) const;
 
   const KnownMap& map_;
