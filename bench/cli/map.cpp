@@ -109,8 +109,9 @@ void run(const MapCostArguments& options) {
                     options.config.inflation_radius_m, options.config.inscribed_radius_m));
   std::vector<std::string> warnings;
   const OccupancyGrid grid = load_map_server(options.grid, &warnings);
-  for (const std::string& stem : {options.out, published})
-    require_writable_map_image(stem, {options.grid, image_of_map(options.grid)});
+  const std::vector<std::filesystem::path> read{options.grid, image_of_map(options.grid)};
+  require_writable_map_image(options.out, read);
+  require_writable_map_image(published, read);
   for (const std::string& warning : warnings) fmt::print(stderr, "map: warning: {}\n", warning);
   const CostMap costs = cost_map(grid, options.config);
   save_cost_map(costs, options.out);

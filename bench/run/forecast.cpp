@@ -28,6 +28,16 @@ std::optional<double> Forecast::of(const RunSpec& run) const {
   return std::nullopt;
 }
 
+std::optional<double> Forecast::of_all(const std::vector<const RunSpec*>& runs) const {
+  double sum_s = 0;
+  for (const RunSpec* run : runs) {
+    const auto wall_s = of(*run);
+    if (!wall_s) return std::nullopt;
+    sum_s += *wall_s;
+  }
+  return sum_s;
+}
+
 std::optional<double> Forecast::to_go_s(double waiting_s, const std::vector<RunAtWork>& at_work,
                                         int jobs) const {
   constexpr double kEnough = 0.1;  // of a run's work, to extrapolate the rest

@@ -25,8 +25,10 @@ class Forecast {
   void note(const RunSpec& finished, double wall_s);
   /// Duration of such a run from start to end; nullopt before anything has finished.
   std::optional<double> of(const RunSpec& run) const;
+  /// Duration of all of these, one after the other; nullopt before anything has finished.
+  std::optional<double> of_all(const std::vector<const RunSpec*>& runs) const;
   /// nullopt if unknown: nothing has finished, and a run in progress is less than 1/10 done.
-  /// @param waiting_s  sum of of() over the runs that have not begun
+  /// @param waiting_s  of_all() of the runs that have not begun
   /// @param jobs       runs in parallel
   std::optional<double> to_go_s(double waiting_s, const std::vector<RunAtWork>& at_work,
                                 int jobs) const;

@@ -120,11 +120,9 @@ class Pool {
 
   /// When runs begin or end, not at each report: there are thousands of them.
   void estimate_waiting() {
-    waiting_s_ = 0;
-    for (const Waiting& w : waiting_) {
-      const auto wall_s = forecast_.of(w.job.spec);
-      waiting_s_ = wall_s && waiting_s_ ? std::optional(*waiting_s_ + *wall_s) : std::nullopt;
-    }
+    std::vector<const RunSpec*> waiting;
+    for (const Waiting& w : waiting_) waiting.push_back(&w.job.spec);
+    waiting_s_ = forecast_.of_all(waiting);
   }
 
   /// Starts a run, or notes that another process finished it; false if none can be started now.

@@ -27,6 +27,7 @@ bool is_obstacle(const OccupancyGrid& grid, int x, int y) {
 std::uint8_t cost_at_distance(double distance_m, const CostMapConfig& config) {
   if (distance_m == 0) return kLethalCost;
   if (distance_m <= config.inscribed_radius_m) return kInscribedCost;
+  if (distance_m > config.inflation_radius_m) return kFreeCost;
   const double decay =
       std::exp(-config.cost_scaling_factor * (distance_m - config.inscribed_radius_m));
   return static_cast<std::uint8_t>((kInscribedCost - 1) * decay);
@@ -49,14 +50,14 @@ CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config) {
   std::vector<Around> disc;
   const double radius_cells =
       std::ceil(config.inflation_radius_m / grid.resolution_m - 1e-9);  // 0.55 / 0.05 is 11
+  CostMapConfig in_cells = config;
+  in_cells.inflation_radius_m = grid.resolution_m * radius_cells;
   const int reach_x = static_cast<int>(std::min(radius_cells, w - 1.0)),
             reach_y = static_cast<int>(std::min(radius_cells, h - 1.0));
   for (int y = -reach_y; y <= reach_y; ++y)
     for (int x = -reach_x; x <= reach_x; ++x) {
-      const double away_cells = std::hypot(x, y);
-      if (away_cells > radius_cells) continue;
-      if (const std::uint8_t cost = cost_at_distance(grid.resolution_m * away_cells, config);
-          cost > kFreeCost)
+      const double away_m = grid.resolution_m * std::sqrt(static_cast<double>(x * x + y * y));
+      if (const std::uint8_t cost = cost_at_distance(away_m, in_cells); cost > kFreeCost)
         disc.push_back({x, y, cost});
     }
   for (int y = 0; y < h; ++y)

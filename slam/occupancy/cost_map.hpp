@@ -29,10 +29,11 @@ struct CostMap {
 
 /// The cost at a distance from the nearest obstacle, as Nav2's inflation layer computes it: 254 at
 /// 0, 253 up to the inscribed radius, then 252 exp(-factor (distance - inscribed)), cut to an
-/// integer. The layer ends at the inflation radius, rounded up to whole cells.
+/// integer; 0 beyond the inflation radius.
 std::uint8_t cost_at_distance(double distance_m, const CostMapConfig& config);
 
-/// Inflates the obstacles of a grid. Distances are between centers of cells, exact. As in Nav2,
+/// Inflates the obstacles of a grid. Distances are between centers of cells, exact; the inflation
+/// radius is rounded up to whole cells (Nav2's inflation_layer.cpp does so, too). As in Nav2,
 /// unknown cells stay unknown but where the robot's disc would touch an obstacle (253).
 /// @throws InputError naming a setting that is out of range, or a grid of resolution zero.
 CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config = {});

@@ -179,12 +179,9 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
   if (mode != "trinary" && mode != "raw")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary and raw are");
   const MapImage map = read_map_image(yaml, yaml_file, warnings);
-  const std::string negated = yaml.string("negate");
-  const auto is_one_of = [word = lower_case(negated)](auto... words) {
-    return ((word == words) || ...);
-  };
-  const bool negate = is_one_of("1", "true", "yes", "on");  // map_server takes YAML's spellings
-  if (!negate && !is_one_of("0", "false", "no", "off"))
+  const std::string negated = lower_case(yaml.string("negate"));
+  const bool negate = negated == "1" || negated == "true";  // map_server takes both
+  if (!negate && negated != "0" && negated != "false")
     yaml.at("negate").fail("'" + negated + "' is not 0, 1, true or false");
   const double occupied = yaml.number("occupied_thresh", 0, 1);
   const double free = yaml.number("free_thresh", 0, 1);

@@ -26,21 +26,25 @@ TEST(Forecast, TakesTheMeanOfTheNearestKindThatHasFinished) {
 }
 
 TEST(Forecast, TellsNoTimeBeforeItIsKnown) {
-  const RunSpec theirs = run_of("theirs", "office");
+  const RunSpec plain = run_of("plain", "office"), theirs = run_of("theirs", "office");
   const Forecast forecast;
+  EXPECT_EQ(forecast.of_all({&plain}), std::nullopt) << "one waits of which nothing is known";
+  EXPECT_EQ(forecast.of_all({}), 0);
   EXPECT_EQ(forecast.to_go_s(0, {{theirs, 50, 2, 0.01}}, 1), std::nullopt)
       << "a hundredth of the work, most of the time spent on light";
   EXPECT_EQ(forecast.to_go_s(0, {{theirs, 50, 30, 0.25}}, 1), 90) << "by the share that is done";
 }
 
 TEST(Forecast, SumsWhatIsLeftOverTheJobsButNoShorterThanTheLongestRun) {
-  const RunSpec plain = run_of("plain", "office");
+  const RunSpec plain = run_of("plain", "office"), theirs = run_of("theirs", "office");
   Forecast forecast;
   forecast.note(plain, 100);
-  // 90 s of the one at work, beside those that wait.
-  EXPECT_EQ(forecast.to_go_s(110, {{plain, 10, 0, 0}}, 1), 200);
-  EXPECT_EQ(forecast.to_go_s(110, {{plain, 10, 0, 0}}, 2), 100);
-  EXPECT_EQ(forecast.to_go_s(10, {{plain, 10, 0, 0}}, 8), 90);
+  forecast.note(theirs, 10);
+  // 90 s of the one at work, 100 and 10 s of those that wait.
+  const double both_s = forecast.of_all({&plain, &theirs}).value();
+  EXPECT_EQ(forecast.to_go_s(both_s, {{plain, 10, 0, 0}}, 1), 200);
+  EXPECT_EQ(forecast.to_go_s(both_s, {{plain, 10, 0, 0}}, 2), 100);
+  EXPECT_EQ(forecast.to_go_s(forecast.of_all({&theirs}).value(), {{plain, 10, 0, 0}}, 8), 90);
 }
 
 }  // namespace

@@ -113,6 +113,7 @@ TEST(CostMap, CostsDecayAsNav2PublishesIt) {
   EXPECT_EQ(cost_at_distance(0.26, config), 253);
   EXPECT_EQ(cost_at_distance(0.30, config), static_cast<int>(252 * std::exp(-3.0 * 0.04)));
   EXPECT_EQ(cost_at_distance(1.0, config), static_cast<int>(252 * std::exp(-3.0 * 0.74)));
+  EXPECT_EQ(cost_at_distance(1.01, config), 0);
 
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(61, 41, kFreeCell)};
   grid.cells(30, 20) = grid.cells(31, 20) = kOccupiedCell;
@@ -252,6 +253,7 @@ TEST(MapServer, ReadsWhatOthersWrite) {
   };
   EXPECT_EQ(cells("false"), std::pair(0, 100));
   EXPECT_EQ(cells("true"), std::pair(100, 0));
+  EXPECT_EQ(cells("True"), std::pair(100, 0));
   EXPECT_EQ(cells("1"), std::pair(100, 0));
   EXPECT_THROW(cells("yes"), InputError);
 }
