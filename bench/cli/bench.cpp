@@ -23,6 +23,7 @@
 #include "bench/episodes/report.hpp"
 #include "bench/protocol/config.hpp"
 #include "bench/run/run.hpp"
+#include "bench/run/run_one.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/run/slurm.hpp"
@@ -116,7 +117,7 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   std::ranges::copy(options.arguments_of_part, std::back_inserter(episodes.arguments));
   std::vector<std::string> names(std::begin(kEpisodeFiles), std::end(kEpisodeFiles));
   for (const RunSpec& run : episode_runs(suite))
-    if (run.system.is_outside()) names.push_back(run.name + "/outside.log");
+    if (run.system.is_outside()) names.push_back(run.name + "/" + kOutsideLog);
   const OutputFolder folder(episodes.out, "bench", names);
   Progress progress("bench");
   episodes.say = [&](std::string_view stage) { progress.say(stage); };

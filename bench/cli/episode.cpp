@@ -15,6 +15,7 @@
 #include "bench/episodes/run_episodes.hpp"
 #include "bench/episodes/strip.hpp"
 #include "bench/provenance/json_fields.hpp"
+#include "bench/run/run_one.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "scenes/images/write_image.hpp"
 #include "slam/core/error.hpp"
@@ -70,8 +71,7 @@ void run(EpisodeArguments options) {
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / (suite.name + "-episode")
                                         : std::filesystem::path(options.out);
-  const OutputFolder folder(out, "episode",
-                            {"log.txt", "strip.png", "episode.json", "outside.log"});
+  const OutputFolder folder(out, "episode", {"log.txt", "strip.png", "episode.json", kOutsideLog});
 
   Progress progress("episode");
   EpisodeOptions episodes;

@@ -222,7 +222,7 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStre
   skipped = frames.skipped();
   status(fmt::format("runs over {}", counted(offered.size(), "frame")));
   Trajectory trajectory =
-      run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / "outside.log");
+      run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / kOutsideLog);
   given.move_to_run();
   return trajectory;
 }
@@ -235,9 +235,9 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
     if (spec.system.is_library())
       return make_library_system(spec.system.outside, world.mapping->camera(), spec.seed,
-                                 folder / "outside.log", std::move(status));
+                                 folder / kOutsideLog, std::move(status));
     return make_conversation_system(spec.system.outside, world.mapping->camera(), spec.seed,
-                                    folder / "outside.log");
+                                    folder / kOutsideLog);
   }
   return make_our_system(world.mapping->camera(), spec.slam, world.vocabulary);
 }

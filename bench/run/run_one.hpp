@@ -19,6 +19,9 @@ struct RunTamper {
   std::function<void(std::size_t call, SystemReport&)> report;  ///< of track calls
 };
 
+/// What an outside program of a run prints, in the run's folder.
+inline constexpr const char* kOutsideLog = "outside.log";
+
 /// The system of a run: our own SLAM with the run's settings, or an outside one, either a program
 /// that exchanges messages with us or a shared library. Null for an outside program that processes
 /// a folder of recorded frames instead.
