@@ -10,6 +10,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/episodes/robot_map.hpp"
 #include "bench/studies/map_messages.hpp"
 #include "robots/navigation/grid.hpp"
 #include "robots/navigation/plan.hpp"
@@ -157,41 +158,26 @@ void run(const MapMessagesArguments& options) {
              counted(study.objects.size(), "object"), counted(map.voxel_count(), "voxel"));
 }
 
-/// A goal next to an object: the place that can be reached and is nearest to its box.
-/// @param ways  lengths from the start to each cell
-std::optional<Vector2d> place_beside(const MapObject& object, const FloorGrid& grid,
-                                     const Grid2d<float>& ways) {
-  std::optional<Vector2d> best;
-  double nearest_m = 1.5;  // farther than this is not at the object
-  for (int y = 0; y < ways.height(); ++y)
-    for (int x = 0; x < ways.width(); ++x) {
-      if (!std::isfinite(ways(x, y))) continue;
-      const Vector2d at = grid.center_of({x, y});
-      const double away_m =
-          (at - at.cwiseMax(object.min_m.head<2>()).cwiseMin(object.max_m.head<2>())).norm();
-      if (away_m >= nearest_m) continue;
-      nearest_m = away_m;
-      best = at;
-    }
-  return best;
-}
-
-/// The same for the first object of a name, the best-scored first, that can be reached.
-Vector2d place_beside(const std::string& name, const VoxelMap& map, const FloorGrid& grid,
+/// A goal at an object of a name: where a robot in an episode would stop; the first object, the
+/// best-scored first, that a path leads to.
+Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownMap& known,
                       const Vector2d& from_m, double clearance_m) {
+  constexpr double kReach_m = 1.5;  // farther than this is not at the object
   const std::vector<MapObject> objects = find_objects(map);
   const std::vector<std::size_t> meant = objects_named(objects, name);
-  const Grid2d<float> ways = way_lengths(grid, from_m, clearance_m);
-  for (const std::size_t i : meant)
-    if (const auto found = place_beside(objects[i], grid, ways)) {
+  const std::vector<std::vector<Vector2d>> footprints_m = footprints_of(map, objects);
+  for (const std::size_t i : meant) {
+    const Grid2d<float> away_m = distances_m(known, footprints_m[i], kReach_m);
+    if (const auto found = place_before(known.grid, away_m, from_m, clearance_m, kReach_m)) {
       if (meant.size() > 1) fmt::print(stderr, "map: of '{}': {}\n", name, objects[i].name);
       return *found;
     }
-  throw InputError(
-      fmt::format("goal '{}'{}: no free place within 1.5 m of it can be reached from {}",
-                  objects[meant.front()].name,
-                  meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
-                  place(from_m)));
+  }
+  throw InputError(fmt::format(
+      "goal '{}'{}: no free place within 1.5 m of it, no wall between, can be reached from {}",
+      objects[meant.front()].name,
+      meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
+      place(from_m)));
 }
 
 /// @throws InputError if a robot cannot stand at a place of the grid.
@@ -218,14 +204,14 @@ void run(const MapPlanArguments& options) {
     require_replaceable(options.out, kPathHead, "`modelhouse map plan`", {options.map});
   const VoxelMap map = VoxelMap::load_ot(options.map);
   const OccupancyGrid grid = grid_of(map, options.map, options.band);
-  const FloorGrid floor =
-      floor_grid_of(blocked_cells(grid), grid.resolution_m, grid.center_m(0, 0));
+  const KnownMap known = known_map(map, grid);
+  const FloorGrid& floor = known.grid;
   const double clearance_m = options.radius_m + options.margin_m;
   const Vector2d from(options.from[0], options.from[1]);
   require_clear("start", from, grid, floor, clearance_m);
   Vector2d to;
   if (!options.thing.empty()) {
-    to = place_beside(options.thing, map, floor, from, clearance_m);
+    to = place_beside(options.thing, map, known, from, clearance_m);
   } else {
     to = {options.to[0], options.to[1]};
     require_clear("goal", to, grid, floor, clearance_m);
@@ -303,7 +289,9 @@ void add_messages(CLI::App& map) {
 
 void add_plan(CLI::App& map) {
   auto options = std::make_shared<MapPlanArguments>();
-  CLI::App* command = map.add_subcommand("plan", "A path over the floor of a saved octree.");
+  CLI::App* command = map.add_subcommand("plan",
+                                         "A path over the floor of a saved octree: short, and away "
+                                         "from obstacles where there is room.");
   command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
   command->add_option("--from", options->from, "Start: x y, m")
       ->expected(2)
@@ -312,7 +300,9 @@ void add_plan(CLI::App& map) {
   command->add_option("--to", options->to, "Goal: x y, m")
       ->expected(2)
       ->check(number_between(-1e6, 1e6));
-  command->add_option("--to-object", options->thing, "Goal: a place beside this object")
+  command
+      ->add_option("--to-object", options->thing,
+                   "Goal: at this object, no wall between; a class, or an object's name")
       ->check(not_empty());
   command->add_option("--radius", options->radius_m, "Of the robot's disc, m")
       ->check(number_between(0.0, 10.0));

@@ -293,7 +293,7 @@ void add_map_build(CLI::App& map) {
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--resolution", options->resolution_m, "Side of a voxel, m")
-      ->check(number_between(0.016, 1.0));
+      ->check(number_between(0.016, 0.5));
   command
       ->add_option("--height", options->height_m, "Of the robot, m: what is higher is no obstacle")
       ->check(number_between(0.15, 10.0));

@@ -205,8 +205,8 @@ class Episode {
                      kFalsePose_deg * std::numbers::pi / 180;
     }
     score_.said_arrived = navigator.state() == NavigatorState::kArrived;
-    score_.success = score_.said_arrived &&
-                     distance_in_sight(start_, truth.state().position_m) <= spec_.arrival_m;
+    score_.success =
+        score_.said_arrived && is_arrival(start_, truth.state().position_m, spec_.arrival_m);
     score_.wrong_arrival = score_.said_arrived && !score_.success;
     if (score_.success) {
       score_.spl = score_.shortest_m / std::max({score_.shortest_m, score_.length_m, 1e-9});

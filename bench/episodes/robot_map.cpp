@@ -22,12 +22,6 @@ using Eigen::Vector2d;
 // A view tells the map something new after so much: at 2 m, 0.26 rad are half a meter.
 constexpr double kMoved_m = 0.25, kTurned_rad = 0.26;
 
-KnownMap known_map(const OccupancyGrid& grid) {
-  KnownMap known{.grid = {}, .blocked = blocked_cells(grid), .walls = {}};
-  known.grid = floor_grid_of(known.blocked, grid.resolution_m, grid.center_m(0, 0));
-  return known;
-}
-
 /// The cells in which a wall was seen.
 Grid2d<std::uint8_t> walls_of(const VoxelMap& map, const OccupancyGrid& grid) {
   const std::optional<ClassId> wall = class_by_name("wall");
@@ -38,27 +32,6 @@ Grid2d<std::uint8_t> walls_of(const VoxelMap& map, const OccupancyGrid& grid) {
     if (const auto cell = grid.cell_of(center.head<2>())) walls(cell->x(), cell->y()) = 1;
   });
   return walls;
-}
-
-/// The cells that each object covers: of its class, inside its box. A box alone says too much of a
-/// thing that stands askew in the map's frame.
-std::vector<std::vector<Vector2d>> footprints_of(const VoxelMap& map,
-                                                 const std::vector<MapObject>& objects) {
-  std::vector<std::set<std::pair<int, int>>> cells(objects.size());
-  map.for_each([&](const Voxel& voxel) {
-    if (!voxel.occupied || voxel.label == kVoid) return;
-    const Eigen::Vector3d center = voxel.center_m(map.resolution_m());
-    for (std::size_t i = 0; i < objects.size(); ++i)
-      if (objects[i].class_id == voxel.label &&
-          (center.array() >= objects[i].min_m.cast<double>().array()).all() &&
-          (center.array() <= objects[i].max_m.cast<double>().array()).all())
-        cells[i].emplace(voxel.index.x(), voxel.index.y());
-  });
-  std::vector<std::vector<Vector2d>> footprints(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    for (const auto& [x, y] : cells[i])
-      footprints[i].push_back(map.resolution_m() * Vector2d(x + 0.5, y + 0.5));
-  return footprints;
 }
 
 /// What the lasers saw from those frames' places, as the system estimated them.
@@ -77,6 +50,31 @@ void add_lasers(const MapInput& input, const std::vector<std::size_t>& chosen,
 }
 
 }  // namespace
+
+KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid) {
+  KnownMap known{.grid = {}, .blocked = blocked_cells(grid), .walls = walls_of(map, grid)};
+  known.grid = floor_grid_of(known.blocked, grid.resolution_m, grid.center_m(0, 0));
+  return known;
+}
+
+std::vector<std::vector<Vector2d>> footprints_of(const VoxelMap& map,
+                                                 const std::vector<MapObject>& objects) {
+  std::vector<std::set<std::pair<int, int>>> cells(objects.size());
+  map.for_each([&](const Voxel& voxel) {
+    if (!voxel.occupied || voxel.label == kVoid) return;
+    const Eigen::Vector3d center = voxel.center_m(map.resolution_m());
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      if (objects[i].class_id == voxel.label &&
+          (center.array() >= objects[i].min_m.cast<double>().array()).all() &&
+          (center.array() <= objects[i].max_m.cast<double>().array()).all())
+        cells[i].emplace(voxel.index.x(), voxel.index.y());
+  });
+  std::vector<std::vector<Vector2d>> footprints(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (const auto& [x, y] : cells[i])
+      footprints[i].push_back(map.resolution_m() * Vector2d(x + 0.5, y + 0.5));
+  return footprints;
+}
 
 std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory& estimate) {
   std::vector<std::size_t> chosen;
@@ -111,8 +109,7 @@ RobotMap build_robot_map(const MapInput& input) {
   if (std::ranges::count(map.grid.cells, kFreeCell) == 0) return {};
   map.objects = find_objects(mapper.map());
   map.footprints_m = footprints_of(mapper.map(), map.objects);
-  map.known = known_map(map.grid);
-  map.known.walls = walls_of(mapper.map(), map.grid);
+  map.known = known_map(mapper.map(), map.grid);
   return map;
 }
 

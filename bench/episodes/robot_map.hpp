@@ -10,6 +10,7 @@
 #include "slam/core/trajectory.hpp"
 #include "slam/occupancy/objects.hpp"
 #include "slam/occupancy/occupancy_grid.hpp"
+#include "slam/occupancy/voxel_map.hpp"
 
 namespace mh {
 
@@ -25,6 +26,14 @@ struct RobotMap {
 
   bool empty() const { return known.blocked.empty(); }
 };
+
+/// A grid as the navigator reads it, with the walls that its map saw.
+KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid);
+
+/// The cells that each object covers (their centers, m): of its class, inside its box. A box alone
+/// says too much of a thing that stands askew in the map's frame.
+std::vector<std::vector<Eigen::Vector2d>> footprints_of(const VoxelMap& map,
+                                                        const std::vector<MapObject>& objects);
 
 /// Frames that the map is made of: those of the trajectory after which the camera moved or turned
 /// by some, as indices of the sequence.

@@ -6,13 +6,11 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <set>
 
 #include <fmt/format.h>
 
 #include "robots/navigation/floor_grid.hpp"
 #include "robots/navigation/lost.hpp"
-#include "robots/navigation/navigator.hpp"
 #include "robots/navigation/plan.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
@@ -31,57 +29,43 @@ bool is_search(double way_m) {
 }
 
 /// Shortest way (m) from each cell to a place where the robot has arrived.
-Grid2d<float> ways_to(const EpisodeStart& goal, double arrival_m, double clearance_m) {
-  const FloorGrid& grid = *goal.floor;
+Grid2d<float> ways_to(const EpisodeStart& goal, const FloorGrid& grid, double arrival_m,
+                      double clearance_m) {
   std::vector<Vector2d> ends;
   for (int y = 0; y < grid.clearance_m.height(); ++y)
     for (int x = 0; x < grid.clearance_m.width(); ++x) {
       const Vector2d place_m = grid.center_of({x, y});
       if (static_cast<double>(grid.clearance_m(x, y)) >= clearance_m &&
-          distance_in_sight(goal, place_m) <= arrival_m)
+          is_arrival(goal, place_m, arrival_m))
         ends.push_back(place_m);
     }
   return way_lengths(grid, ends, clearance_m);
 }
 
-/// The cells of a true floor in which walls stand.
-std::shared_ptr<const Grid2d<std::uint8_t>> true_walls(const FloorGrid& grid, const Scene& scene) {
-  std::set<InstanceId> ids;
-  for (const Instance& instance : scene.instances)
-    if (instance.class_id == class_by_name("wall")) ids.insert(instance.id);
-  auto walls =
-      std::make_shared<Grid2d<std::uint8_t>>(grid.occupant.width(), grid.occupant.height());
-  for (int y = 0; y < walls->height(); ++y)
-    for (int x = 0; x < walls->width(); ++x)
-      (*walls)(x, y) = ids.contains(grid.occupant(x, y)) ? 1 : 0;
-  return walls;
+Vector2d nearest_in(const TrueBox& box, const Vector2d& place_m) {
+  return place_m.cwiseMax(box.first).cwiseMin(box.second);
 }
 
 }  // namespace
 
 double distance_to(const std::vector<TrueBox>& boxes, const Vector2d& place_m) {
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (const auto& [low, high] : boxes)
-    nearest_m = std::min(nearest_m, (place_m - place_m.cwiseMax(low).cwiseMin(high)).norm());
+  for (const TrueBox& box : boxes)
+    nearest_m = std::min(nearest_m, (place_m - nearest_in(box, place_m)).norm());
   return nearest_m;
 }
 
-double distance_in_sight(const EpisodeStart& start, const Vector2d& place_m) {
-  double nearest_m = std::numeric_limits<double>::infinity();
-  for (const auto& [low, high] : start.boxes) {
-    const Vector2d to_m = place_m.cwiseMax(low).cwiseMin(high);
-    if (!wall_between(*start.floor, *start.walls, place_m, to_m))
-      nearest_m = std::min(nearest_m, (place_m - to_m).norm());
-  }
-  return nearest_m;
+bool is_arrival(const EpisodeStart& start, const Vector2d& place_m, double arrival_m) {
+  return std::ranges::any_of(start.boxes, [&](const TrueBox& box) {
+    const Vector2d to_m = nearest_in(box, place_m);
+    return (place_m - to_m).norm() <= arrival_m && !start.walls->between(place_m, to_m);
+  });
 }
 
 std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& scene,
                                       const Robot& robot) {
-  const auto floor =
-      std::make_shared<const FloorGrid>(make_floor_grid(scene, {.top_m = robot.height_m}));
-  const FloorGrid& grid = *floor;
-  const auto walls = true_walls(grid, scene);
+  const FloorGrid grid = make_floor_grid(scene, {.top_m = robot.height_m});
+  const auto walls = std::make_shared<const TrueWalls>(scene, robot.height_m);
   const Grid2d<std::uint8_t> region = largest_region(grid, robot.footprint_radius_m + kClear_m);
   std::vector<Vector2d> cells;
   for (int y = 0; y < region.height(); ++y)
@@ -93,23 +77,23 @@ std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& sce
   struct Goal {
     EpisodeStart start;  ///< without its place
     Grid2d<float> way_m;
-    double way_from(const Vector2d& place_m) const {
-      const auto cell = start.floor->cell_of(place_m);
-      return static_cast<double>(way_m(cell->first, cell->second));
-    }
+  };
+  const auto way_from = [&grid](const Goal& goal, const Vector2d& place_m) {
+    const auto cell = grid.cell_of(place_m);
+    return static_cast<double>(goal.way_m(cell->first, cell->second));
   };
   std::vector<Goal> goals;
   for (const std::string& name : spec.goals) {
     const std::optional<ClassId> id = class_by_name(name);
-    Goal goal{.start = {.goal = name, .floor = floor, .walls = walls}, .way_m = {}};
+    Goal goal{.start = {.goal = name, .walls = walls}, .way_m = {}};
     for (const Instance& instance : scene.instances)
       if (id && instance.class_id == *id)
         goal.start.boxes.emplace_back(instance.min_m.head<2>().cast<double>(),
                                       instance.max_m.head<2>().cast<double>());
     if (goal.start.boxes.empty()) continue;
-    goal.way_m = ways_to(goal.start, spec.arrival_m, robot.footprint_radius_m + kSqueeze_m);
+    goal.way_m = ways_to(goal.start, grid, spec.arrival_m, robot.footprint_radius_m + kSqueeze_m);
     if (std::ranges::any_of(cells,
-                            [&](const Vector2d& at) { return is_search(goal.way_from(at)); }))
+                            [&](const Vector2d& at) { return is_search(way_from(goal, at)); }))
       goals.push_back(std::move(goal));
   }
   if (goals.empty())
@@ -128,7 +112,7 @@ std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& sce
     std::uint64_t k = 2;
     do {
       start.place_m = cells[draw.below(k++, cells.size())];
-      start.shortest_m = goal.way_from(start.place_m);
+      start.shortest_m = way_from(goal, start.place_m);
     } while (!is_search(start.shortest_m));
     starts.push_back(std::move(start));
   }

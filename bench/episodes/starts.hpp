@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/episodes/walls.hpp"
 #include "bench/plan/episodes_spec.hpp"
 #include "robots/model/robot.hpp"
 #include "robots/navigation/grid.hpp"
@@ -22,17 +23,17 @@ struct EpisodeStart {
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< world
   double heading_rad = 0;
   std::string goal = {};
-  std::vector<TrueBox> boxes = {};                         ///< of every thing of that class
-  std::shared_ptr<const FloorGrid> floor = {};             ///< true
-  std::shared_ptr<const Grid2d<std::uint8_t>> walls = {};  ///< of its cells
+  std::vector<TrueBox> boxes = {};  ///< of every thing of that class
+  std::shared_ptr<const TrueWalls> walls = {};
   double shortest_m = 0;  ///< of the ways over the true floor that end in success
 };
 
 /// Distance (m) of a place from the nearest box; infinite if there is none.
 double distance_to(const std::vector<TrueBox>& boxes, const Eigen::Vector2d& place_m);
 
-/// The same; infinite where a wall is between: who stands behind a wall has not arrived.
-double distance_in_sight(const EpisodeStart& start, const Eigen::Vector2d& place_m);
+/// Whether a place is that near to a box, with no wall between: who stands behind a wall has not
+/// arrived.
+bool is_arrival(const EpisodeStart& start, const Eigen::Vector2d& place_m, double arrival_m);
 
 /// Draws starts: anywhere on the true floor that the robot can reach, turned anyhow; the goal is
 /// one of the spec's that the scene has and that can be reached. Start i depends on i alone, not on

@@ -200,7 +200,8 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
         continue;
       }
       const double p = negate ? level / 255.0 : 1.0 - level / 255.0;
-      grid.cells(x, y) = p > occupied ? kOccupiedCell : p < free ? kFreeCell : kUnknownCell;
+      // A level on a threshold counts as beyond it, on both as free: as nav2_map_server.
+      grid.cells(x, y) = p <= free ? kFreeCell : p >= occupied ? kOccupiedCell : kUnknownCell;
     }
   if (out_of_range > 0 && warnings != nullptr)
     warnings->push_back(

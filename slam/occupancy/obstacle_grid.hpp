@@ -16,7 +16,7 @@ namespace mh {
 struct ObstacleGridConfig {
   double floor_z_m = 0.0;
   /// What is lower than this above the floor is floor. 0.10 m: two voxels; depth noise at 4 m stays
-  /// below it.
+  /// below it. Voxels larger than that: half of it and half of a voxel.
   double ground_m = 0.10;
   double robot_height_m = 1.21;  ///< what is higher does not touch the robot
   /// A cell is free if it is free from below this height above the floor on: what was seen only

@@ -7,6 +7,7 @@
 
 #include "bench/episodes/episode_store.hpp"
 #include "bench/plan/suite.hpp"
+#include "scenes/load.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/temporary_folder.hpp"
 #include "tests/sim/boxes.hpp"
@@ -84,6 +85,66 @@ TEST(DrawStarts, AreOnTheFloorAndKnowTheShortestWay) {
       draw_starts({.starts = 3, .goals = {"toilet", "bed"}}, scene, robot);
   for (std::size_t i = 0; i < fewer.size(); ++i) EXPECT_EQ(fewer[i].place_m, starts[i].place_m);
   EXPECT_THROW(draw_starts({.starts = 1, .goals = {"toilet"}}, scene, robot), InputError);
+}
+
+/// A bed and a sideboard stand flush against the two sides of a wall of 10 cm; it ends before x = 8
+/// m.
+Scene room_with_a_bed_behind_a_wall() {
+  Scene scene = test::empty_room();
+  const auto add = [&](const char* name, const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+    test::add_box(scene, name, low, high);
+    scene.instances.back().class_id = *class_by_name(name);
+    std::fill(scene.class_of.end() - 12, scene.class_of.end(), *class_by_name(name));
+  };
+  add("wall", {0, 5, 0}, {8, 5.1F, 2.5F});
+  add("bed", {3, 5.1F, 0}, {5, 7, 0.5F});
+  add("cabinet", {3, 4.6F, 0}, {5, 5, 0.8F});
+  return scene;
+}
+
+TEST(DrawStarts, NobodyArrivesThroughAWall) {
+  const std::vector<EpisodeStart> starts = draw_starts(
+      {.starts = 40, .goals = {"bed"}}, room_with_a_bed_behind_a_wall(), test::pepper());
+  const EpisodeStart& start = starts.front();
+  EXPECT_FALSE(is_arrival(start, {4, 4.2}, 1.0));  // 0.9 m away, behind sideboard and wall
+  EXPECT_FALSE(is_arrival(start, {2.6, 4.7}, 1.0));
+  EXPECT_TRUE(is_arrival(start, {4, 7.9}, 1.0));
+  EXPECT_TRUE(is_arrival(start, {2.6, 5.4}, 1.0));  // beside it, along the wall
+  EXPECT_FALSE(is_arrival(start, {4, 8.1}, 1.0));
+  int behind = 0;
+  for (const EpisodeStart& drawn : starts)
+    if (drawn.place_m.y() < 5) {
+      ++behind;  // past the end of the wall, then to 1 m beside the bed
+      const double to_gap_m = (drawn.place_m - Eigen::Vector2d(8, 5)).norm();
+      EXPECT_GE(drawn.shortest_m, to_gap_m + 2.0 - 0.1);
+    }
+  EXPECT_GT(behind, 5);
+}
+
+TEST(DrawStarts, NobodyArrivesFromAnotherRoomOfTheModelHouse) {
+  const Scene scene = load_scene(MH_SOURCE_DIR "/scenes/model_house/house.yaml");
+  const auto room_of = [&](const Eigen::Vector2d& place_m) {
+    return std::ranges::find_if(scene.rooms,
+                                [&](const Room& room) { return room.contains(place_m); });
+  };
+  for (const char* goal : {"refrigerator", "sofa", "bed", "desk"}) {
+    const EpisodeStart start =
+        draw_starts({.starts = 1, .goals = {goal}}, scene, test::pepper()).front();
+    ASSERT_EQ(start.boxes.size(), 1U) << goal;
+    const auto own = room_of(0.5 * (start.boxes[0].first + start.boxes[0].second));
+    ASSERT_NE(own, scene.rooms.end()) << goal;
+    int arrived = 0;
+    for (double y_m = 0.05; y_m < 8; y_m += 0.1)
+      for (double x_m = 0.05; x_m < 10; x_m += 0.1) {
+        const Eigen::Vector2d place_m(x_m, y_m);
+        const auto room = room_of(place_m);
+        if (room == scene.rooms.end() || distance_to(start.boxes, place_m) > 1) continue;
+        arrived += is_arrival(start, place_m, 1.0) ? 1 : 0;
+        EXPECT_TRUE(room == own || !is_arrival(start, place_m, 1.0)) << goal << x_m << " " << y_m;
+        EXPECT_TRUE(room != own || is_arrival(start, place_m, 1.0)) << goal << x_m << " " << y_m;
+      }
+    EXPECT_GT(arrived, 50) << goal;
+  }
 }
 
 TEST(EpisodeStore, KeepsEveryFieldAndReplacesAnEpisode) {

@@ -59,6 +59,20 @@ TEST(ObstacleGrid, CountsWhatIsBetweenGroundAndHead) {
   EXPECT_TRUE(obstacle_grid(VoxelMap(0.05)).cells.empty());
 }
 
+TEST(ObstacleGrid, LargeVoxelsThatHoldTheFloorAreNoObstacles) {
+  for (const double side_m : {0.2, 0.25, 0.5}) {
+    MadeMap made;
+    for (int x = 0; x < 4; ++x) {
+      made.hit({x, 0, 0});  // the floor and its noise
+      made.free({x, 0, 1});
+    }
+    made.hit({2, 0, 1});
+    const OccupancyGrid grid = obstacle_grid(made.map(side_m));
+    EXPECT_EQ(count(grid, kFreeCell), 3) << side_m;
+    EXPECT_EQ(grid.cells(2, 0), kOccupiedCell) << side_m;
+  }
+}
+
 TEST(ObstacleGrid, WhatWasSeenOnlyAboveIsNotFree) {
   MadeMap made;
   for (int z = 10; z < 24; ++z) made.free({0, 0, z});  // from 0.5 m on
@@ -256,6 +270,18 @@ TEST(MapServer, ReadsWhatOthersWrite) {
   EXPECT_EQ(cells("True"), std::pair(100, 0));
   EXPECT_EQ(cells("1"), std::pair(100, 0));
   EXPECT_THROW(cells("yes"), InputError);
+}
+
+TEST(MapServer, LevelsOnAThresholdAreBeyondIt) {
+  const std::string pgm = testing::TempDir() + "tie.pgm", file = testing::TempDir() + "tie.yaml";
+  write_atomically(pgm, std::string("P5\n3 1\n255\n") + "\xFF\x80" + std::string(1, '\0'));
+  write_atomically(file,
+                   "image: tie.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n"
+                   "occupied_thresh: 1.0\nfree_thresh: 0.0\n");  // of Nav2's depot_speed.yaml
+  const OccupancyGrid grid = load_map_server(file);
+  EXPECT_EQ(grid.cells(0, 0), kFreeCell);
+  EXPECT_EQ(grid.cells(1, 0), kUnknownCell);
+  EXPECT_EQ(grid.cells(2, 0), kOccupiedCell);
 }
 
 TEST(MapServer, DirtyFilesAreReadWithAWarning) {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "scenes/scene.hpp"
+
+namespace mh {
+
+/// The true walls of a scene, seen from above.
+class TrueWalls {
+ public:
+  /// Takes the part of each wall that stands between the floor and the robot's head.
+  /// @pre the scene's floor is z = 0 (LevelScene)
+  TrueWalls(const Scene& scene, double robot_height_m);
+
+  /// Whether a wall crosses the straight line between two places. What crosses its last 2 cm does
+  /// not count: things stand against walls.
+  bool between(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) const;
+
+ private:
+  struct Outline {
+    std::vector<Eigen::Vector2d> corners_m;  ///< of a convex polygon; on a line if it is upright
+    Eigen::Vector2d low_m, high_m;
+  };
+  std::vector<Outline> outlines_;
+};
+
+}  // namespace mh
