@@ -123,7 +123,7 @@ MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Tra
   const TrueSpace space(scene, config.resolution_m, seeds);
   const ObstacleGridConfig band{.floor_z_m = config.floor_z_m,
                                 .robot_height_m = config.robot_height_m};
-  scores.plan = space.floor_plan(config.floor_z_m + band.ground_m,
+  scores.plan = space.floor_plan(band.lowest_m(config.resolution_m),
                                  config.floor_z_m + config.robot_height_m, seeds);
   std::optional<ScanGrid> scans;
   if (lasers != nullptr) scans = lasers->scans(seen_from, truth, config.resolution_m);

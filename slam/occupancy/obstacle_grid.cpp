@@ -60,13 +60,9 @@ void for_each_cell_before(const Vector2d& from, const Vector2d& to, Visit visit)
 
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config) {
   const double r = map.resolution_m();
-  // A large voxel that begins lower than half of ground_m holds the floor.
-  const double ground_m = std::max(config.ground_m, 0.5 * (config.ground_m + r));
-  const double low_m = config.floor_z_m + ground_m,
-               high_m = config.floor_z_m + config.robot_height_m;
+  const double low_m = config.lowest_m(r), high_m = config.floor_z_m + config.robot_height_m;
   if (!(low_m < high_m))
-    throw InputError(fmt::format("grid: nothing is between {} m and {} m above the floor", ground_m,
-                                 config.robot_height_m));
+    throw InputError(fmt::format("grid: nothing is between {} m and {} m", low_m, high_m));
   constexpr int kFar = std::numeric_limits<int>::max();
   /// What is known of the voxels above a cell.
   struct Column {
@@ -92,7 +88,7 @@ OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& confi
   grid.resolution_m = r;
   if (columns.empty()) return grid;
   grow_to(grid, low, high + Vector2i::Ones());
-  const double seen_m = config.floor_z_m + std::max(config.seen_below_m, ground_m + r);
+  const double seen_m = std::max(config.floor_z_m + config.seen_below_m, low_m + r);
   for (const auto& [cell, column] : columns) {
     const bool is_free = column.free > 0 && r * (column.lowest + 0.5) < seen_m &&
                          column.highest - column.lowest + 1 == column.free;

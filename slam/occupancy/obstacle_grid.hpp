@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -22,6 +23,12 @@ struct ObstacleGridConfig {
   /// A cell is free if it is free from below this height above the floor on: what was seen only
   /// above may hide something low.
   double seen_below_m = 0.50;
+
+  /// Height (m) from which on the center of a voxel of that size makes it part of the band.
+  double lowest_m(double resolution_m) const {
+    // A large voxel that begins lower than half of ground_m holds the floor.
+    return floor_z_m + std::max(ground_m, 0.5 * (ground_m + resolution_m));
+  }
 };
 
 /// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
