@@ -51,12 +51,9 @@ TrueWalls::TrueWalls(const Scene& scene, double robot_height_m) {
                         [&](std::size_t face, std::span<const Eigen::Vector3f> polygon) {
                           if (scene.class_of[face] != wall) return;
                           Outline outline;
-                          for (const Eigen::Vector3f& corner : polygon)
+                          for (const Eigen::Vector3f& corner : polygon) {
                             outline.corners_m.emplace_back(corner.head<2>().cast<double>());
-                          outline.low_m = outline.high_m = outline.corners_m.front();
-                          for (const Vector2d& corner : outline.corners_m) {
-                            outline.low_m = outline.low_m.cwiseMin(corner);
-                            outline.high_m = outline.high_m.cwiseMax(corner);
+                            outline.bounds_m.extend(outline.corners_m.back());
                           }
                           outlines_.push_back(std::move(outline));
                         });
@@ -66,11 +63,9 @@ bool TrueWalls::between(const Vector2d& from_m, const Vector2d& to_m) const {
   const double length_m = (to_m - from_m).norm();
   if (length_m <= kBeforeThing_m) return false;
   const Vector2d end_m = from_m + (1 - kBeforeThing_m / length_m) * (to_m - from_m);
-  const Vector2d low_m = from_m.cwiseMin(end_m), high_m = from_m.cwiseMax(end_m);
+  const Eigen::AlignedBox2d around = Eigen::AlignedBox2d(from_m).extend(end_m);
   return std::ranges::any_of(outlines_, [&](const Outline& outline) {
-    return (outline.low_m.array() <= high_m.array()).all() &&
-           (outline.high_m.array() >= low_m.array()).all() &&
-           crosses(outline.corners_m, from_m, end_m);
+    return around.intersects(outline.bounds_m) && crosses(outline.corners_m, from_m, end_m);
   });
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "scenes/scene.hpp"
 
@@ -23,7 +23,7 @@ class TrueWalls {
  private:
   struct Outline {
     std::vector<Eigen::Vector2d> corners_m;  ///< of a convex polygon; on a line if it is upright
-    Eigen::Vector2d low_m, high_m;
+    Eigen::AlignedBox2d bounds_m;
   };
   std::vector<Outline> outlines_;
 };
