@@ -79,8 +79,13 @@ void CommandedBase::step(const Twist2d& command) {
     meter_.add(state_, &wheels);
   }
   if (contact_.touching && !touched)
-    bumps_.push_back({time_s(), std::max(0.0, before.velocity_m_per_s.dot(contact_.direction)),
-                      contact_.instance});
+    bumps_.push_back(
+        {time_s(),
+         std::clamp(before.velocity_m_per_s.dot(contact_.direction), 0.0, driven_m_per_s_),
+         contact_.instance});
+  // After a push the limiter brakes from the speed that it gave: no more is driven than before or
+  // than is wanted.
+  driven_m_per_s_ = std::min(next.m_per_s.norm(), std::max(driven_m_per_s_, wanted.norm()));
   length_m_ += (state_.position_m - before.position_m).norm();
   max_penetration_m_ = std::max(max_penetration_m_, contact_.penetration_m);
   if (contact_.touching) contact_time_s_ += world_.step_s();
@@ -90,6 +95,7 @@ void CommandedBase::carry_to(const Eigen::Vector2d& place_m, double heading_rad)
   world_.place(place_m, heading_rad);
   state_ = world_.state();
   contact_ = {};
+  driven_m_per_s_ = 0;
   limiter_.stopped_at({state_.velocity_m_per_s, state_.turn_rad_per_s});
   meter_.pushed(state_);
 }

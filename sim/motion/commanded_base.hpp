@@ -15,7 +15,9 @@ namespace mh {
 /// A moment in which the base began to touch something.
 struct Bump {
   double time_s = 0;
-  double speed_m_per_s = 0;  ///< of the robot itself, toward what it touches
+  /// Of the robot, toward what it touches; at most the speed that its wheels gave it, so that one
+  /// that is shoved against a wall does not count as having driven there.
+  double speed_m_per_s = 0;
   InstanceId instance = 0;
 };
 
@@ -65,6 +67,7 @@ class CommandedBase {
   BaseState state_;
   Contact contact_;
   double reflex_m_per_s_;
+  double driven_m_per_s_ = 0;  ///< speed without what others pushed
   long steps_ = 0;
   double length_m_ = 0, max_penetration_m_ = 0, contact_time_s_ = 0, reflex_time_s_ = 0;
   std::vector<Bump> bumps_;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/motion/commands.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "sim/motion/commanded_base.hpp"
 #include "sim/motion/sensing.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -200,6 +202,33 @@ TEST(Commands, AStartInsideAPersonIsRefused) {
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("mm inside a pedestrian"), std::string::npos) << e.what();
   }
+}
+
+TEST(CommandedBase, WhoIsShovedDidNotDriveThere) {
+  // A person walks into the robot and stops; the robot rolls on to the wall behind it, at x = 0.
+  const MovingObstacle person{.instance = 99, .path = [](double time_s) {
+                                return Eigen::Vector2d(std::max(3.0 - 0.8 * time_s, 1.1), 5);
+                              }};
+  CommandedBase base(empty_room(), pepper(), {2, 5}, 0, false);
+  base.add(person);
+  double fastest = 0;
+  while (base.time_s() < 5) {
+    base.step(Twist2d::Zero());
+    fastest = std::max(fastest, base.state().velocity_m_per_s.norm());
+  }
+  EXPECT_GT(fastest, 0.6);
+  EXPECT_LT(base.state().position_m.x(), 0.3);
+  ASSERT_GE(base.bumps().size(), 2U);
+  for (const Bump& bump : base.bumps()) EXPECT_LT(bump.speed_m_per_s, 1e-3) << bump.instance;
+}
+
+TEST(CommandedBase, WhoDrivesIntoAPersonDid) {
+  const MovingObstacle person{.instance = 99, .path = [](double) { return Eigen::Vector2d(4, 5); }};
+  CommandedBase base(empty_room(), pepper(), {2, 5}, 0, false);
+  base.add(person);
+  while (base.time_s() < 6 && base.bumps().empty()) base.step({0.3, 0, 0});
+  ASSERT_FALSE(base.bumps().empty());
+  EXPECT_NEAR(base.bumps()[0].speed_m_per_s, 0.3, 0.02);
 }
 
 TEST(ReadSensors, LasersAndSonarsMeasureTheRoom) {
