@@ -164,18 +164,19 @@ Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownM
                       const Vector2d& from_m, double clearance_m) {
   constexpr double kReach_m = 1.5;  // farther than this is not at the object
   const std::vector<MapObject> objects = find_objects(map);
-  const std::vector<std::size_t> meant = objects_named(objects, name);
-  const std::vector<std::vector<Vector2d>> footprints_m = footprints_of(map, objects);
-  for (const std::size_t i : meant) {
+  std::vector<MapObject> meant;
+  for (const std::size_t i : objects_named(objects, name)) meant.push_back(objects[i]);
+  const std::vector<std::vector<Vector2d>> footprints_m = footprints_of(map, meant);
+  for (std::size_t i = 0; i < meant.size(); ++i) {
     const Grid2d<float> away_m = distances_m(known, footprints_m[i], kReach_m);
     if (const auto found = place_before(known.grid, away_m, from_m, clearance_m, kReach_m)) {
-      if (meant.size() > 1) fmt::print(stderr, "map: of '{}': {}\n", name, objects[i].name);
+      if (meant.size() > 1) fmt::print(stderr, "map: of '{}': {}\n", name, meant[i].name);
       return *found;
     }
   }
   throw InputError(fmt::format(
       "goal '{}'{}: no free place within 1.5 m of it, no wall between, can be reached from {}",
-      objects[meant.front()].name,
+      meant.front().name,
       meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
       place(from_m)));
 }

@@ -27,15 +27,9 @@ constexpr double kFaced_rad = 0.1;
 constexpr double kBeforeThing_m = 0.1;
 constexpr double kReachSlack_m = 0.3;  // of the distances kept, beyond what counts as arrival
 
-}  // namespace
-
-std::string_view name(NavigatorState state) {
-  constexpr std::array<std::string_view, 10> kNames{"looking", "exploring", "planning", "driving",
-                                                    "facing",  "backing",   "arrived",  "no_path",
-                                                    "stuck",   "collided"};
-  return kNames[static_cast<std::size_t>(state)];
-}
-
+/// Whether a wall stands on the straight line between two places; what is within 10 cm of `to_m`
+/// does not count: things stand against walls.
+/// @param walls  of the grid's cells; empty: none
 bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls, const Vector2d& from_m,
                   const Vector2d& to_m) {
   if (walls.empty()) return false;
@@ -45,6 +39,15 @@ bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls, cons
     if (cell && walls(cell->first, cell->second) != 0) return true;
   }
   return false;
+}
+
+}  // namespace
+
+std::string_view name(NavigatorState state) {
+  constexpr std::array<std::string_view, 10> kNames{"looking", "exploring", "planning", "driving",
+                                                    "facing",  "backing",   "arrived",  "no_path",
+                                                    "stuck",   "collided"};
+  return kNames[static_cast<std::size_t>(state)];
 }
 
 Grid2d<float> distances_m(const KnownMap& map, std::span<const Vector2d> places_m, double reach_m) {

@@ -152,12 +152,6 @@ class Navigator {
   bool was_known_ = false;
 };
 
-/// Whether a wall stands on the straight line between two places; what is within 10 cm of `to_m`
-/// does not count: things stand against walls.
-/// @param walls  of the grid's cells; empty: none
-bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls,
-                  const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
-
 /// Distance (m) of each cell of a map from the nearest of some places, infinite beyond `reach_m`
 /// and where a wall is between: who stands behind a wall has not arrived.
 Grid2d<float> distances_m(const KnownMap& map, std::span<const Eigen::Vector2d> places_m,
