@@ -130,9 +130,20 @@ std::string mark_in(const fs::path& folder) {
 
 }  // namespace
 
+NewFolders::NewFolders(fs::path folder) {
+  std::error_code error;
+  for (; !folder.empty() && !fs::exists(folder, error); folder = folder.parent_path())
+    missing_.push_back(folder);
+}
+
+NewFolders::~NewFolders() {
+  std::error_code error;
+  for (const fs::path& folder : missing_) fs::remove(folder, error);  // one with files stays
+}
+
 OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
                            std::vector<std::string> names)
-    : folder_(folder), names_(std::move(names)) {
+    : folder_(folder), names_(std::move(names)), made_(folder) {
   const std::string line = "modelhouse " + command + "\n", mark = mark_in(folder);
   const bool ours = mark.find("\n" + line) != std::string::npos;
   std::error_code error;
@@ -142,8 +153,6 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
         throw InputError(
             fmt::format("{}: is there already, and not from `modelhouse {}`: name another folder",
                         (folder / name).string(), command));
-  for (fs::path p = folder; !p.empty() && !fs::exists(p, error); p = p.parent_path())
-    made_.push_back(p);
   make_output_folder(folder);
   if (ours) return;
   write_atomically(folder / kMark, (mark.empty() ? std::string(kMarkHead) : mark) + line);
@@ -166,7 +175,6 @@ OutputFolder::~OutputFolder() {
     }
     if (mark_before_->empty()) fs::remove(folder_ / kMark, error);
   }
-  for (const fs::path& made : made_) fs::remove(made, error);  // one that is not empty stays
 }
 
 }  // namespace mh::cli

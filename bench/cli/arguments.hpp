@@ -48,6 +48,19 @@ void require_replaceable(const std::filesystem::path& file, std::string_view hea
 /// @throws InputError naming the file.
 void require_not_read(const std::filesystem::path& file, const ReadRecord& record);
 
+/// Of a folder and those around it, the ones that do not exist yet: in the end, those that are
+/// empty are removed again.
+class NewFolders {
+ public:
+  explicit NewFolders(std::filesystem::path folder);
+  ~NewFolders();
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> missing_;  // innermost first
+};
+
 /// A command's output folder, created before any work is done, so that an unwritable one fails at
 /// once. If the command is refused before it wrote anything, no empty folder is left behind. A file
 /// in it, `.modelhouse`, names the commands that wrote there: they may replace what they wrote.
@@ -68,8 +81,8 @@ class OutputFolder {
 
   const std::filesystem::path folder_;
   const std::vector<std::string> names_;
-  std::optional<std::string> mark_before_;   // previous .modelhouse; set if it was changed
-  std::vector<std::filesystem::path> made_;  // innermost first
+  const NewFolders made_;
+  std::optional<std::string> mark_before_;  // previous .modelhouse; set if it was changed
 };
 
 }  // namespace mh::cli

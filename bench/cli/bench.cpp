@@ -108,6 +108,12 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
     throw InputError(
         "--time-limit, --memory-limit: are for runs of queries: an episode ends by "
         "its suite's episodes.limit_s");
+  if (options.retry_failed != unset.retry_failed)
+    throw InputError(
+        "--retry-failed: is for runs of queries: episodes of a system that failed "
+        "are always tried again");
+  if (options.images_limit_gb != unset.images_limit_gb)
+    throw InputError("--images-limit: is for runs of queries: episodes keep no images");
   EpisodeOptions episodes;
   episodes.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
   episodes.jobs = options.jobs;

@@ -88,6 +88,7 @@ void require_writable_map_image(const std::string& stem,
 }
 
 void run(const MapGridArguments& options) {
+  const NewFolders made(std::filesystem::path(options.out).parent_path());
   require_writable_map_image(options.out, {options.map});
   const OccupancyGrid grid = grid_of(VoxelMap::load_ot(options.map), options.map, options.band);
   save_map_server(grid, options.out, options.raw ? GridMode::kRaw : GridMode::kTrinary);
@@ -103,6 +104,7 @@ void run(const MapGridArguments& options) {
 }
 
 void run(const MapCostArguments& options) {
+  const NewFolders made(std::filesystem::path(options.out).parent_path());
   const std::string published = options.out + "_published";
   if (options.config.inflation_radius_m < options.config.inscribed_radius_m)
     throw InputError(
@@ -122,6 +124,7 @@ void run(const MapCostArguments& options) {
 }
 
 void run(const MapObjectsArguments& options) {
+  const NewFolders made(std::filesystem::path(options.out).parent_path());
   if (!options.out.empty())
     require_replaceable(options.out, "{\n  \"resolution_m\": ", "`modelhouse map`", {options.map});
   const VoxelMap map = VoxelMap::load_ot(options.map);
@@ -144,6 +147,7 @@ void run(const MapObjectsArguments& options) {
 }
 
 void run(const MapMessagesArguments& options) {
+  const NewFolders made(std::filesystem::path(options.out).parent_path());
   const std::string kind = std::filesystem::path(options.out).extension().string();
   if (kind != ".mcap" && kind != ".bag")
     throw InputError(options.out + ": its name ends neither in .mcap (ROS 2) nor in .bag (ROS 1)");
@@ -199,6 +203,7 @@ void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& gr
 }
 
 void run(const MapPlanArguments& options) {
+  const NewFolders made(std::filesystem::path(options.out).parent_path());
   if (options.to.empty() == options.thing.empty())
     throw InputError("plan: the goal is either --to or --to-object");
   if (!options.out.empty())

@@ -198,15 +198,18 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
       map_keys.push_back(keys.map);
     }
   }
-  EpisodeStore store(options.out / "episodes.sqlite");
   const std::size_t of_run = suite.episodes->variants.size() * suite.episodes->starts;
   const std::size_t all = of_run * (options.only ? 1 : runs.size());
-  if (!options.only) {  // what cannot be found is said before anything is mapped
-    std::set<std::string> checked;
-    for (const EpisodeRun& run : runs)
-      if (store.load(run.key).size() < of_run && checked.insert(run.spec.environment.name).second)
-        require_goals(run.spec, *suite.episodes);
-  }
+  std::set<std::string> checked;
+  const auto check = [&](const EpisodeRun& run) {  // before anything is mapped
+    if (!options.only && checked.insert(run.spec.environment.name).second)
+      require_goals(run.spec, *suite.episodes);
+  };
+  const std::filesystem::path file = options.out / "episodes.sqlite";
+  if (!is_there(file)) std::ranges::for_each(runs, check);  // a refused suite leaves no file
+  EpisodeStore store(file);
+  for (const EpisodeRun& run : runs)
+    if (store.load(run.key).size() < of_run) check(run);
   std::size_t done = 0;
   const auto report = [&](double more) {
     options.progress((static_cast<double>(done) + more) / static_cast<double>(all));

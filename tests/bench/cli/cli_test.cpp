@@ -919,7 +919,8 @@ TEST_F(CommandLine, FilesOfOthersAreNotReplacedByObjectsAndPaths) {
   ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;
   EXPECT_EQ(content(map + "/more.json"), content(map + "/objects.json"));
   expect_refused("map objects " + map + "/map.ot ''", "is empty");
-  expect_refused("map objects " + map + "/map.ot dexk --out " + map + "/none.json", "dexk");
+  expect_refused("map objects " + map + "/map.ot dexk --out " + map + "/new/none.json", "dexk");
+  EXPECT_FALSE(std::filesystem::exists(map + "/new"));
   EXPECT_FALSE(fs::exists(map + "/none.json"));
   expect_refused("map grid " + map + "/map.ot --out .", "names no file");
 

@@ -117,7 +117,11 @@ TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
           "episodes");
   for (const std::string command : {"verify ", "check ", "audit "})
     refused(command + suite().string(), "a suite with `episodes`");
-  refused("bench " + suite().string() + " --time-limit 5", "--time-limit");
+  for (const std::string option : {"--time-limit 5", "--images-limit 1", "--retry-failed"})
+    refused("bench " + suite().string() + " " + option, option.substr(0, option.find(' ')));
+  write_suite("toilet");  // a room without one: nothing is left there
+  refused("bench " + suite().string() + " --out " + out("none"), "toilet");
+  EXPECT_FALSE(fs::exists(out("none")));
   write_suite("soaf");
   refused(episode, "soaf");
   write_suite("sofa, sofa");
