@@ -118,7 +118,9 @@ void add_episode(CLI::App& app) {
       ->required();
   command->add_option("--system", options->system,
                       "One of the suite's systems (default: the first)");
-  command->add_option("--start", options->start, "Number of the start, from 0")
+  command
+      ->add_option("--start", options->start,
+                   "Number of the start, from 0; the suite's `starts` is no limit")
       ->check(CLI::Range(0, 99999));
   command->add_option("--environment", options->environment,
                       "One of the suite's environments (default: the first)");

@@ -69,9 +69,11 @@ std::string place(const Vector2d& p) {
   return fmt::format("({:.2f}, {:.2f})", p.x(), p.y());
 }
 
-/// @throws InputError if the map shows nothing between ground and head.
+/// @throws InputError if the map stands on no floor, or shows nothing between ground and head.
 OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
                       const ObstacleGridConfig& band) {
+  if (!map.on_floor())
+    throw InputError(file + ": no floor was found for it: heights and a grid mean nothing in it");
   OccupancyGrid grid = obstacle_grid(map, band);
   if (grid.cells.empty())
     throw InputError(fmt::format("{}: knows nothing between {} m and {} m", file,
@@ -276,7 +278,7 @@ void add_objects(CLI::App& map) {
   command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
   command->add_option("name", options->name, "Class or object: refrigerator, \"chair 2\"")
       ->check(not_empty());
-  command->add_option("--out", options->out, "JSON file of all objects");
+  command->add_option("--out", options->out, "JSON file of all objects")->check(not_empty());
   command->footer("Example:\n  modelhouse map objects out/map/map.ot refrigerator");
   command->callback([options] { run(*options); });
 }
@@ -314,7 +316,7 @@ void add_plan(CLI::App& map) {
       ->check(number_between(0.0, 10.0));
   command->add_option("--margin", options->margin_m, "Kept beyond the radius, m")
       ->check(number_between(0.0, 10.0));
-  command->add_option("--out", options->out, "CSV file of the path's corners");
+  command->add_option("--out", options->out, "CSV file of the path's corners")->check(not_empty());
   add_band(*command, options->band);
   command->footer(
       "Example:\n  modelhouse map plan out/map/map.ot --from 1.5 2.5 --to-object refrigerator");

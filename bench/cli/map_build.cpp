@@ -95,21 +95,25 @@ Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory)
   return poses;
 }
 
-/// Keeps the frames of the sequence at the stamps of known poses.
-void keep_posed(const MapBuildArguments& options, const Source& source, const Trajectory& poses,
-                const std::function<void(const RgbdFrame&)>& keep) {
+/// Keeps the frames of the sequence at the stamps of known poses. @returns the poses of these
+/// frames
+Trajectory keep_posed(const MapBuildArguments& options, const Source& source,
+                      const Trajectory& poses, const std::function<void(const RgbdFrame&)>& keep) {
+  Trajectory kept;
   std::size_t met = 0;
   auto pose = poses.begin();
   for (std::size_t i = 0; i < std::min(options.frames, source.frames->size()); ++i) {
     const Stamp stamp_ns = source.frames->stamp_ns(i);
     while (pose != poses.end() && pose->stamp_ns < stamp_ns) ++pose;
     if (pose == poses.end()) break;
-    if (pose->stamp_ns == stamp_ns && met++ % options.every == 0)
-      keep(source.frames->frame(i, RandomStream(options.seed).fork(i)));
+    if (pose->stamp_ns != stamp_ns || met++ % options.every != 0) continue;
+    keep(source.frames->frame(i, RandomStream(options.seed).fork(i)));
+    kept.push_back(*pose);
   }
   if (met == 0)
     throw InputError(fmt::format("{}: has no frame at the time of a pose of {}", options.source,
                                  options.map.empty() ? options.poses : options.map));
+  return kept;
 }
 
 /// The frame of the map: that of a scene, whose robot knows its dock; else the floor's; nullopt
@@ -147,8 +151,8 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
     any_depth = any_depth || std::ranges::any_of(frame.depth_m, [](float z) { return z > 0; });
   };
   if (!options.poses.empty()) {
-    keyframes.posed.poses = poses_of_frames(*source.frames, read_trajectory(options.poses));
-    keep_posed(options, source, keyframes.posed.poses, keep);
+    const Trajectory known = poses_of_frames(*source.frames, read_trajectory(options.poses));
+    keyframes.posed.poses = keep_posed(options, source, known, keep);
   } else {
     const auto vocabulary =
         std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
@@ -158,10 +162,11 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
       const SlamState state = load_slam(options.map, vocabulary);
       keyframes.posed = posed_by(state);
       DepthComparison comparison(state.map, source.frames->camera());
-      keep_posed(options, source, keyframes.posed.poses, [&](const RgbdFrame& frame) {
-        keep(frame);
-        comparison.add(frame);
-      });
+      keyframes.posed.poses =
+          keep_posed(options, source, keyframes.posed.poses, [&](const RgbdFrame& frame) {
+            keep(frame);
+            comparison.add(frame);
+          });
       comparison.require_same(options.map, options.source);
     }
   }
@@ -205,23 +210,26 @@ MapStudy study_floor(const MapBuildArguments& options, const Source& source,
   return study;
 }
 
-void score(const MapBuildArguments& options, const Trajectory& truth, const MappedScene& mapped,
-           const OccupancyMapper& mapper, const MapStudy& study) {
-  const MapScores scores = score_map(mapped.scene, mapper, truth, study,
-                                     {.resolution_m = options.resolution_m,
-                                      .floor_z_m = mapped.scene.floor.middle_m.z(),
-                                      .robot_height_m = options.height_m},
-                                     mapped.lasers ? &*mapped.lasers : nullptr);
-  const fs::path out = options.out;
-  write_atomically(out / "score.json", scores_json(scores));
-  write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores.plan));
-  fmt::print("{}", scores_text(scores));
+MapScores score(const MapBuildArguments& options, const Trajectory& truth,
+                const MappedScene& mapped, const OccupancyMapper& mapper, const MapStudy& study) {
+  return score_map(mapped.scene, mapper, truth, study,
+                   {.resolution_m = options.resolution_m,
+                    .floor_z_m = mapped.scene.floor.middle_m.z(),
+                    .robot_height_m = options.height_m},
+                   mapped.lasers ? &*mapped.lasers : nullptr);
+}
+
+/// What an earlier build left in the folder goes: this one may write less.
+void remove_earlier(const fs::path& folder) {
+  for (const char* name : kMapFiles) fs::remove(folder / name);
 }
 
 void check(const MapBuildArguments& options) {
   options.check();
   if (!options.map.empty() && !options.poses.empty())
     throw InputError("--map and --poses: one of them says where the frames are");
+  if (options.every != 1 && options.map.empty() && options.poses.empty())
+    throw InputError("--every: is for --poses and --map: SLAM chooses its keyframes itself");
   if (options.score && !options.is_scene())
     throw InputError("--score needs the exact mesh: the source must be scene:FILE");
   if (options.lasers && !(options.is_scene() && is_driven(options.tour)))
@@ -243,8 +251,6 @@ void run(MapBuildArguments options) {
   const SE3 map_from_world = frame.value_or(SE3());
   mapper.update(posed.poses, map_from_world);
   mapper.associate_detections();
-  // What an earlier build left here goes: this one may write less.
-  for (const char* name : kMapFiles) fs::remove(fs::path(options.out) / name);
   const std::string built =
       fmt::format("{}, {} ({:.1f} MB as an octree)", counted(kept, "keyframe"),
                   counted(mapper.map().voxel_count(), "voxel"),
@@ -254,7 +260,10 @@ void run(MapBuildArguments options) {
         stderr,
         "map: warning: no floor was found under the camera's path: there is no grid, and the "
         "octree is in the frame of the poses\n");
-    write_octree(options.out, mapper.map());
+    VoxelMap map = std::move(mapper).take_map();
+    map.set_on_floor(false);
+    remove_earlier(options.out);
+    write_octree(options.out, map);
     fmt::print("{}\n", built);
     return;
   }
@@ -262,13 +271,20 @@ void run(MapBuildArguments options) {
     pose.world_from_camera = map_from_world * pose.world_from_camera;
   for (MapPoint& landmark : posed.landmarks) landmark.point_m = map_from_world * landmark.point_m;
   const MapStudy study = study_floor(options, source, mapped.get(), mapper.map(), posed.poses);
-  write_map_files(options.out, mapper.map(), study);
   if (posed.landmarks.empty()) posed.landmarks = points_of(mapper.map());
-  write_image(fs::path(options.out) / "grid_classes.png",
-              draw_classes_over(study.grid, posed.landmarks));
+  const auto classes = draw_classes_over(study.grid, posed.landmarks);
+  std::optional<MapScores> scores;
+  if (options.score) scores = score(options, *source.frames->truth(), *mapped, mapper, study);
+  const fs::path out = options.out;
+  remove_earlier(out);  // all that replaces it is known now
+  write_map_files(out, mapper.map(), study);
+  write_image(out / "grid_classes.png", classes);
   fmt::print("{}, grid of {} x {} cells, {}\n", built, study.grid.cells.width(),
              study.grid.cells.height(), counted(study.objects.size(), "object"));
-  if (options.score) score(options, *source.frames->truth(), *mapped, mapper, study);
+  if (!scores) return;
+  write_atomically(out / "score.json", scores_json(*scores));
+  write_image(out / "grid_against_truth.png", draw_against_truth(study.grid, scores->plan));
+  fmt::print("{}", scores_text(*scores));
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ struct SceneLasers::Impl {
 
 SceneLasers::SceneLasers(const Scene& scene, Robot robot) {
   if (!robot.equipment || robot.equipment->lasers.empty())
-    throw InputError(fmt::format("robot '{}' has no lasers", robot.name));
+    throw InputError(
+        fmt::format("robot '{}' has no lasers (its file: equipment.lasers)", robot.name));
   impl_ = std::make_unique<Impl>(scene, std::move(robot));
 }
 SceneLasers::~SceneLasers() = default;

@@ -121,6 +121,14 @@ const DetectedObjects& VoxelMap::detected() const {
   return impl_->detected;
 }
 
+void VoxelMap::set_on_floor(bool on_floor) {
+  impl_->on_floor = on_floor;
+}
+
+bool VoxelMap::on_floor() const {
+  return impl_->on_floor;
+}
+
 VoxelState VoxelMap::state_at(const Eigen::Vector3d& point_m) const {
   const VoxelNode* node = impl_->find(point_m);
   if (node == nullptr) return VoxelState::kUnknown;

@@ -68,6 +68,11 @@ class VoxelMap {
   void set_detected(DetectedObjects objects);
   const DetectedObjects& detected() const;
 
+  /// Whether its frame stands on a floor (z up). Where none was found, it is some camera's, and
+  /// heights mean nothing in it. Default: true.
+  void set_on_floor(bool on_floor);
+  bool on_floor() const;
+
   VoxelState state_at(const Eigen::Vector3d& point_m) const;
   /// Calls visit for every known voxel, in the octree's order.
   void for_each(const std::function<void(const Voxel&)>& visit) const;

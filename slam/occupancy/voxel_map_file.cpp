@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The counts that follow the tree in an .ot file, little-endian:
-//   the line "modelhouse voxel counts 3"
+//   the line "modelhouse voxel counts 3", or "... 4" where the map's frame stands on no floor
 //   u64  size of the content
 //   content: f64 resolution (m)
 //     u32       voxels of detected objects; for each, by place: 3 x i16 voxel, u16 object
@@ -48,7 +48,8 @@ static_assert(std::endian::native == std::endian::little, "numbers are stored as
 
 constexpr std::string_view kTreeMagic = "# Octomap OcTree file",
                            kBinaryMagic = "# Octomap OcTree binary file";
-constexpr std::string_view kCountsMagic = "modelhouse voxel counts 3\n",
+constexpr std::string_view kFloorlessMagic = "modelhouse voxel counts 4\n",
+                           kCountsMagic = "modelhouse voxel counts 3\n",
                            kSecondCountsMagic = "modelhouse voxel counts 2\n",
                            kFirstCountsMagic = "modelhouse voxel counts 1\n";
 
@@ -308,7 +309,7 @@ void VoxelMap::write_ot(std::ostream& out) const {
   }
   std::string bytes = std::move(whole).str();
   const std::string counts = counts_of(impl_->tree, impl_->detected);
-  bytes += kCountsMagic;
+  bytes += on_floor() ? kCountsMagic : kFloorlessMagic;
   put(bytes, static_cast<std::uint64_t>(counts.size()));
   bytes += counts;
   put(bytes, static_cast<std::uint64_t>(XXH3_64bits(bytes.data(), bytes.size())));
@@ -330,12 +331,12 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
     throw InputError(fmt::format(
         "{}: has no counts after its tree: it is from another program, or was edited", name));
   const std::string_view magic = reader.take(kCountsMagic.size());
-  if (magic != kCountsMagic && magic != kSecondCountsMagic && magic != kFirstCountsMagic)
+  const bool old = magic == kSecondCountsMagic || magic == kFirstCountsMagic;
+  if (magic != kCountsMagic && magic != kFloorlessMagic && !old)
     reader.fail("its counts do not begin");
   const std::string_view content = reader.take(reader.get<std::uint64_t>());
   const std::string_view summed =
-      magic == kCountsMagic ? std::string_view(bytes.data(), content.data() + content.size())
-                            : content;
+      old ? content : std::string_view(bytes.data(), content.data() + content.size());
   if (XXH3_64bits(summed.data(), summed.size()) != reader.get<std::uint64_t>())
     reader.fail("its checksum is wrong");
   if (!reader.at_end()) reader.fail("it goes on after its end");
@@ -344,6 +345,7 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
   if (!(std::abs(resolution_m - header.resolution_m) <= 1e-4 * header.resolution_m))
     counts.fail("its counts have another resolution");
   VoxelMap map(resolution_m);
+  map.set_on_floor(magic != kFloorlessMagic);
   if (magic != kFirstCountsMagic) map.set_detected(read_detected(counts));
   while (!counts.at_end()) read_block(counts, map.impl_->tree);
   return map;

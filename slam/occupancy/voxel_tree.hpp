@@ -101,6 +101,7 @@ struct VoxelMap::Impl {
   }
   VoxelTree tree;
   DetectedObjects detected;
+  bool on_floor = true;
 };
 
 }  // namespace mh

@@ -885,6 +885,25 @@ TEST_F(CommandLine, PosesOfAMapMayHaveOtherStampsThanTheFrames) {
                  "has no frame at the time of a pose of ");
 }
 
+TEST_F(CommandLine, LasersOfAMapScanAtItsKeyframesAlone) {
+  const auto path = [&](const char* name) { return (folder_ / name).string(); };
+  const std::string scene = " scene:generated:bathroom:0 --tour auto:0 --level ideal";
+  ASSERT_EQ(run("slam" + scene + " --frames 60 --out " + path("slam")), 0) << err_;
+  std::istringstream estimate(content(path("slam") + "/estimate.tum"));
+  std::string line, first;
+  for (int poses = 0; poses < 3 && std::getline(estimate, line); first += line + "\n")
+    if (line[0] != '#') ++poses;
+  const std::string build = "map build" + scene + " --lasers --poses ";
+  ASSERT_EQ(run(build + path("slam") + "/estimate.tum --frames 3 --out " + path("frames")), 0)
+      << err_;
+  ASSERT_EQ(run(build + write("first.tum", first).string() + " --out " + path("first")), 0) << err_;
+  EXPECT_EQ(content(path("frames") + "/grid.pgm"), content(path("first") + "/grid.pgm"));
+  ASSERT_EQ(run(build + path("slam") + "/estimate.tum --out " + path("all")), 0) << err_;
+  EXPECT_NE(content(path("all") + "/grid.pgm"), content(path("first") + "/grid.pgm"));
+  expect_refused("map build" + scene + " --every 2 --out " + path("none"), "--every");
+  expect_refused("map plan " + path("all") + "/map.ot --from 1 1 --to 1 1 --out ''", "--out");
+}
+
 TEST_F(CommandLine, AMapOfAnotherSequenceIsRefused) {
   const auto path = [&](const char* name) { return (folder_ / name).string(); };
   for (const char* room : {"bedroom", "office"}) {

@@ -173,6 +173,21 @@ TEST(VoxelMap, FilesKeepDetectedObjects) {
   EXPECT_NE(bytes_of(map), before);
 }
 
+TEST(VoxelMap, FilesKeepWhetherTheyStandOnAFloor) {
+  MadeMap made;
+  made.box({0, 0, 0}, {2, 2, 2}, 5, 1);
+  VoxelMap map = made.map();
+  EXPECT_TRUE(map.on_floor());
+  const std::string standing = bytes_of(map);
+  map.set_on_floor(false);
+  std::istringstream in(bytes_of(map)), other(standing);
+  const VoxelMap back = VoxelMap::read_ot(in, "it");
+  EXPECT_FALSE(back.on_floor());
+  EXPECT_EQ(bytes_of(back), bytes_of(map));
+  EXPECT_NE(bytes_of(map), standing);
+  EXPECT_TRUE(VoxelMap::read_ot(other, "it").on_floor());
+}
+
 /// The first version knew no detected objects; up to the second, the checksum left out the tree.
 TEST(VoxelMap, FilesOfOlderVersionsAreRead) {
   const OccupancyMapper mapper = mapped_room();
