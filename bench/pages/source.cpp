@@ -70,14 +70,12 @@ PagesSource read_source(const fs::path& path) {
     source.audit_csv = read_file(source.folder / "audit.csv");
   const fs::path file = is_folder(path) ? path / "results.sqlite" : path;
   if (!is_file(file)) {
-    if (source.audit.is_null() && is_file(source.folder / "episodes.sqlite"))
-      throw InputError(
-          fmt::format("{}: holds episodes of a kidnapped robot, not queries: table.txt and "
-                      "episodes.json there have them",
-                      source.folder.string()));
     if (source.audit.is_null())
-      throw InputError(
-          fmt::format("{}: holds neither results.sqlite nor audit.json", source.folder.string()));
+      throw InputError(fmt::format("{}: holds {}", source.folder.string(),
+                                   is_file(source.folder / "episodes.sqlite")
+                                       ? "episodes of a kidnapped robot, not queries: table.txt "
+                                         "and episodes.json there have them"
+                                       : "neither results.sqlite nor audit.json"));
     source.problem = "This folder holds an audit and no results.";
     return source;
   }
