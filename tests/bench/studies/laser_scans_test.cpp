@@ -71,7 +71,8 @@ TEST(SceneLasers, ARobotWithoutIsRefused) {
     const SceneLasers lasers(scene, robot);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()), "robot 'pepper' has no lasers");
+    EXPECT_EQ(std::string(error.what()),
+              "robot 'pepper' has no lasers (its file: equipment.lasers)");
   }
 }
 
