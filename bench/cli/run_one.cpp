@@ -15,7 +15,7 @@ struct RunOneArguments {
   std::uint64_t images_limit = 0;
   int jobs = 1;
   int parent = 0;
-  bool metrics_only = false;
+  bool metrics_only = false, share_noise = false;
 };
 
 void run(const RunOneArguments& options) {
@@ -27,6 +27,7 @@ void run(const RunOneArguments& options) {
                .cache = options.cache,
                .maps = options.maps,
                .images = {options.images, options.images_limit},
+               .share_noise = options.share_noise,
                .key = options.key,
                .views = options.views,
                .session_start = options.session_start,
@@ -52,6 +53,7 @@ void add_run_one(CLI::App& app) {
   command->add_option("--maps", options->maps);
   command->add_option("--images", options->images);
   command->add_option("--images-limit", options->images_limit);
+  command->add_flag("--share-noise", options->share_noise);
   command->add_option("--views", options->views)->required();
   command->add_option("--session-start", options->session_start);
   command->add_option("--jobs", options->jobs);

@@ -14,7 +14,9 @@
 #include "bench/inputs/run_key.hpp"
 #include "bench/plan/check_labels.hpp"
 #include "bench/plan/find_program.hpp"
+#include "bench/run/run_one.hpp"
 #include "bench/run/shard.hpp"
+#include "sim/world/shared_exposures.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
@@ -135,7 +137,11 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
   std::vector<Job> jobs;
   Places places(suite, inputs);
   for (const RunSpec& spec : specs) {
-    jobs.push_back({spec, run_key(spec, inputs.inputs_of(spec)), images_of(spec)});
+    const std::string images = images_of(spec);
+    jobs.push_back({.spec = spec,
+                    .key = run_key(spec, inputs.inputs_of(spec)),
+                    .images = images,
+                    .frames = images + "/" + folder_of(shared_noises(spec))});
     places.add(spec.environment, jobs.back().key);
   }
   return jobs;

@@ -244,16 +244,21 @@ class Pool {
 
   void note_end(const Job& job, bool good) {
     ++(good ? done_ : failed_);
-    const auto sees_them = [&](const auto& other) { return images_of(other) == job.images; };
-    if (std::ranges::none_of(waiting_, sees_them) && std::ranges::none_of(running_, sees_them)) {
+    if (was_last(job, &Job::frames)) options_.forget(job.frames);
+    if (was_last(job, &Job::images)) {
       begun_.erase(job.images);
-      options_.forget_images(job.images);
+      options_.forget(job.images);
     }
     estimate_waiting();
     report();
   }
-  static const std::string& images_of(const Waiting& w) { return w.job.images; }
-  static const std::string& images_of(const Running& r) { return r.what.job.images; }
+  /// Whether no other run sees the same.
+  bool was_last(const Job& job, std::string Job::*seen) const {
+    const auto sees_it = [&](const Job& other) { return other.*seen == job.*seen; };
+    return std::ranges::none_of(waiting_, sees_it, &Waiting::job) &&
+           std::ranges::none_of(running_, sees_it,
+                                [](const Running& r) -> const Job& { return r.what.job; });
+  }
 
   void report() const {
     double sum = static_cast<double>(done_ + failed_);

@@ -18,6 +18,7 @@ struct Job {
   RunSpec spec;
   std::string key;
   std::string images = {};  ///< what it sees: the same text for runs that see the same
+  std::string frames = {};  ///< what it maps: the same text for runs that see it with equal noise
 };
 
 /// Prefix of the error of a run that failed on bad input, which the user can fix.
@@ -40,8 +41,8 @@ struct PoolOptions {
   /// The command line of a run's process. It finishes by putting the result into the store.
   std::function<std::vector<std::string>(const Job&, const std::filesystem::path& description)>
       arguments;
-  /// Called when no more run will need these images (Job::images).
-  std::function<void(const std::string& images)> forget_images = [](const std::string&) {};
+  /// Called when no more run will need what has this name (Job::frames, then Job::images).
+  std::function<void(const std::string& name)> forget = [](const std::string&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -110,8 +111,16 @@ void take_share(std::vector<Job>& jobs, const BenchOptions& options) {
     jobs = {jobs.begin() + static_cast<std::ptrdiff_t>(mine.begin),
             jobs.begin() + static_cast<std::ptrdiff_t>(mine.end)};
   }
-  if (options.images_limit_gb <= 0)
-    for (Job& job : jobs) job.images.clear();
+}
+
+/// Forgets which runs see the same where they must not share it, or where none is left to share it.
+void limit_sharing(std::vector<Job>& jobs, const BenchOptions& options) {
+  std::map<std::string, int> viewers;
+  for (const Job& job : jobs) ++viewers[job.frames];
+  for (Job& job : jobs) {
+    if (options.images_limit_gb <= 0) job.images.clear();
+    if (options.images_limit_gb <= 0 || viewers[job.frames] == 1) job.frames.clear();
+  }
 }
 
 /// Space for the images of each environment at work.
@@ -142,6 +151,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   }
   validate_inputs(mine, *inputs, options.say);  // bad input leaves no file
   inputs.reset();                               // it keeps a scene in memory
+  limit_sharing(mine, options);
 
   Store store(results);
   store.plan(suite, overrides, plan);
@@ -177,10 +187,11 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
       if (!job.images.empty() && !job.spec.environment.is_recorded())
         arguments.insert(arguments.end(), {"--images", (images / job.images).string(),
                                            "--images-limit", std::to_string(images_limit)});
+      if (!job.frames.empty()) arguments.emplace_back("--share-noise");
       if (options.metrics_only) arguments.emplace_back("--metrics-only");
       return arguments;
     };
-    pool.forget_images = [&](const std::string& name) {
+    pool.forget = [&](const std::string& name) {
       std::error_code no_matter;
       if (!name.empty()) fs::remove_all(images / name, no_matter);
     };
@@ -204,7 +215,9 @@ void execute_run(const SingleRunOptions& order) {
     const auto baked = [&](double share) {
       order.status(fmt::format("light {:.0f} %", 100 * share));
     };
-    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, order.images);
+    SharedImages images = order.images;
+    if (order.share_noise) images.noises = shared_noises(spec);
+    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, images);
   }();
   const auto require_key = [&](std::span<const InputDigest> inputs) {
     if (run_key(spec, inputs) == order.key) return;

@@ -56,6 +56,7 @@ struct SingleRunOptions {
   std::filesystem::path cache;  ///< for baked light; empty: keeps nothing
   std::filesystem::path maps;   ///< for finished maps; empty: keeps nothing
   SharedImages images = {};     ///< of runs that see the same
+  bool share_noise = false;     ///< leaves mapping frames with their noise there, too
   std::string key;
   std::string views;          ///< file name of the environment's contact sheet
   std::string session_start;  ///< start of the command that issued this order

@@ -246,6 +246,14 @@ RandomStream mapping_stream(const RunSpec& spec) {
   return RandomStream(spec.seed).fork(kMapping);
 }
 
+std::vector<RandomStream> shared_noises(const RunSpec& spec) {
+  constexpr int kRestarts = 64;
+  std::vector<RandomStream> noises;
+  for (int restart = 0; restart <= kRestarts; ++restart)
+    noises.push_back(mapping_noise(mapping_stream(spec), restart));
+  return noises;
+}
+
 RandomStream query_stream(const RunSpec& spec, QuerySet set) {
   return RandomStream(spec.seed).fork(set == QuerySet::kHeldOut      ? kHeldOut
                                       : set == QuerySet::kSecondTour ? kSecondTour

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "bench/protocol/system.hpp"
 #include "bench/results/run_result.hpp"
@@ -34,6 +35,10 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
 
 /// The stream that mapping draws from (bench/protocol/mapping.hpp).
 RandomStream mapping_stream(const RunSpec& spec);
+
+/// The noises that the mapping frames of a trial's runs have in common: at first, and after each of
+/// its first restarts. A run with more than these is hardly like another.
+std::vector<RandomStream> shared_noises(const RunSpec& spec);
 
 /// The stream that the queries of a set draw from (bench/protocol/query.hpp).
 RandomStream query_stream(const RunSpec& spec, QuerySet set);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/sequence.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace mh {
 namespace {
@@ -15,16 +18,17 @@ Shutter::SceneAt scene_at(std::shared_ptr<const Renderer> renderer,
   return [renderer = std::move(renderer)](Stamp) { return renderer; };
 }
 
-/// Senses and labels what the shutter exposed at the path's i-th moment.
-SensedMoment sense_exposed(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
-                           std::size_t i, RandomStream noise, Shutter::Exposed exposed) {
-  const TimedPose& moment = shutter.path()[i];
-  const RandomStream its_noise = noise.fork(i);
-  RgbdFrame frame =
-      sense(exposed.seen, shutter.camera(), sensors, its_noise, moment.stamp_ns, exposed.gain);
-  frame.semantics =
-      sense_labels(exposed.seen, labels, sensors, moment.world_from_camera, its_noise);
-  return {std::move(frame), std::move(exposed.seen)};
+/// Senses what the shutter exposed at the path's i-th moment; without labels.
+RgbdFrame sense_exposed(const Shutter& shutter, const SensorConfig& sensors, std::size_t i,
+                        RandomStream noise, const Shutter::Exposed& exposed) {
+  return sense(exposed.seen, shutter.camera(), sensors, noise.fork(i), shutter.path()[i].stamp_ns,
+               exposed.gain);
+}
+
+/// Labels what is seen at the path's i-th moment; of `seen` classes and instances count.
+SemanticImage label_exposed(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
+                            std::size_t i, RandomStream noise, const RenderedFrame& seen) {
+  return sense_labels(seen, labels, sensors, shutter.path()[i].world_from_camera, noise.fork(i));
 }
 
 }  // namespace
@@ -39,21 +43,56 @@ SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, C
       labels_(labels) {}
 
 void SimulatedSequence::share(const SharedImages& images, const std::string& name) {
-  const bool annotated = labels_ == LabelMode::kAnnotated;  // all other labels see the same
-  shared_ = std::make_unique<SharedExposures>(images, annotated ? name + "-annotated" : name,
-                                              shutter_.camera(), shutter_.path().size());
+  images_ = images;
+  // Annotated labels belong to another moment; all other labels see the same.
+  name_ = labels_ == LabelMode::kAnnotated ? name + "-annotated" : name;
+  shared_ = std::make_unique<SharedExposures>(images, name_, camera(), size());
 }
 
 SensedMoment sense_moment(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
                           std::size_t i, RandomStream noise) {
-  return sense_exposed(shutter, sensors, labels, i, noise, shutter.expose(i, labels));
+  Shutter::Exposed exposed = shutter.expose(i, labels);
+  RgbdFrame frame = sense_exposed(shutter, sensors, i, noise, exposed);
+  frame.semantics = label_exposed(shutter, sensors, labels, i, noise, exposed.seen);
+  return {std::move(frame), std::move(exposed.seen)};
+}
+
+/// The file of frames with this noise; null if they are not shared.
+SharedExposures* SimulatedSequence::shared_with(RandomStream noise) const {
+  const auto at = std::ranges::find(images_.noises, noise.key(), &RandomStream::key);
+  if (at == images_.noises.end()) return nullptr;
+  const std::lock_guard only_one(opening_);
+  std::unique_ptr<SharedExposures>& file = noisy_[noise.key()];
+  if (!file)
+    file = std::make_unique<SharedExposures>(
+        images_,
+        fmt::format("{}/{}-{}", folder_of(images_.noises), name_, at - images_.noises.begin()),
+        camera(), size());
+  return file.get();
+}
+
+Shutter::Exposed SimulatedSequence::exposed(std::size_t i) const {
+  const auto expose = [&](std::size_t k) { return shutter_.expose(k, labels_); };
+  return shared_ ? shared_->get(i, expose) : expose(i);
+}
+
+/// The exposure with the sensor's color and depth in the place of its own.
+Shutter::Exposed SimulatedSequence::noisy(std::size_t i, RandomStream noise) const {
+  const auto add_noise = [&](std::size_t k) {
+    Shutter::Exposed made = exposed(k);
+    RgbdFrame frame = sense_exposed(shutter_, sensors_, k, noise, made);
+    made.seen.color = std::move(frame.color);
+    made.seen.depth_m = std::move(frame.depth_m);
+    return made;
+  };
+  SharedExposures* shared = shared_with(noise);
+  return shared != nullptr ? shared->get(i, add_noise) : add_noise(i);
 }
 
 RgbdFrame SimulatedSequence::frame(std::size_t i, RandomStream noise) const {
-  const auto expose = [&](std::size_t k) { return shutter_.expose(k, labels_); };
-  return sense_exposed(shutter_, sensors_, labels_, i, noise,
-                       shared_ ? shared_->get(i, expose) : expose(i))
-      .frame;
+  RenderedFrame seen = noisy(i, noise).seen;
+  SemanticImage semantics = label_exposed(shutter_, sensors_, labels_, i, noise, seen);
+  return {stamp_ns(i), std::move(seen.color), std::move(seen.depth_m), std::move(semantics)};
 }
 
 }  // namespace mh

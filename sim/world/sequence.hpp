@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -32,7 +35,8 @@ class SimulatedSequence : public Sequence {
                     LabelMode labels,
                     std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
-  /// From now on, exposures are shared with the processes that give the same folder and name.
+  /// From now on, exposures are shared with the processes that give the same folder and name, and
+  /// frames with one of images.noises with those that give the same noises, too.
   /// @param name  stands for everything that the constructor received, save labels
   void share(const SharedImages& images, const std::string& name);
 
@@ -43,10 +47,18 @@ class SimulatedSequence : public Sequence {
   const Trajectory* truth() const override { return &shutter_.path(); }
 
  private:
+  SharedExposures* shared_with(RandomStream noise) const;
+  Shutter::Exposed exposed(std::size_t i) const;
+  Shutter::Exposed noisy(std::size_t i, RandomStream noise) const;
+
   Shutter shutter_;
   SensorConfig sensors_;
   LabelMode labels_;
+  SharedImages images_;                      // shared
+  std::string name_;                         // of their file
   std::unique_ptr<SharedExposures> shared_;  // or null
+  mutable std::mutex opening_;
+  mutable std::map<std::uint64_t, std::unique_ptr<SharedExposures>> noisy_;  // by key of the noise
 };
 
 }  // namespace mh

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 // The file: an entry per frame, then records in the order in which they were made. An entry is
 // written after its record, so that whoever finds an entry finds the record.
 
@@ -104,6 +106,10 @@ std::optional<Entry> entry_at(int file, std::size_t i) {
 
 }  // namespace
 
+std::string folder_of(const std::vector<RandomStream>& noises) {
+  return fmt::format("{:016x}", noises.front().key());
+}
+
 /// The right to make a frame: a lock that ends with the process.
 class SharedExposures::FrameLock {
  public:
@@ -144,7 +150,7 @@ SharedExposures::SharedExposures(SharedImages where, const std::string& name, co
       height_(camera.height_px),
       frames_(frames) {
   std::error_code failed;
-  std::filesystem::create_directories(where_.folder, failed);
+  std::filesystem::create_directories(file_.parent_path(), failed);
   file_descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   append_descriptor_ = open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file_descriptor_ < 0) return;
@@ -225,8 +231,13 @@ bool SharedExposures::has_room() const {
   std::error_code failed;
   const auto disk = std::filesystem::space(where_.folder, failed);
   if (failed || disk.available < bytes + kLeaveFree_bytes) return false;
-  for (const auto& entry : std::filesystem::directory_iterator(where_.folder, failed))
-    bytes += entry.file_size(failed);
+  // Files may be removed meanwhile: what cannot be read takes no room.
+  for (std::filesystem::recursive_directory_iterator entry(where_.folder, failed), end;
+       !failed && entry != end; entry.increment(failed)) {
+    std::error_code gone;
+    const std::uintmax_t size = entry->is_regular_file(gone) ? entry->file_size(gone) : 0;
+    bytes += gone ? 0 : size;
+  }
   return !failed && bytes <= where_.limit_bytes;
 }
 

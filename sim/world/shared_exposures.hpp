@@ -9,16 +9,23 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/sensors/shutter.hpp"
+#include "slam/core/random.hpp"
 
 namespace mh {
 
 /// Where processes that see the same images leave them for each other.
 struct SharedImages {
   std::filesystem::path folder;   ///< created if missing; empty: every process makes its own
-  std::uint64_t limit_bytes = 0;  ///< of all files in it
+  std::uint64_t limit_bytes = 0;  ///< of all files in it and in its folders
+  /// Images with one of these noises are left there, too.
+  std::vector<RandomStream> noises = {};
 };
+
+/// The folder, in that of the images, for those with these noises; at least one.
+std::string folder_of(const std::vector<RandomStream>& noises);
 
 /// The exposures of one path, made once for all processes that need them: the first one to need an
 /// exposure makes it and writes it into a file, the others read it. An exposure that is missing or
@@ -31,7 +38,8 @@ class SharedExposures {
  public:
   using Make = std::function<Shutter::Exposed(std::size_t)>;
 
-  /// @param name    names the file; stands for scene, camera, path and sensors
+  /// @param name    names the file, in folders of its own or not; stands for scene, camera, path,
+  ///                sensors and, if exposures are given with it, noise
   /// @param camera  of the exposures
   /// @param frames  of the path
   SharedExposures(SharedImages where, const std::string& name, const Camera& camera,

@@ -440,8 +440,9 @@ TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   EXPECT_EQ(store.error("badly"), "exited with code 1");
 }
 
-// Six runs of three environments, planned trial by trial: those that see the same images follow one
-// another, and the images go when the last one is over, whether it succeeded or not.
+// Eight runs of two environments, planned trial by trial: those that see the same images follow one
+// another, and the images go when the last one is over, whether it succeeded or not; the same for
+// the frames of a trial.
 TEST_F(StoreFile, RunsThatSeeTheSameImagesFollowOneAnother) {
   Store store(folder_ / "r.sqlite");
   std::vector<std::string> events;
@@ -452,15 +453,18 @@ TEST_F(StoreFile, RunsThatSeeTheSameImagesFollowOneAnother) {
     events.push_back(job.key);
     return std::vector<std::string>();
   };
-  options.forget_images = [&](const std::string& images) { events.push_back("no " + images); };
+  options.forget = [&](const std::string& name) { events.push_back("no " + name); };
   std::vector<Job> jobs;
   for (const char* trial : {"1", "2"})
-    for (const char* images : {"a", "b", "c"})
-      jobs.push_back(
-          {some_run(std::string(images) + trial).spec, std::string(images) + trial, images});
+    for (const char* images : {"a", "b"})
+      for (const char* system : {"x", "y"}) {
+        const std::string name = std::string(images) + trial + system;
+        jobs.push_back({some_run(name).spec, name, images, std::string(images) + "/" + trial});
+      }
   run_pending(store, jobs, options);
   EXPECT_EQ(events,
-            (std::vector<std::string>{"a1", "a2", "no a", "b1", "b2", "no b", "c1", "c2", "no c"}));
+            (std::vector<std::string>{"a1x", "a1y", "no a/1", "a2x", "a2y", "no a/2", "no a", "b1x",
+                                      "b1y", "no b/1", "b2x", "b2y", "no b/2", "no b"}));
 }
 
 TEST_F(StoreFile, TwoAtATimeAreAtImagesOfTheirOwnAsLongAsThereAreTwo) {

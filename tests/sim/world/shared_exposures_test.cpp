@@ -195,6 +195,7 @@ SimulatedSequence moving_past_walls(LabelMode labels) {
   SensorConfig sensors;
   sensors.rolling_shutter.enabled = sensors.motion_blur.enabled = true;
   sensors.auto_exposure.enabled = true;
+  sensors.depth_noise.enabled = sensors.shot_noise.enabled = true;
   return {make_embree_renderer(scene), Camera{}, path, sensors, labels};
 }
 
@@ -203,7 +204,8 @@ TEST(SimulatedSequence, SharedImagesAreThoseOfASequenceOfItsOwn) {
   for (int turn = 0; turn < 2; ++turn)
     for (const LabelMode labels : {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated}) {
       SimulatedSequence shared = moving_past_walls(labels);
-      shared.share({folder.path() / "images", kMuch}, "mapping");
+      shared.share({folder.path() / "images", kMuch, {RandomStream(1), RandomStream(3)}},
+                   "mapping");
       const SimulatedSequence alone = moving_past_walls(labels);
       for (const std::size_t i : {1, 2}) {
         const RandomStream noise(static_cast<std::uint64_t>(turn));
@@ -215,6 +217,34 @@ TEST(SimulatedSequence, SharedImagesAreThoseOfASequenceOfItsOwn) {
     }
   EXPECT_NE(moving_past_walls(LabelMode::kExact).frame(2, RandomStream(1)).semantics.index,
             moving_past_walls(LabelMode::kAnnotated).frame(2, RandomStream(1)).semantics.index);
+}
+
+TEST(SimulatedSequence, LeavesFramesWithTheSharedNoisesOnly) {
+  const TemporaryFolder folder(fs::temp_directory_path());
+  const SharedImages images{folder.path() / "images", kMuch, {RandomStream(1), RandomStream(3)}};
+  SimulatedSequence sequence = moving_past_walls(LabelMode::kExact);
+  sequence.share(images, "mapping");
+  const RgbdFrame left = sequence.frame(1, RandomStream(1));
+  const RgbdFrame other = sequence.frame(2, RandomStream(2));
+  EXPECT_NE(left.depth_m, sequence.frame(1, RandomStream(2)).depth_m);
+  EXPECT_NE(left.depth_m, sequence.frame(1, RandomStream(3)).depth_m);
+
+  int made = 0;
+  const auto make = [&](std::size_t) {
+    ++made;
+    return Shutter::Exposed{.seen = {.color = other.color,
+                                     .depth_m = other.depth_m,
+                                     .classes = {other.color.width(), other.color.height()},
+                                     .instances = {other.color.width(), other.color.height()}}};
+  };
+  SharedExposures file(images, folder_of(images.noises) + "/mapping-0", sequence.camera(),
+                       sequence.size());
+  const RenderedFrame found = file.get(1, make).seen;
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(found.color, left.color);
+  EXPECT_EQ(found.depth_m, left.depth_m);
+  file.get(2, make);
+  EXPECT_EQ(made, 1);
 }
 
 }  // namespace
