@@ -11,6 +11,7 @@
 #include "bench/provenance/digest.hpp"
 #include "bench/provenance/json_fields.hpp"
 #include "bench/systems/timed.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/temporary_folder.hpp"
 
 namespace mh {
@@ -44,22 +45,35 @@ RunAudit execute(const RunSpec& spec, const AuditOptions& options, const Shared&
 }
 
 /// What an audit depends on: its run, and the code of the audit.
-std::string audit_key(const RunSpec& spec, InputReader& inputs) {
-  return text_key(run_key(spec, inputs.inputs_of(spec)) + std::string(code_of_audit()));
+std::string audit_key(const std::string& key_of_run) {
+  return text_key(key_of_run + std::string(code_of_audit()));
 }
 
 }  // namespace
 
+void require_auditable(const Suite& suite) {
+  try {
+    for (const RunSpec& spec : expand(suite)) require_auditable(spec);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", suite.file.string(), error.what()));
+  }
+}
+
 std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& options) {
   const std::vector<RunSpec> specs = expand(suite);
-  for (const RunSpec& spec : specs) require_auditable(spec);
+  require_auditable(suite);
+  InputReader inputs(options.say);
+  std::vector<std::pair<std::string, std::string>> keys;
+  for (const RunSpec& spec : specs)
+    keys.emplace_back(spec.name, run_key(spec, inputs.inputs_of(spec)));
+  options.planned(keys);
   const TemporaryFolder for_now(std::filesystem::temp_directory_path());
   const Shared shared{
       Cache(options.cache ? *options.cache : for_now.path() / "cache"),
       {for_now.path() / "images", static_cast<std::uint64_t>(1e9 * options.images_limit_gb)}};
-  InputReader inputs(options.say);
   std::vector<AuditedRun> audited;
   for (const RunSpec& spec : specs) {
+    const std::string& key = keys[audited.size()].second;
     const auto progress = [&](double share, std::string_view what) {
       options.progress(
           (static_cast<double>(audited.size()) + share) / static_cast<double>(specs.size()),
@@ -69,11 +83,11 @@ std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& opti
     if (!audited.empty() && (audited.back().spec.environment.name != spec.environment.name ||
                              audited.back().spec.level != spec.level))
       std::filesystem::remove_all(shared.images.folder);
-    const std::string kept = shared.cache.get("audit", audit_key(spec, inputs), [&] {
+    const std::string kept = shared.cache.get("audit", audit_key(key), [&] {
       options.say(fmt::format("run and audit of {}", spec.name));
       return json_of(execute(spec, options, shared, progress)).dump();
     });
-    audited.push_back({spec, {}});
+    audited.push_back({spec, key, {}});
     read_json(nlohmann::ordered_json::parse(kept), audited.back().audit);
   }
   return audited;

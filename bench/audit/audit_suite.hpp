@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bench/audit/summary.hpp"
@@ -18,14 +20,21 @@ struct AuditOptions {
   int threads = 1;  ///< for baking light
   /// Space for the images of one environment, which its runs share.
   double images_limit_gb = BenchOptions{}.images_limit_gb;
+  /// Receives names and keys of all runs before any work; may throw.
+  std::function<void(const std::vector<std::pair<std::string, std::string>>&)> planned =
+      [](const auto&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};
   /// Receives the share of the work that is done, and what is being done.
   std::function<void(double, std::string_view)> progress = [](double, std::string_view) {};
 };
 
+/// @throws InputError naming the suite's file and the run that cannot be audited
+/// (bench/audit/audit.hpp).
+void require_auditable(const Suite& suite);
+
 /// Executes the runs of a suite one after the other and audits each. An audit that is in the cache
 /// is not repeated.
-/// @throws InputError before any work if a run cannot be audited (require_auditable()).
+/// @throws InputError before any work if a run cannot be audited.
 std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& options);
 
 }  // namespace mh

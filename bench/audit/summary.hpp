@@ -16,6 +16,7 @@ namespace mh {
 /// A run with its audit.
 struct AuditedRun {
   RunSpec spec;
+  std::string key;  ///< of the run's result (bench/inputs/run_key.hpp)
   RunAudit audit;
 };
 

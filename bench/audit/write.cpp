@@ -124,6 +124,7 @@ nlohmann::ordered_json audit_json(const Suite& suite, std::span<const AuditedRun
                  {"relevant", kRelevant},
                  {"nearest_keyframes", kNearest},
                  {"border_px", kBorder_px}}}};
+  for (const AuditedRun& run : runs) json["runs"][run.spec.name] = run.key;
   for (const bool by_environment : {false, true}) {
     Json& rows = json[by_environment ? "environments" : "rows"] = Json::array();
     for (const AuditRow& row : audit_rows(suite, runs, by_environment))

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/audit/write.hpp"
 #include "bench/cache/cache.hpp"
@@ -12,6 +13,8 @@
 #include "bench/cli/set_option.hpp"
 #include "bench/cli/write_audit.hpp"
 #include "bench/run/signal_watch.hpp"
+#include "bench/store/store.hpp"
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::cli {
@@ -58,11 +61,45 @@ std::vector<std::string> names_of_audit() {
   return {"audit.json", "audit.csv", "audit.txt"};
 }
 
+namespace {
+
+using Keys = std::vector<std::pair<std::string, std::string>>;
+
+/// The runs of a folder's results; nullopt: there are none.
+std::optional<Keys> runs_of_results(const std::filesystem::path& out) {
+  const std::filesystem::path file = out / "results.sqlite";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return Store(file).planned_keys();
+}
+
+}  // namespace
+
+void forget_other_audit(const std::filesystem::path& out) {
+  const std::filesystem::path file = out / "audit.json";
+  const auto runs = runs_of_results(out);
+  if (!runs || !std::filesystem::exists(file)) return;
+  const auto json = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  if (!json.is_object() || !json.contains("definitions")) return;  // not one of ours
+  nlohmann::ordered_json same = nlohmann::ordered_json::object();
+  for (const auto& [name, key] : *runs) same[name] = key;
+  if (json.value("runs", nlohmann::ordered_json()) == same) return;
+  for (const std::string& name : names_of_audit()) std::filesystem::remove(out / name);
+  fmt::print(stderr, "{}: removed audit.json, audit.csv and audit.txt: they are of other runs\n",
+             out.string());
+}
+
 WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
                          const std::optional<std::filesystem::path>& cache) {
   Progress progress("audit");
   AuditOptions how;
   how.cache = cache;
+  how.planned = [&](const Keys& keys) {
+    if (const auto runs = runs_of_results(out); runs && *runs != keys)
+      throw InputError(fmt::format(
+          "{}: holds results of other runs than {} has now: an audit goes beside its own results "
+          "(`bench --audit`), or into another --out",
+          out.string(), suite.file.string()));
+  };
   how.say = [&](std::string_view stage) { progress.say(stage); };
   how.progress = [&](double share, std::string_view status) { progress.share(share, status); };
   const std::vector<AuditedRun> audited = audit_suite(suite, how);

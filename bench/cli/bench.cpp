@@ -96,7 +96,7 @@ void run_only(const Suite& suite, EpisodeOptions episodes, const BenchArguments&
 
 /// A suite of kidnappings: no queries are asked in it.
 void run_kidnappings(const Suite& suite, const BenchArguments& options) {
-  if (options.audit) throw InputError("--audit: a suite with `episodes` asks no queries");
+  if (options.audit) refuse_episodes(suite, "asks no queries for --audit");
   if (options.frames) throw InputError("--frames: a suite with `episodes` maps its whole tour");
   if (options.shard != "1/1")
     throw InputError("--shard: a suite with `episodes` runs as a whole; it resumes");
@@ -202,7 +202,7 @@ void run(BenchArguments options) {
   std::vector<std::string> names = names_written(bench.out, suite);
   if (options.audit) {
     if (bench.shard.of > 1) throw InputError("--audit: takes the whole suite, no --shard");
-    for (const RunSpec& spec : expand(suite)) require_auditable(spec);
+    require_auditable(suite);
     if (!names.empty()) std::ranges::move(names_of_audit(), std::back_inserter(names));
   }
   const OutputFolder folder(bench.out, "bench", names);

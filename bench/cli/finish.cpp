@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/cli/write_audit.hpp"
 #include "bench/plan/runs.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/json.hpp"
@@ -17,6 +18,7 @@ namespace mh::cli {
 
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json) {
+  forget_other_audit(out);
   const std::string table =
       write_results(out, suite, results.runs, results.failed, results.missing);
   if (json) {

@@ -20,7 +20,11 @@ struct WrittenAudit {
 
 /// Audits a suite and writes the files into a folder.
 /// @param cache  as of AuditOptions
+/// @throws InputError before any work if the folder holds results of other runs.
 WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
                          const std::optional<std::filesystem::path>& cache);
+
+/// Removes from a folder of results an audit of other runs than these are of, and says so.
+void forget_other_audit(const std::filesystem::path& out);
 
 }  // namespace mh::cli

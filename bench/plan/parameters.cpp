@@ -85,6 +85,19 @@ void read_sobol(YamlReader node, const SlamConfig& base, Sweep& sweep) {
   }
 }
 
+/// Refuses points at which gamma or a mass of labels would not act as stated.
+void check_weights(const YamlReader& node, const Sweep& sweep) {
+  const auto varies = [&](std::string_view setting) {
+    return std::ranges::find(sweep.varied, setting) != sweep.varied.end();
+  };
+  const auto has_mass = [](const SlamConfig& point) { return point.semantics.label_mass != 0; };
+  if (varies(kLabelMass) && !std::ranges::all_of(sweep.points, has_mass))
+    node.fail(fmt::format("{}: 0 is no mass: it leaves the weight to {}", kLabelMass, kGamma));
+  if (varies(kGamma) && sweep.map == SweepMap::kFixed &&
+      std::ranges::any_of(sweep.points, has_mass))
+    node.fail(fmt::format("{} does nothing on a fixed map where {} is not 0", kGamma, kLabelMass));
+}
+
 }  // namespace
 
 std::string_view name(SweepMap map) {
@@ -121,6 +134,7 @@ Sweep read_sweep(YamlReader node, const SlamConfig& base) {
   }
   if (sweep.varied.empty())
     node.fail("varies nothing: a setting with its values, or sobol, is needed");
+  check_weights(node, sweep);
   return sweep;
 }
 

@@ -168,7 +168,7 @@ std::string penalties(const Block& block) {
   std::string text;
   for (const Row* row : block.rows) {
     if (!block.system(row).weighs_labels() || !row->matches) continue;
-    TextTable table({"descriptor pairs", "compared", "penalized by xi", "rejected by it",
+    TextTable table({"descriptor pairs", "compared", "labels differ", "rejected by it",
                      "ratio tests it helped"});
     for (std::size_t m = 0; m < row->matches->size(); ++m) {
       const MatcherCounts& c = (*row->matches)[m];

@@ -194,6 +194,7 @@ TEST(AuditFiles, HaveOneRowPerQueryAndEveryFigure) {
   Suite suite;
   suite.name = "made up";
   const std::vector<AuditedRun> runs{{of,
+                                      "key",
                                       {.points = {{{made_up(FirstCause::kNone, true)}, {}},
                                                   {{made_up(FirstCause::kFewMatches, false)}, {}}},
                                        .audit_s = 2,

@@ -732,6 +732,18 @@ TEST(BenchProcess, ABenchWithAnAuditGivesTheSameResultsAndTheSameAudit) {
       << errors();
   EXPECT_EQ(content(test_folder() / "bench_and_audit" / "audit.csv"),
             content(fs::path(alone) / "audit.csv"));
+
+  // An audit stays beside the results that it is of, and beside no others.
+  const fs::path audited = test_folder() / "bench_and_audit" / "audit.json";
+  EXPECT_EQ(run(bench(write_suite(), "bench_and_audit")), 0) << errors();
+  EXPECT_TRUE(fs::exists(audited));
+  EXPECT_EQ(run(bench(write_suite("fewer", "[plain]"), "bench_and_audit")), 0) << errors();
+  EXPECT_NE(errors().find("removed audit.json"), std::string::npos) << errors();
+  EXPECT_FALSE(fs::exists(audited));
+  const std::string out = (test_folder() / "bench_and_audit").string();
+  EXPECT_EQ(run("audit " + write_suite().string() + " --frames 45 --no-cache --out " + out), 2);
+  EXPECT_NE(errors().find("holds results of other runs"), std::string::npos) << errors();
+  EXPECT_FALSE(fs::exists(audited));
   EXPECT_EQ(run(bench(write_suite(), "part", "--audit --shard 1/3")), 2);
   EXPECT_NE(errors().find("--audit: takes the whole suite"), std::string::npos) << errors();
 }

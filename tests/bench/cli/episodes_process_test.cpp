@@ -47,7 +47,7 @@ class EpisodeCommands : public testing::Test {
 };
 
 TEST_F(EpisodeCommands, OneEpisodeIsTheOneThatTheSuiteScored) {
-  const std::string cache = " --cache " MH_TEST_CACHE "/modelhouse-cache";
+  const std::string cache = " --cache " MH_TEST_CACHE;
   ASSERT_EQ(run("bench " + suite().string() + " --jobs 2 --out " + out("all") + cache), 0)
       << said();
   EXPECT_NE(content(out("all") + "/table.txt").find("2 kidnappings"), std::string::npos);
@@ -74,8 +74,8 @@ TEST_F(EpisodeCommands, ACrashOfALibraryEndsItsEpisodesAlone) {
   write_suite("sofa",
               "[{name: crash, library: libtiny.so, settings: crash}, {name: exit, library: "
               "libtiny.so, settings: exit}, {name: still, library: libtiny.so}, plain]");
-  const std::string bench = "bench " + suite().string() + " --out " + out("all") +
-                            " --cache " MH_TEST_CACHE "/modelhouse-cache";
+  const std::string bench =
+      "bench " + suite().string() + " --out " + out("all") + " --cache " MH_TEST_CACHE;
   for (int attempt = 0; attempt < 2; ++attempt) {
     EXPECT_EQ(run(bench), 3);
     EXPECT_NE(said().find("crash-exact-pepper-0: ended by signal 6 (Aborted), last seen at 'track "

@@ -318,6 +318,31 @@ TEST_F(SuiteFile, EnvironmentsAreListedCountedOrFoundInFiles) {
   EXPECT_EQ(expand(suite)[3].name, "hall-1-plain-pepper-0");
 }
 
+TEST_F(SuiteFile, ASweepOverGammaOrMassThatWouldNotActIsRefused) {
+  const auto message = [&](const std::string& parameters, const std::string& mass) -> std::string {
+    std::ofstream(folder_ / "suite.yaml")
+        << "environments:\n- {category: house, scene: house.yaml, robot: robot.yaml}\n"
+           "vocabulary: words\nlevels: [pepper.yaml]\nlabels: [exact]\nsystems: [semantic]\n"
+           "slam: {semantics: {label_mass: "
+        << mass << "}}\nparameters: {" << parameters << "}\n";
+    try {
+      load_suite(folder_ / "suite.yaml");
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string none = "semantics.label_mass: 0 is no mass";
+  EXPECT_NE(message("map: fixed, semantics.label_mass: [0, 0.1]", "0").find(none),
+            std::string::npos);
+  EXPECT_EQ(message("map: fixed, semantics.label_mass: [0.01, 0.1]", "0"), "");
+  const std::string idle = "semantics.gamma does nothing on a fixed map";
+  const std::string both = "semantics.label_mass: [0.01, 0.1], semantics.gamma: [0, 1]";
+  EXPECT_NE(message("map: fixed, " + both, "0").find(idle), std::string::npos);
+  EXPECT_EQ(message("map: rebuilt, " + both, "0"), "");
+  EXPECT_NE(message("map: fixed, semantics.gamma: [0, 1]", "0.02").find(idle), std::string::npos);
+}
+
 TEST_F(SuiteFile, ASweepThatNoSystemFeelsIsRefused) {
   const auto load = [&](const std::string& systems, const std::string& parameters) {
     std::ofstream(folder_ / "suite.yaml")
