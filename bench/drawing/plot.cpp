@@ -27,6 +27,10 @@ struct Extent {
   std::string range() const { return least > 0 && least < 0.5 * most ? "[0:*]" : "[*:*]"; }
 };
 
+std::string range(const std::optional<std::pair<double, double>>& given, const Extent& drawn) {
+  return given ? fmt::format("[{}:{}]", given->first, given->second) : drawn.range();
+}
+
 std::string lines_and_dots(const Plot& plot, std::size_t panel) {
   Extent across, up;
   std::string data, plots;
@@ -60,8 +64,8 @@ std::string lines_and_dots(const Plot& plot, std::size_t panel) {
                          style, color, title);
   }
   if (plots.empty()) return "";
-  return data +
-         fmt::format("set xrange {}\nset yrange {}\n{}\n", across.range(), up.range(), plots);
+  return data + fmt::format("set xrange {}\nset yrange {}\n{}\n", range(plot.x_range, across),
+                            range(plot.y_range, up), plots);
 }
 
 std::string ticks(const ShadedField::Ticks& ticks) {

@@ -124,6 +124,9 @@ std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> 
          ++end) {
       Plot plot{title(*end), end->unit, "success, %", {}};
       const double range = end->bins.back().high - end->bins.front().low;
+      // All bins, all shares: so that panels and pages compare.
+      plot.x_range = {end->bins.front().low, end->bins.back().high};
+      plot.y_range = {0.0, 100.0};
       for (std::size_t s = 0; s < suite.systems.size(); ++s) {
         Series line{suite.systems[s].name, false, {}, {}}, dots{"", true, {}, {}};
         for (const GradedBin& bin : end->bins) {

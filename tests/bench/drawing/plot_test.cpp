@@ -91,6 +91,14 @@ TEST_F(Plots, AnAxisBeginsAtZeroUnlessAllIsFarFromIt) {
   EXPECT_GT(spread(6), 0.9 * spread(0));
 }
 
+TEST_F(Plots, AnAxisHasTheRangeThatIsGiven) {
+  PlotPage page{"", {{"a", "x", "y", {{"", true, {{1, 10}, {2, 20}}}}}}};
+  page.plots[0].x_range = {0, 60};
+  page.plots[0].y_range = {0, 100};
+  const std::string script = plots_script(page, "a.png");
+  EXPECT_NE(script.find("set xrange [0:60]\nset yrange [0:100]"), std::string::npos) << script;
+}
+
 TEST_F(Plots, AFieldShadesItsCellsFromTheLeastToTheMost) {
   ShadedField field{.marks = {{0, 0, 1.0, "1"}, {1, 0, 3.0, "3"}},
                     .x_ticks = {{0, "a"}, {1, "b\n(5 %)"}},
