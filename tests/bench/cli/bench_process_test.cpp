@@ -32,7 +32,7 @@ const fs::path& test_folder() {
     fs::path path = fs::temp_directory_path() / ("mh_process_" + std::to_string(getpid()));
     static fs::path shared() { return MH_TEST_CACHE "/modelhouse-cache"; }
     Folder() {
-      // Baked light is shared by all tests (its key holds scene and code), maps are not.
+      // Baked light is shared by all tests (its key holds scene and code), maps and audits are not.
       fs::create_directories(path / "cache");
       std::error_code none_yet;
       fs::copy(shared(), path / "cache" / shared().filename(), fs::copy_options::recursive,
@@ -40,7 +40,7 @@ const fs::path& test_folder() {
     }
     ~Folder() {
       const fs::path own = path / "cache" / shared().filename();
-      fs::remove_all(own / "map");
+      for (const char* kind : {"map", "audit"}) fs::remove_all(own / kind);
       std::error_code no_matter;
       fs::create_directories(shared().parent_path(), no_matter);
       // Under its name only when it is whole: other tests run meanwhile.
