@@ -32,9 +32,8 @@ struct Drive {
   MatchCounts counts{};
 };
 
-using MakeFrame = std::function<RgbdFrame(int)>;
-
-Drive run(const SemanticConfig& semantics, int frames, const MakeFrame& make) {
+Drive run_on(const SemanticConfig& semantics, int frames,
+             const std::function<RgbdFrame(int)>& make) {
   Drive result{make_slam(BoxRoom::camera(), settings(semantics), vocabulary()), {}, {}};
   for (int i = 0; i < frames; ++i) {
     result.reports.push_back(step(result.state, make(i), RandomStream(7).fork(i)));
@@ -48,7 +47,7 @@ Drive run(const SemanticConfig& semantics, int frames, const MakeFrame& make) {
 }
 
 Drive run(const SemanticConfig& semantics, int frames, bool labels = true) {
-  return run(semantics, frames, [labels](int i) { return frame(i, labels); });
+  return run_on(semantics, frames, [labels](int i) { return frame(i, labels); });
 }
 
 /// One and a quarter turns with labels on: shared by the tests that only look.
@@ -234,7 +233,7 @@ RgbdFrame renamed(int i) {
 TEST(SemanticLaw, PermutingClassIdsChangesNothing) {
   ASSERT_NE(renamed(3).semantics, frame(3).semantics);
   const Drive named = run(SemanticConfig{}, 60);
-  const Drive other = run(SemanticConfig{}, 60, MakeFrame(renamed));
+  const Drive other = run_on(SemanticConfig{}, 60, renamed);
   EXPECT_EQ(geometry(other), geometry(named));
   for (const SemanticConfig& asked : {SemanticConfig{}, with_all_rules()}) {
     SlamState a = named.state, b = other.state;
