@@ -23,7 +23,8 @@ struct Shared {
   SharedImages images;
 };
 
-RunAudit execute(const RunSpec& spec, const AuditOptions& options, const Shared& shared,
+RunAudit execute(const RunSpec& spec, const std::string& key, const AuditOptions& options,
+                 const Shared& shared,
                  const std::function<void(double, std::string_view)>& progress) {
   double run_s = 0;
   SlamState frozen;
@@ -31,6 +32,7 @@ RunAudit execute(const RunSpec& spec, const AuditOptions& options, const Shared&
   const RunResult run = [&] {
     const ProcessorTimer timer(run_s);
     world = build_world(spec, options.threads, shared.cache, options.say, {}, shared.images);
+    require_key(spec, world->inputs, key);
     std::string status = "starts";
     return run_with_map(spec, *world,
                         {.progress = [&](double share) { progress(0.5 * share, status); },
@@ -63,7 +65,7 @@ std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& opti
   const std::vector<RunSpec> specs = expand(suite);
   require_auditable(suite);
   InputReader inputs(options.say);
-  std::vector<std::pair<std::string, std::string>> keys;
+  PlannedKeys keys;
   for (const RunSpec& spec : specs)
     keys.emplace_back(spec.name, run_key(spec, inputs.inputs_of(spec)));
   options.planned(keys);
@@ -85,7 +87,7 @@ std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& opti
       std::filesystem::remove_all(shared.images.folder);
     const std::string kept = shared.cache.get("audit", audit_key(key), [&] {
       options.say(fmt::format("run and audit of {}", spec.name));
-      return json_of(execute(spec, options, shared, progress)).dump();
+      return json_of(execute(spec, key, options, shared, progress)).dump();
     });
     audited.push_back({spec, key, {}});
     read_json(nlohmann::ordered_json::parse(kept), audited.back().audit);

@@ -21,8 +21,7 @@ struct AuditOptions {
   /// Space for the images of one environment, which its runs share.
   double images_limit_gb = BenchOptions{}.images_limit_gb;
   /// Receives names and keys of all runs before any work; may throw.
-  std::function<void(const std::vector<std::pair<std::string, std::string>>&)> planned =
-      [](const auto&) {};
+  std::function<void(const PlannedKeys&)> planned = [](const auto&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};
   /// Receives the share of the work that is done, and what is being done.
   std::function<void(double, std::string_view)> progress = [](double, std::string_view) {};
@@ -34,7 +33,8 @@ void require_auditable(const Suite& suite);
 
 /// Executes the runs of a suite one after the other and audits each. An audit that is in the cache
 /// is not repeated.
-/// @throws InputError before any work if a run cannot be audited.
+/// @throws InputError before any work if a run cannot be audited; InputChanged if what a run reads
+/// changes meanwhile.
 std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& options);
 
 }  // namespace mh

@@ -21,6 +21,7 @@
 #include "bench/provenance/digest.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/read_record.hpp"
 
 namespace mh {
 namespace {
@@ -76,6 +77,7 @@ bool has_magic(const fs::path& file) {
 /// nullopt if the file is missing, truncated or damaged.
 std::optional<std::string> unpack(const fs::path& file) {
   if (!is_own_file(file)) return std::nullopt;
+  const ReadScope no_input(ReadScope::Outer::kIgnores);
   std::string packed;
   try {
     packed = read_file(file);

@@ -8,12 +8,10 @@
 #include <fmt/format.h>
 
 #include "bench/inputs/inputs.hpp"
-#include "bench/plan/find_program.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/provenance/fingerprint.hpp"
 #include "bench/results/summary.hpp"
-#include "slam/core/files.hpp"
 
 namespace mh {
 namespace {
@@ -30,20 +28,17 @@ std::string run_digest(const RunResult& run) {
   return hex(sum);
 }
 
-/// "name=digest of content", so that a file is the same after it was moved.
-std::string content(std::string_view what, const std::filesystem::path& file) {
-  const std::string text = is_generated(file) ? file.string() : read_file(file);
-  return fmt::format("{}={};", what, hex(digest_bytes(text.data(), text.size())));
-}
-
-/// The same for something that a run reads, with every file that it names.
-std::string content(const char* what, const std::optional<std::filesystem::path>& source,
-                    const std::vector<InputDigest>& inputs) {
-  if (!source) return fmt::format("{}=none;", what);
-  if (is_generated(*source)) return content(what, *source);
+/// "what=digest of content" of something that a run reads and of every file that it names, so that
+/// a file is the same after it was moved.
+std::string content(std::string_view what, const std::filesystem::path& source,
+                    const InputDigest& input) {
+  if (is_generated(source)) {
+    const std::string text = source.string();
+    return fmt::format("{}={};", what, hex(digest_bytes(text.data(), text.size())));
+  }
   std::string text;
-  for (const FileDigest& file : std::ranges::find(inputs, what, &InputDigest::name)->files)
-    text += file.file == source->filename()
+  for (const FileDigest& file : input.files)
+    text += file.file == source.filename()
                 ? fmt::format("{}={};", what, hex(file.digest))
                 : fmt::format("{}/{}={};", what, file.file, hex(file.digest));
   return text;
@@ -58,7 +53,8 @@ RunFigures figures(const RunResult& run) {
   RunFigures figures{.scenario = spec.environment.name,
                      .system = system + "-" + level_name(spec.level),
                      .seed = spec.seed,
-                     .digest = run_digest(run)};
+                     .digest = run_digest(run),
+                     .repeatable = spec.system.repeatable};
   if (run.points.empty()) return figures;
   // Figures that may be judged, and the denominators of shares.
   const std::vector<Figure> all = figures_of(run, 0);
@@ -76,7 +72,7 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs) {
   return all;
 }
 
-std::string gate_suite_digest(const Suite& suite) {
+std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
   std::string text = fmt::format(
       "trials={};seed={};frames={};protocol={};", suite.trials, suite.seed,
       suite.max_frames ? std::to_string(*suite.max_frames) : "all", to_json(suite.protocol).dump());
@@ -84,8 +80,8 @@ std::string gate_suite_digest(const Suite& suite) {
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const Labels& labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels)
-    text += level == kRecordedLevel ? "recorded;" : content(level_name(level), level);
-  InputReader reader;
+    text += level == kRecordedLevel ? "recorded;"
+                                    : content(level_name(level), level, reader.level(level));
   for (const Environment& e : suite.environments) {
     const std::vector<InputDigest> inputs = reader.inputs_of(e);
     text += fmt::format("environment={};", e.name);
@@ -100,22 +96,24 @@ std::string gate_suite_digest(const Suite& suite) {
           std::pair("kidnapped_tour", e.kidnapped_tour), std::pair("query_tour", e.query_tour),
           std::pair("query_scene", e.query_scene), std::pair("sensors", e.sensors),
           std::pair("pedestrian", e.pedestrian)})
-      text += content(what, source, inputs);
+      text += source ? content(what, *source, *std::ranges::find(inputs, what, &InputDigest::name))
+                     : fmt::format("{}=none;", what);
     if (e.frame != SceneFrame{}) text += fmt::format("frame={};", to_json(e.frame).dump());
   }
   return hex(digest_bytes(text.data(), text.size()));
 }
 
-nlohmann::ordered_json gate_settings(const Suite& suite) {
+nlohmann::ordered_json gate_settings(const Suite& suite, InputReader& reader) {
   nlohmann::ordered_json settings = {{"slam", to_json(suite.slam)}};
-  if (!suite.vocabulary.empty()) settings["vocabulary"] = hex(digest_file(suite.vocabulary));
+  if (!suite.vocabulary.empty())
+    settings["vocabulary"] = hex(reader.vocabulary(suite.vocabulary).files.front().digest);
   for (const SystemSpec& system : suite.systems)
     if (!system.is_outside())
       for (const auto& [setting, value] : system.settings)
         settings[system.name][setting] = value.as_string();
     else
-      for (const ProgramFile& file : files_of(system.outside))
-        settings[system.name][file.word] = hex(digest_file(file.file));
+      for (const InputDigest& file : reader.program(system))
+        settings[system.name][file.name.substr(system.name.size() + 2)] = hex(file.digest);
   return settings;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/check/figures.hpp"
+#include "bench/inputs/inputs.hpp"
 #include "bench/results/run_result.hpp"
 
 namespace mh {
@@ -19,12 +20,13 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs);
 /// Digest of what the runs of a suite consist of: places (by the content of all files read for
 /// them), systems, labels, seeds and protocol. What a change under test may alter (the method's
 /// settings, the vocabulary, tolerances) is excluded.
-std::string gate_suite_digest(const Suite& suite);
+/// @param inputs  reads those files, or has read them: for the same runs, to be of one moment
+std::string gate_suite_digest(const Suite& suite, InputReader& inputs);
 
 /// What a change to the program may alter along with it: the section `slam`, systems' own settings,
 /// the digests of the vocabulary and of the files of outside programs. If these differ, different
 /// bits are expected.
-nlohmann::ordered_json gate_settings(const Suite& suite);
+nlohmann::ordered_json gate_settings(const Suite& suite, InputReader& inputs);
 
 /// Program and machine: digest of the executable, processor and the CPU features by which libraries
 /// choose their instructions.

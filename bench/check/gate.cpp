@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kPower80 = 0.84;           // normal quantile of 80 % power
+constexpr double kSure95 = 1.86;            // Student's t, one-sided, of twice kFewestRuns
 constexpr double kMedianOverMean = 1.2533;  // ratio of standard errors: sqrt(pi / 2)
 constexpr double kRounding = 1e-12;         // sums of shares are equal to within this
 
@@ -112,12 +113,16 @@ Change compare(const Pairing& pairing, const Metric& measure, const Tolerance& t
   c.after = median_of_known(after);
   c.change = median_with_infinities(changes);
   c.tolerance = tolerance.of(c.before.value_or(0));
-  const double error = kMedianOverMean * std::sqrt(2.0) * standard_deviation(before) /
-                       std::sqrt(static_cast<double>(c.pairs));
-  c.detectable = c.tolerance + kPower80 * error;
+  c.repeatable = pairing.runs.front().second->repeatable;
+  const double spread = c.repeatable
+                            ? std::sqrt(2.0) * standard_deviation(before)
+                            : std::hypot(standard_deviation(before), standard_deviation(after));
+  const double error = kMedianOverMean * spread / std::sqrt(static_cast<double>(c.pairs));
+  const double chance = c.repeatable ? 0 : kSure95 * error;
+  c.detectable = c.tolerance + chance + kPower80 * error;
   const double count = median_of_known(counts).value_or(0);
   if (count > 0) c.detectable = std::max(c.detectable, next_step(c.tolerance, count));
-  c.verdict = judge(c.change, c.tolerance, measure.better);
+  c.verdict = judge(c.change, c.tolerance + chance, measure.better);
   return c;
 }
 
@@ -184,7 +189,7 @@ GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigu
       ++result.runs;
       if (before->digest == after->digest)
         ++result.identical;
-      else if (same_origin)
+      else if (same_origin && after->repeatable)
         result.unrepeatable.push_back(run_name(*after));
     }
     for (const Metric& measure : all_metrics()) {

@@ -12,6 +12,9 @@
 
 namespace mh {
 
+/// Of a system that is not repeatable, so many trials are needed.
+inline constexpr int kFewestRuns = 5;
+
 /// How one measure of one system changed in one scenario.
 enum class ChangeVerdict { kSame, kWithin, kBetter, kWorse };
 std::string_view name(ChangeVerdict verdict);
@@ -29,8 +32,11 @@ struct Change {
   /// the median paired change. That is the error due to chance alone for a different but no worse
   /// program: before and after drawn independently, with the spread over the baseline's seeds, so
   /// 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 / queries above the
-  /// tolerance.
+  /// tolerance. Of a system that is not repeatable, before and after are drawn anew each time, with
+  /// the spread over the runs of both; its change must exceed the tolerance by 1.86 standard errors
+  /// to be more than chance, and `detectable` holds that as well.
   double detectable = 0;
+  bool repeatable = true;
   ChangeVerdict verdict = ChangeVerdict::kSame;
 };
 
@@ -38,7 +44,8 @@ struct GateResult {
   std::vector<Change> changes;  ///< by scenario and system in the baseline's order, then measure
   std::size_t runs = 0;
   std::size_t identical = 0;              ///< runs whose digest equals the baseline's
-  std::vector<std::string> unrepeatable;  ///< runs that differ on the same program and machine
+  std::vector<std::string> unrepeatable;  ///< runs that differ on the same program and machine,
+                                          ///< of systems that are to repeat
   /// Measures with a tolerance but no figure, before or now: "corridor, plain-pepper: ate_rmse_m".
   std::vector<std::string> not_measured = {};
   bool same_origin = false;  ///< program, machine and settings are those of the baseline

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/check/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -55,16 +56,21 @@ std::string table(const GateResult& result) {
                         shown(c.before), shown(c.after), shown_change(c.change), c.tolerance,
                         c.detectable, name(c.verdict));
   }
+  if (std::ranges::any_of(result.changes, [](const Change& c) { return !c.repeatable; }))
+    text += fmt::format(
+        "a system that is not repeatable is worse where its change exceeds the tolerance by more "
+        "than chance (95 %, by the spread over its runs)\n");
   return text;
 }
 
 std::string origin_line(const GateResult& result) {
-  return fmt::format("equal to the baseline bit for bit: {} of {}{}\n", result.identical,
-                     counted(result.runs, "run"),
-                     result.same_origin ? ", and all must be: same program, same kind of machine"
-                     : result.changed_settings.empty()
-                         ? "; they need not be: another program or machine made it"
-                         : "; they need not be: it was made with other settings");
+  return fmt::format(
+      "equal to the baseline bit for bit: {} of {}{}\n", result.identical,
+      counted(result.runs, "run"),
+      result.same_origin ? ", and all of repeatable systems must be: same program, same kind of "
+                           "machine"
+      : result.changed_settings.empty() ? "; they need not be: another program or machine made it"
+                                        : "; they need not be: it was made with other settings");
 }
 
 std::string settings_lines(const GateResult& result) {

@@ -121,6 +121,7 @@ std::string mark_in(const fs::path& folder) {
   const fs::path file = folder / kMark;
   std::error_code error;
   if (!fs::exists(fs::symlink_status(file, error))) return {};
+  const ReadScope no_input(ReadScope::Outer::kIgnores);
   std::string mark = read_file(file);
   if (!mark.starts_with(kMarkHead))
     throw InputError(
@@ -142,8 +143,8 @@ NewFolders::~NewFolders() {
 }
 
 OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
-                           std::vector<std::string> names)
-    : folder_(folder), names_(std::move(names)), made_(folder) {
+                           std::vector<std::string> names, Others others)
+    : folder_(folder), names_(std::move(names)), made_(folder), hold_(folder) {
   const std::string line = "modelhouse " + command + "\n", mark = mark_in(folder);
   const bool ours = mark.find("\n" + line) != std::string::npos;
   std::error_code error;
@@ -154,6 +155,7 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
             fmt::format("{}: is there already, and not from `modelhouse {}`: name another folder",
                         (folder / name).string(), command));
   make_output_folder(folder);
+  if (others == Others::kNone) hold_.take();
   if (ours) return;
   write_atomically(folder / kMark, (mark.empty() ? std::string(kMarkHead) : mark) + line);
   mark_before_ = mark;

@@ -11,6 +11,7 @@
 
 #include "bench/plan/shipped.hpp"
 #include "slam/core/read_record.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh::cli {
 
@@ -66,15 +67,18 @@ class NewFolders {
 /// in it, `.modelhouse`, names the commands that wrote there: they may replace what they wrote.
 class OutputFolder {
  public:
+  /// Whether other processes may work there at the same time: never, or with hold().join().
+  enum class Others { kNone, kMayJoin };
   /// @param command  "drive", as the user calls it
   /// @param names    of the files that it will write there
-  /// @throws InputError if a file of such a name exists that the command did not write; as
-  /// make_output_folder()
+  /// @throws InputError if a file of such a name exists that the command did not write, or if
+  /// another command is at work there; as make_output_folder()
   OutputFolder(const std::filesystem::path& folder, const std::string& command,
-               std::vector<std::string> names);
+               std::vector<std::string> names, Others others = Others::kNone);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
+  FolderHold& hold() { return hold_; }
 
  private:
   bool holds_any() const;
@@ -82,6 +86,7 @@ class OutputFolder {
   const std::filesystem::path folder_;
   const std::vector<std::string> names_;
   const NewFolders made_;
+  FolderHold hold_;
   std::optional<std::string> mark_before_;  // previous .modelhouse; set if it was changed
 };
 

@@ -63,10 +63,8 @@ std::vector<std::string> names_of_audit() {
 
 namespace {
 
-using Keys = std::vector<std::pair<std::string, std::string>>;
-
 /// The runs of a folder's results; nullopt: there are none.
-std::optional<Keys> runs_of_results(const std::filesystem::path& out) {
+std::optional<PlannedKeys> runs_of_results(const std::filesystem::path& out) {
   const std::filesystem::path file = out / "results.sqlite";
   if (!std::filesystem::exists(file)) return std::nullopt;
   return Store(file).planned_keys();
@@ -93,7 +91,7 @@ WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
   Progress progress("audit");
   AuditOptions how;
   how.cache = cache;
-  how.planned = [&](const Keys& keys) {
+  how.planned = [&](const PlannedKeys& keys) {
     if (const auto runs = runs_of_results(out); runs && *runs != keys)
       throw InputError(fmt::format(
           "{}: holds results of other runs than {} has now: an audit goes beside its own results "

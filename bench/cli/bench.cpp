@@ -43,6 +43,7 @@ struct BenchArguments {
   std::optional<std::string> scene;
   SceneFrameOption frame;
   SetOption set;
+  std::vector<std::string> vary;
   std::string shard = "1/1";
   std::string cache;
   bool no_cache = false;
@@ -76,9 +77,10 @@ void print_settings() {
 }
 
 /// Results of a quick look must not replace the suite's own.
-std::filesystem::path usual_folder(const Suite& suite) {
-  const std::string name =
-      suite.max_frames ? fmt::format("{}-first-{}", suite.name, *suite.max_frames) : suite.name;
+std::filesystem::path usual_folder(const Suite& suite, bool varied) {
+  std::string name = suite.name;
+  if (suite.max_frames) name += fmt::format("-first-{}", *suite.max_frames);
+  if (varied) name += "-varied";
   return std::filesystem::path("out") / name;
 }
 
@@ -115,7 +117,8 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   if (options.images_limit_gb != unset.images_limit_gb)
     throw InputError("--images-limit: is for runs of queries: episodes keep no images");
   EpisodeOptions episodes;
-  episodes.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
+  episodes.out =
+      options.out.empty() ? usual_folder(suite, false) : std::filesystem::path(options.out);
   episodes.jobs = options.jobs;
   episodes.cache = cache_folder(options);
   if (options.only_run) return run_only(suite, std::move(episodes), options);
@@ -183,6 +186,7 @@ void run(BenchArguments options) {
   if (options.scene) resolve(*options.scene, Shipped::kScene);
   SuiteOverrides overrides;
   overrides.set = options.set.values();
+  overrides.vary = named_values("--vary", options.vary);
   overrides.trials = options.trials;
   overrides.max_frames = options.frames;
   if (options.scene) overrides.scene = *options.scene;
@@ -191,7 +195,8 @@ void run(BenchArguments options) {
   if (suite.episodes) return run_kidnappings(suite, options);
   BenchOptions bench;
   bench.shard = parse_shard(options.shard);
-  bench.out = options.out.empty() ? usual_folder(suite) : std::filesystem::path(options.out);
+  bench.out = options.out.empty() ? usual_folder(suite, !overrides.vary.empty())
+                                  : std::filesystem::path(options.out);
   bench.jobs = options.jobs;
   bench.cache = cache_folder(options);
   bench.time_limit_s = options.time_limit_s;
@@ -205,7 +210,8 @@ void run(BenchArguments options) {
     require_auditable(suite);
     if (!names.empty()) std::ranges::move(names_of_audit(), std::back_inserter(names));
   }
-  const OutputFolder folder(bench.out, "bench", names);
+  OutputFolder folder(bench.out, "bench", names, OutputFolder::Others::kMayJoin);
+  bench.hold = &folder.hold();
 
   Progress progress("bench");
   bench.say = [&](std::string_view stage) { progress.say(stage); };
@@ -243,6 +249,11 @@ void add_bench(CLI::App& app) {
                       "Another scene or mesh file (default: the suite's)");
   options->frame.add_to(*command);
   options->set.add_to(*command);
+  command
+      ->add_option("--vary", options->vary,
+                   "SETTING=VALUE,VALUE,...: sweeps over a setting of SLAM, "
+                   "features.count=500,1000; several: over all combinations")
+      ->allow_extra_args(false);
   command->add_option("--shard", options->shard,
                       "i/n: takes the i-th of n shares of the runs, of about equal cost; `merge` "
                       "puts them together");

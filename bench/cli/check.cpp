@@ -66,17 +66,23 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
 
 /// Runs the suite. Reuses no earlier results except those of the same interrupted check; baked
 /// light is shared among these runs only.
-Baseline measure(const Suite& suite, const CheckArguments& of) {
+/// @param inputs  which may have been read already
+Baseline measure(const Suite& suite, const CheckArguments& of, InputReader& inputs,
+                 Progress& progress) {
   std::optional<OwnedFolder> place = place_for(suite.file);
   std::optional<TemporaryFolder> folder;
   if (!place) folder.emplace(fs::temp_directory_path());
-  Progress progress("check");
+  Baseline made{.suite = suite.name,
+                .suite_digest = gate_suite_digest(suite, inputs),
+                .origin = gate_origin(),
+                .settings = gate_settings(suite, inputs)};
   const BenchOptions options{.out = place ? place->path() : folder->path(),
                              .jobs = of.jobs,
                              .shard = {},
                              .cache = {},
                              .retry_failed = true,
                              .metrics_only = true,
+                             .inputs = &inputs,
                              .say = [&](std::string_view stage) { progress.say(stage); },
                              .progress = [&](const PoolProgress& p) { show(progress, p); }};
   SuiteOverrides overrides;
@@ -97,11 +103,8 @@ Baseline measure(const Suite& suite, const CheckArguments& of) {
     if (!of.junit.empty()) write_atomically(of.junit, failures_junit(results.failed, suite.name));
     throw_failures(results.failed, results.failed.front().error, "");
   }
-  return {.suite = suite.name,
-          .suite_digest = gate_suite_digest(suite),
-          .origin = gate_origin(),
-          .settings = gate_settings(suite),
-          .runs = figures(results.runs)};
+  made.runs = figures(results.runs);
+  return made;
 }
 
 void report(const CheckArguments& options, const GateResult& result, const std::string& suite) {
@@ -146,18 +149,25 @@ void run(CheckArguments options) {
   if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
     throw InputError(
         fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));
+  for (const SystemSpec& system : suite.systems)
+    if (!system.repeatable && suite.trials < kFewestRuns)
+      throw InputError(fmt::format(
+          "{}: trials: {}: system '{}' is not repeatable: at least {} are needed to judge it",
+          options.suite, suite.trials, system.name, kFewestRuns));
   if (!options.junit.empty())
     require_writable(options.junit, {options.suite, baseline_file(options)});
   if (options.update) require_writable(baseline_file(options), {options.suite});
-  if (options.update) return update(options, suite, measure(suite, options));
+  Progress progress("check");
+  InputReader inputs([&](std::string_view stage) { progress.say(stage); });
+  if (options.update) return update(options, suite, measure(suite, options, inputs, progress));
 
   const fs::path file = baseline_file(options);
   if (!fs::exists(file))
     throw InputError(
         fmt::format("{}: cannot be read: no such baseline; --update makes one", file.string()));
   const Baseline baseline = load_baseline(file);  // before the work: a mistake costs no time
-  check_suite(baseline, file, suite.name, gate_suite_digest(suite));
-  const Baseline now = measure(suite, options);
+  check_suite(baseline, file, suite.name, gate_suite_digest(suite, inputs));
+  const Baseline now = measure(suite, options, inputs, progress);
   const GateResult result = judge(suite, baseline, now);
   report(options, result, suite.name);
   if (!result.passed()) throw CheckFailed();

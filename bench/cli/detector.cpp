@@ -174,6 +174,7 @@ void run(DetectorArguments options) {
   resolve(options.settings, Shipped::kSettings);
   const auto spec = options.detector.spec();
   if (!spec) throw InputError("no detector is named: --network does");
+  const ReadScope reading;
   const Frames frames(options);
   const std::unique_ptr<Detector> detector = open_detector(*spec);
   const std::string unmatched = detector->check_frames(frames.stamps_ns());
@@ -237,6 +238,7 @@ void run(DetectorArguments options) {
   progress.end();
   if (images == 0)
     throw InputError(fmt::format("{}: no frame can be read", options.sources.front()));
+  require_unchanged(reading.record());
   replace_earlier(work.path(), out, results.dump(1) + "\n", drawn);
   std::ranges::sort(ms);
   fmt::print("{}\n{}, {}", detector->description(), counted(images, "image"),

@@ -302,11 +302,14 @@ void score(DetectorScoreArguments options) {
     folder.emplace(options.out, "detector score",
                    std::vector<std::string>{"score.json", "missed.png"});
   Worst worst;
+  const ReadScope reading;
   const Judged judged = judge(options, spec, &worst);
+  const cv::Mat missed = worst.sheet(open_detector(spec)->names());
+  require_unchanged(reading.record());
   options.json ? fmt::print("{}", json_of(judged)) : print_score(judged);
   if (options.out.empty()) return;
   write_atomically(fs::path(options.out) / "score.json", json_of(judged));
-  write_image(fs::path(options.out) / "missed.png", worst.sheet(open_detector(spec)->names()));
+  write_image(fs::path(options.out) / "missed.png", missed);
 }
 
 void fit(DetectorScoreArguments options) {
@@ -325,6 +328,7 @@ void fit(DetectorScoreArguments options) {
   SensorConfig level = load_sensor_config(options.base);
   const ReadScope scope;
   const Judged judged = judge(options, spec, nullptr);
+  require_unchanged(scope.record());
   require_not_read(options.out, scope.record());  // what scenes and robot are made of, too
   if (judged.real.mean.truths == 0)
     throw InputError(fmt::format("no object of COCO's classes is in the {}: nothing is measured",

@@ -121,7 +121,7 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "{}", mh::interrupted_line(interrupted.goes_on));
     return kInterrupted;
   } catch (const mh::InputChanged& error) {
-    return fail(mh::kInputChangedCode, error.what());
+    return fail(app.got_subcommand("run-one") ? mh::kInputChangedCode : kBadInput, error.what());
   } catch (const mh::InputError& error) {
     return fail(kBadInput, error.what());
   } catch (const std::invalid_argument& error) {

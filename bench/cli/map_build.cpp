@@ -242,6 +242,7 @@ void run(MapBuildArguments options) {
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
   const OutputFolder folder(options.out, "map build", {kMapFiles.begin(), kMapFiles.end()});
+  const ReadScope reading;
   const Source source = open_source(options);
   const auto mapped = load_mapped_scene(options);
   OccupancyMapper mapper(source.frames->camera(),
@@ -256,6 +257,7 @@ void run(MapBuildArguments options) {
                   counted(mapper.map().voxel_count(), "voxel"),
                   static_cast<double>(mapper.map().memory_bytes()) * 1e-6);
   if (!frame) {
+    require_unchanged(reading.record());
     fmt::print(
         stderr,
         "map: warning: no floor was found under the camera's path: there is no grid, and the "
@@ -276,6 +278,7 @@ void run(MapBuildArguments options) {
   std::optional<MapScores> scores;
   if (options.score) scores = score(options, *source.frames->truth(), *mapped, mapper, study);
   const fs::path out = options.out;
+  require_unchanged(reading.record());
   remove_earlier(out);  // all that replaces it is known now
   write_map_files(out, mapper.map(), study);
   write_image(out / "grid_classes.png", classes);

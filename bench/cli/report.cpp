@@ -49,7 +49,7 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
         ++without;
         continue;
       }
-      Replay replay = make_replay(run.spec, run.estimate, tools);
+      Replay replay = make_replay(run, tools);
       source.replay_of[run.spec.name] = std::move(replay.scene);
       source.views_of[run.spec.name] = std::move(replay.views);
     }

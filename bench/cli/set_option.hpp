@@ -13,6 +13,21 @@
 
 namespace mh::cli {
 
+/// Words NAME=VALUE of an option that may be given several times.
+/// @throws InputError unless each is NAME=VALUE, each name once.
+inline std::map<std::string, std::string> named_values(const std::string& option,
+                                                       const std::vector<std::string>& given) {
+  std::map<std::string, std::string> values;
+  for (const std::string& word : given) {
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw InputError(fmt::format("{} {}: is not NAME=VALUE", option, word));
+    if (!values.emplace(word.substr(0, equals), word.substr(equals + 1)).second)
+      throw InputError(fmt::format("{} {}: is set twice", option, word.substr(0, equals)));
+  }
+  return values;
+}
+
 /// The command line's values for `${NAME}` in a suite: --set NAME=VALUE.
 struct SetOption {
   std::vector<std::string> given;
@@ -25,24 +40,16 @@ struct SetOption {
         ->allow_extra_args(false);
   }
 
-  /// @throws InputError unless each is NAME=VALUE, each name once.
+  /// @throws as named_values()
   std::map<std::string, std::string> values() const {
     namespace fs = std::filesystem;
-    std::map<std::string, std::string> values;
-    for (const std::string& word : given) {
-      const std::size_t equals = word.find('=');
-      if (equals == std::string::npos || equals == 0)
-        throw InputError(fmt::format("--set {}: is not NAME=VALUE", word));
-      const std::string name = word.substr(0, equals);
-      std::string value = word.substr(equals + 1);
-      std::error_code error;
-      // The suite's paths are relative to its folder; the user's are relative to the working
-      // directory.
+    std::map<std::string, std::string> values = named_values("--set", given);
+    std::error_code error;
+    // The suite's paths are relative to its folder; the user's are relative to the working
+    // directory.
+    for (auto& [name, value] : values)
       if (!value.empty() && fs::exists(value, error))
         value = fs::absolute(value).lexically_normal().string();
-      if (!values.emplace(name, value).second)
-        throw InputError(fmt::format("--set {}: is set twice", name));
-    }
     return values;
   }
 };

@@ -155,6 +155,7 @@ void run(SlamArguments options) {
   check(options);
   resolve(options.vocabulary, Shipped::kVocabulary);
   resolve(options.settings, Shipped::kSettings);
+  const ReadScope reading;
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   const auto spec = options.detector.spec();
   options.labels = !options.plain && !spec;  // those would not be looked at
@@ -223,6 +224,7 @@ void run(SlamArguments options) {
   const RunResult result = run_sequence(options, world, state, first, observers, watch);
   if (state.map.empty())
     throw InputError(nothing_mapped(options.source, *world.mapping, first, result.mapping.offered));
+  require_unchanged(reading.record());
   if (!options.save_map.empty()) save_slam(options.save_map, state);
 
   const Trajectory* truth = world.mapping->truth();

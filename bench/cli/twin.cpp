@@ -164,6 +164,7 @@ void run(TwinArguments options) {
   resolve(options.level, Shipped::kLevel);
   resolve(options.settings, Shipped::kSettings);
   resolve(options.scene, Shipped::kScene);
+  const ReadScope reading;
   RecordingConfig config{.calibration = options.settings, .classes = {}, .labels = false};
   config.read_camera = camera_reader(nullptr);
   OpenedRecording opened = open_sequence(options.recording, config);
@@ -205,6 +206,7 @@ void run(TwinArguments options) {
   }
   progress.end();
 
+  require_unchanged(reading.record());
   draw_pairs(*recorded, *twin, fs::path(options.out) / "pairs.png");
   const std::vector<TwinRow> rows = summarize(frames);
   nlohmann::ordered_json json = {{"recording", options.recording},

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/inputs/inputs.hpp"
 #include "bench/metrics/trajectory_score.hpp"
 #include "bench/protocol/mapping.hpp"
 #include "bench/run/run_one.hpp"
@@ -35,29 +36,50 @@ void require_equipped(const RunSpec& spec, const Robot& robot) {
                                  spec.environment.robot.string(), robot.name, part));
 }
 
-VariantPlace variant_place(const EpisodeVariant& variant, const EpisodesSpec& episodes,
-                           const World& world, int threads, const Cache& cache, const Say& say) {
-  const SimulatedPlace& mapped = *world.simulated;
-  VariantPlace place{.variant = variant,
-                     .scene = {mapped.scene, mapped.renderer},
-                     .level = mapped.sensors,
-                     .starts = {}};
-  if (variant.scene) {
-    Scene scene = load_scene(*variant.scene);
-    light_from_cache(scene, threads, cache, say);
-    place.scene.scene = std::make_shared<const Scene>(std::move(scene));
-    place.scene.renderer = make_scene_renderer(*place.scene.scene);
+/// What a variant reads beside its place.
+struct VariantFiles {
+  std::optional<Scene> scene;
+  std::optional<Pedestrian> pedestrian;
+  std::optional<SensorConfig> level;
+};
+
+/// @param inputs  receives the digests of what was read
+VariantFiles load_files(const EpisodeVariant& variant, std::vector<InputDigest>& inputs) {
+  const auto load = [&](const char* what, const auto& file, auto& loaded, const auto& by) {
+    if (file) loaded = noted(inputs, fmt::format("{}: {}", variant.name, what), *file, by);
+  };
+  VariantFiles files;
+  load("scene", variant.scene, files.scene, [&] { return load_scene(*variant.scene); });
+  load("pedestrian", variant.pedestrian, files.pedestrian,
+       [&] { return load_pedestrian(*variant.pedestrian); });
+  load("level", variant.level, files.level, [&] { return load_sensor_config(*variant.level); });
+  return files;
+}
+
+/// @param place  already has its mapping; receives the variant, and what was read for it
+void add_variant(EpisodeWorld& place, const EpisodeVariant& variant, const EpisodesSpec& episodes,
+                 int threads, const Cache& cache, const Say& say) {
+  VariantFiles files = load_files(variant, place.inputs_of_variants);
+  const SimulatedPlace& mapped = *place.world.simulated;
+  VariantPlace made{.variant = variant,
+                    .scene = {mapped.scene, mapped.renderer},
+                    .level = mapped.sensors,
+                    .starts = {}};
+  if (files.scene) {
+    light_from_cache(*files.scene, threads, cache, say);
+    made.scene.scene = std::make_shared<const Scene>(*std::move(files.scene));
+    made.scene.renderer = make_scene_renderer(*made.scene.scene);
   }
-  require_level_floor(*place.scene.scene);
-  if (variant.pedestrian)
-    place.scene.pedestrian = make_pedestrian_scene(*place.scene.scene, place.scene.renderer,
-                                                   load_pedestrian(*variant.pedestrian));
-  if (variant.level) {
-    place.level = load_sensor_config(*variant.level);
-    place.level.lens_distortion = mapped.sensors.lens_distortion;  // the camera stays the same one
+  require_level_floor(*made.scene.scene);
+  if (files.pedestrian)
+    made.scene.pedestrian =
+        make_pedestrian_scene(*made.scene.scene, made.scene.renderer, *files.pedestrian);
+  if (files.level) {
+    made.level = *files.level;
+    made.level.lens_distortion = mapped.sensors.lens_distortion;  // the camera stays the same one
   }
-  place.starts = draw_starts(episodes, *place.scene.scene, mapped.robot);
-  return place;
+  made.starts = draw_starts(episodes, *made.scene.scene, mapped.robot);
+  place.variants.push_back(std::move(made));
 }
 
 }  // namespace
@@ -67,6 +89,12 @@ EveryNth::EveryNth(std::shared_ptr<const Sequence> all, std::size_t n)
   camera_.rate_hz /= static_cast<double>(n);
   if (all_->truth() == nullptr) return;
   for (std::size_t i = 0; i < all_->truth()->size(); i += n) truth_.push_back((*all_->truth())[i]);
+}
+
+std::vector<InputDigest> read_variants(const EpisodesSpec& episodes) {
+  std::vector<InputDigest> inputs;
+  for (const EpisodeVariant& variant : episodes.variants) load_files(variant, inputs);
+  return inputs;
 }
 
 void require_goals(const RunSpec& spec, const EpisodesSpec& episodes) {
@@ -97,7 +125,7 @@ EpisodeWorld build_episode_world(const RunSpec& spec, const EpisodesSpec& episod
                                              static_cast<std::size_t>(episodes.ticks_per_frame));
   place.world.mapping = place.mapping;  // systems are made for a camera of that rate
   for (const EpisodeVariant& variant : episodes.variants) {
-    place.variants.push_back(variant_place(variant, episodes, place.world, threads, cache, say));
+    add_variant(place, variant, episodes, threads, cache, say);
     place.variants.back().level = with_dials(place.variants.back().level, spec.labels);
   }
   return place;

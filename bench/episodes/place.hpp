@@ -46,7 +46,11 @@ struct EpisodeWorld {
   int ticks_per_frame = 1;
   std::shared_ptr<const Sequence> mapping;  ///< at the rate of the episodes
   std::vector<VariantPlace> variants;
+  std::vector<InputDigest> inputs_of_variants;  ///< as read_variants() notes them
 };
+
+/// Notes what the variants of episodes read beside their place. @throws InputError
+std::vector<InputDigest> read_variants(const EpisodesSpec& episodes);
 
 /// Checks, before anything is mapped, that there is something to find in an environment.
 /// @throws InputError as draw_starts(), in any variant; if a scene's floor is not z = 0, or the

@@ -36,37 +36,45 @@ namespace {
 using Slot = std::pair<std::string, std::size_t>;  ///< variant, start
 
 /// Everything about the episodes that decides one of them, except how many there are.
-std::string text_of(const EpisodesSpec& spec) {
+std::string text_of(const EpisodesSpec& spec, const std::vector<InputDigest>& inputs) {
   nlohmann::ordered_json json = {
       {"seed", spec.seed},          {"goals", spec.goals},
       {"limit_s", spec.limit_s},    {"arrival_m", spec.arrival_m},
       {"dark_s", spec.dark_s},      {"ticks_per_frame", spec.ticks_per_frame},
       {"code", code_of_episodes()}, {"variants", nlohmann::ordered_json::array()}};
-  for (const EpisodeVariant& variant : spec.variants) {
-    std::vector<InputDigest> inputs;
-    if (variant.scene)
-      noted(inputs, "scene", *variant.scene, [&] { return load_scene(*variant.scene); });
-    if (variant.pedestrian)
-      noted(inputs, "pedestrian", *variant.pedestrian,
-            [&] { return load_pedestrian(*variant.pedestrian); });
-    if (variant.level)
-      noted(inputs, "level", *variant.level, [&] { return load_sensor_config(*variant.level); });
-    nlohmann::ordered_json one = {{"name", variant.name}};
-    for (const InputDigest& input : inputs) one[input.name] = hex(input.digest);
-    json["variants"].push_back(one);
-  }
+  for (const EpisodeVariant& variant : spec.variants) json["variants"].push_back(variant.name);
+  for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);
   return json.dump();
 }
 
 /// Keys of a run and of its map.
 struct Keys {
   std::string run, map;
+  friend bool operator==(const Keys&, const Keys&) = default;
 };
-Keys keys_of(const RunSpec& run, const Suite& suite, InputReader& inputs,
-             const std::string& episodes) {
-  const std::vector<InputDigest> read = inputs.inputs_of(labeled(run, suite));
-  return {text_key(run_key(run, read) + episodes),
-          text_key(map_key(run, read) + fmt::format("every {}", suite.episodes->ticks_per_frame))};
+/// @param read         for the run, by name
+/// @param of_variants  for the variants of its episodes
+Keys keys_of(const RunSpec& run, const EpisodesSpec& episodes, const std::vector<InputDigest>& read,
+             const std::vector<InputDigest>& of_variants) {
+  return {text_key(run_key(run, read) + text_of(episodes, of_variants)),
+          text_key(map_key(run, read) + fmt::format("every {}", episodes.ticks_per_frame))};
+}
+
+/// The same of what its world was built of.
+Keys keys_of(const RunSpec& run, const EpisodesSpec& episodes, const EpisodeWorld& built,
+             const std::vector<InputDigest>& of_program) {
+  std::vector<InputDigest> read = built.world.inputs;
+  std::ranges::copy(of_program, std::back_inserter(read));
+  std::ranges::sort(read, {}, &InputDigest::name);
+  return keys_of(run, episodes, read, built.inputs_of_variants);
+}
+
+/// The world of a run's place, whatever system maps it.
+EpisodeWorld world_of(RunSpec run, const Suite& suite, const EpisodeOptions& options,
+                      const Cache& cache) {
+  run.system = {};
+  return build_episode_world(labeled(run, suite), *suite.episodes, options.jobs, cache,
+                             options.say);
 }
 
 bool same_place(const RunSpec& a, const RunSpec& b) {
@@ -76,9 +84,10 @@ bool same_place(const RunSpec& a, const RunSpec& b) {
 /// The episodes of one mapped system that are still to run, several at a time.
 class Kidnapper {
  public:
-  Kidnapper(const Suite& suite, const EpisodeRun& run, EpisodeStore& store,
-            const std::function<void()>& done)
-      : suite_(suite), run_(run), store_(store), done_(done) {}
+  /// @param program  files of the system, which it may read at any time
+  Kidnapper(const Suite& suite, const EpisodeRun& run, const ReadRecord& program,
+            EpisodeStore& store, const std::function<void()>& done)
+      : suite_(suite), run_(run), program_(program), store_(store), done_(done) {}
 
   /// Stores each score. @param slots  what to run: indices of variants and starts
   void work(const EpisodeWorld& world, const MappedSystem& mapped,
@@ -93,6 +102,7 @@ class Kidnapper {
           const EpisodeScore score =
               run_episode(place, *suite_.episodes, variant.starts[slots[k].second]);
           const std::scoped_lock lock(storing);
+          require_unchanged(program_);
           store_.put(run_.key, run_.spec.name, score);
           done_();
         } catch (...) {
@@ -112,6 +122,7 @@ class Kidnapper {
  private:
   const Suite& suite_;
   const EpisodeRun& run_;
+  const ReadRecord& program_;
   EpisodeStore& store_;
   const std::function<void()>& done_;
 };
@@ -187,15 +198,15 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
   const Suite suite = with_starts(given, options.starts);
   const Cache cache(options.cache.value_or(std::filesystem::path()));
   std::vector<EpisodeRun> runs;
-  std::vector<std::string> map_keys;
+  std::vector<Keys> keys;
   {
     const std::vector<RunSpec> specs = episode_runs(suite);
-    const std::string episodes = text_of(*suite.episodes);
+    const std::vector<InputDigest> of_variants = read_variants(*suite.episodes);
     InputReader inputs(options.say);
     for (const RunSpec& spec : specs) {
-      const Keys keys = keys_of(spec, suite, inputs, episodes);
-      runs.push_back({spec, keys.run, {}});
-      map_keys.push_back(keys.map);
+      keys.push_back(
+          keys_of(spec, *suite.episodes, inputs.inputs_of(labeled(spec, suite)), of_variants));
+      runs.push_back({spec, keys.back().run, {}});
     }
   }
   const std::size_t of_run = suite.episodes->variants.size() * suite.episodes->starts;
@@ -219,7 +230,7 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
     report(0);
   };
   std::optional<EpisodeWorld> world;
-  std::optional<RunSpec> world_of;
+  std::optional<RunSpec> built_for;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     EpisodeRun& run = runs[r];
     if (options.only && run.spec.name != *options.only) continue;
@@ -234,12 +245,14 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
         else
           todo.emplace_back(v, s);
     if (!todo.empty()) {
-      if (!world_of || !same_place(*world_of, run.spec)) {
+      if (!built_for || !same_place(*built_for, run.spec)) {
         world.reset();
-        world = build_episode_world(labeled(run.spec, suite), *suite.episodes, options.jobs, cache,
-                                    options.say);
-        world_of = run.spec;
+        world = world_of(run.spec, suite, options, cache);
+        built_for = run.spec;
       }
+      const ReadScope program;
+      if (keys_of(run.spec, *suite.episodes, *world, inputs_of_program(run.spec.system)) != keys[r])
+        throw_changed(run.spec);
       const std::filesystem::path folder = options.out / run.spec.name;
       if (run.spec.system.is_outside()) make_output_folder(folder);
       if (run.spec.system.is_library() && !options.arguments.empty()) {
@@ -252,14 +265,14 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
           MappedSystem mapped = map_tour(run.spec, *world,
                                          {.folder = folder,
                                           .maps = cache,
-                                          .key = map_keys[r],
+                                          .key = keys[r].map,
                                           .say = options.say,
                                           .status = options.status});
           options.say(fmt::format(
               "{}: {} of {} frames mapped, {}; {}", run.spec.name, mapped.tracked, mapped.offered,
               counted(mapped.map.objects.size(), "object"), counted(todo.size(), "kidnapping")));
           const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
-          Kidnapper(suite, run, store, one_done).work(*world, mapped, todo, jobs);
+          Kidnapper(suite, run, program.record(), store, one_done).work(*world, mapped, todo, jobs);
           mapped.system->finish();
         } catch (const OutsideError& error) {
           run.failure = error.what();
@@ -288,11 +301,8 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
 
 OneEpisode prepare_episode(const Suite& suite, const RunSpec& run, const EpisodeOptions& options) {
   const Cache cache(options.cache.value_or(std::filesystem::path()));
-  InputReader inputs(options.say);
-  const Keys keys = keys_of(run, suite, inputs, "");
-  OneEpisode one{.world = build_episode_world(labeled(run, suite), *suite.episodes, options.jobs,
-                                              cache, options.say),
-                 .mapped = {}};
+  OneEpisode one{.world = world_of(run, suite, options, cache), .mapped = {}};
+  const Keys keys = keys_of(run, *suite.episodes, one.world, inputs_of_program(run.system));
   one.mapped = map_tour(run, one.world,
                         {.folder = options.out,
                          .maps = cache,

@@ -51,12 +51,12 @@ InputDigest input_of(std::string name, const fs::path& source, const ReadRecord&
   return input;
 }
 
-std::vector<InputDigest> inputs_of_program(const RunSpec& spec) {
+std::vector<InputDigest> inputs_of_program(const SystemSpec& system) {
   std::vector<InputDigest> inputs;
-  if (!spec.system.is_outside()) return inputs;
-  for (const ProgramFile& file : files_of(spec.system.outside)) {
+  if (!system.is_outside()) return inputs;
+  for (const ProgramFile& file : files_of(system.outside)) {
     const std::uint64_t content = digest_file(file.file);
-    inputs.push_back({fmt::format("{}: {}", spec.system.name, file.word), content, {}});
+    inputs.push_back({fmt::format("{}: {}", system.name, file.word), content, {}});
   }
   return inputs;
 }
@@ -91,7 +91,7 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
       parse_generated(file.string());
       return;
     }
-    scene_.reset();  // only what is read is noted
+    forget_scene();  // only what is read is noted
     scene(file, e.frame);
   };
   const auto read_motion = [](const fs::path& motion) { check_motion(motion); };
@@ -109,22 +109,30 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
 
 std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of(spec.environment);
-  if (!spec.environment.is_recorded())
-    inputs.push_back(
-        read("level", "level", spec.level, [](const fs::path& file) { load_sensor_config(file); }));
+  if (!spec.environment.is_recorded()) inputs.push_back(level(spec.level));
   if (const auto& detector = spec.labels.detector)
     inputs.push_back(
         read("detector",
              fmt::format("detector {} {}", detector->config.string(), detector->classes.string()),
              source_of(*detector), [&](const fs::path&) { open_detector(*detector); }));
-  if (!spec.vocabulary.empty())
-    inputs.push_back(read("vocabulary", "vocabulary", spec.vocabulary,
-                          [](const fs::path& file) { Vocabulary::load(file); }));
-  const auto [of_program, is_new] = of_program_.try_emplace(spec.system.name);
-  if (is_new) of_program->second = inputs_of_program(spec);
-  std::ranges::copy(of_program->second, std::back_inserter(inputs));
+  if (!spec.vocabulary.empty()) inputs.push_back(vocabulary(spec.vocabulary));
+  std::ranges::copy(program(spec.system), std::back_inserter(inputs));
   std::ranges::sort(inputs, {}, &InputDigest::name);
   return inputs;
+}
+
+InputDigest InputReader::level(const fs::path& file) {
+  return read("level", "level", file, [](const fs::path& f) { load_sensor_config(f); });
+}
+
+InputDigest InputReader::vocabulary(const fs::path& file) {
+  return read("vocabulary", "vocabulary", file, [](const fs::path& f) { Vocabulary::load(f); });
+}
+
+const std::vector<InputDigest>& InputReader::program(const SystemSpec& system) {
+  const auto [found, is_new] = of_program_.try_emplace(system.name);
+  if (is_new) found->second = inputs_of_program(system);
+  return found->second;
 }
 
 bool InputReader::share_images(const std::string& a, const std::string& b) const {
@@ -137,7 +145,7 @@ bool InputReader::share_images(const std::string& a, const std::string& b) const
 std::shared_ptr<const Scene> InputReader::scene(const fs::path& file, const SceneFrame& frame) {
   if (scene_ == nullptr || scene_source_ != std::pair(file, frame)) {
     say_(fmt::format("reading {}", file.string()));
-    scene_.reset();                     // freed before the next: two may not fit in memory
+    forget_scene();                     // before the next: two may not fit in memory
     std::vector<std::string> warnings;  // reported only here: the runs load it again
     scene_ = std::make_shared<const Scene>(load_scene(file, &warnings, frame));
     scene_source_ = {file, frame};

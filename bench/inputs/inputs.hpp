@@ -35,7 +35,7 @@ auto noted(std::vector<InputDigest>& inputs, std::string name, const std::filesy
 
 /// Digests of what an outside program consists of or reads, as far as the suite names it; for
 /// outside systems only.
-std::vector<InputDigest> inputs_of_program(const RunSpec& spec);
+std::vector<InputDigest> inputs_of_program(const SystemSpec& system);
 
 /// Reads the inputs of runs before they start, each source once. The digests are those that
 /// build_world() will note.
@@ -50,6 +50,11 @@ class InputReader {
   /// Only those of the environment: no level, vocabulary or program.
   std::vector<InputDigest> inputs_of(const Environment& environment);
 
+  /// One of them alone.
+  InputDigest level(const std::filesystem::path& file);
+  InputDigest vocabulary(const std::filesystem::path& file);
+  const std::vector<InputDigest>& program(const SystemSpec& system);
+
   /// Whether two recordings have most images of the shorter one in common, whatever their files are
   /// called. @pre inputs_of() their environments
   bool share_images(const std::string& a, const std::string& b) const;
@@ -57,6 +62,7 @@ class InputReader {
   /// Returns a scene by its file, not lit; the last one requested is cached. Repairs made to it are
   /// reported once, a line each.
   std::shared_ptr<const Scene> scene(const std::filesystem::path& file, const SceneFrame& frame);
+  void forget_scene() { scene_.reset(); }  ///< frees its memory
 
  private:
   void warn(const std::string& warning);  ///< once

@@ -31,6 +31,7 @@ OpenedRecording open_recorded(const Environment& environment, const std::string&
                                   .classes = environment.classes.value_or(""),
                                   .labels = labels,
                                   .topics = environment.topics,
+                                  .whole = true,
                                   .read_camera = camera_reader(),
                                   .has_camera = settings_have_camera});
 }

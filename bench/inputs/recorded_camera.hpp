@@ -21,7 +21,7 @@ std::function<RecordedCamera(const std::filesystem::path&)> camera_reader(Settin
 /// Whether a settings file has a camera. @throws InputError if it is not a settings file.
 bool settings_have_camera(const std::filesystem::path& file);
 
-/// Opens one of an environment's recordings, by its name.
+/// Opens one of an environment's recordings, by its name, and digests all of it.
 /// @param labels  whether its frames have labels
 /// @throws InputError naming file and place.
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,

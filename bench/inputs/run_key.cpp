@@ -33,6 +33,15 @@ std::string run_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
   return text_key(determining(spec, inputs).dump());
 }
 
+void require_key(const RunSpec& spec, std::span<const InputDigest> read, const std::string& key) {
+  if (run_key(spec, read) != key) throw_changed(spec);
+}
+
+void throw_changed(const RunSpec& spec) {
+  throw InputChanged(fmt::format(
+      "{}: a file that it reads was changed after the command began: start it again", spec.name));
+}
+
 std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
   nlohmann::ordered_json json = determining(spec, inputs);
   json.erase("points");

@@ -15,6 +15,11 @@ namespace mh {
 /// @param inputs  what was read for it (bench/inputs/inputs.hpp)
 std::string run_key(const RunSpec& spec, std::span<const InputDigest> inputs);
 
+/// Checks that what was read for a run is what its key was made of.
+/// @throws InputChanged naming the run.
+void require_key(const RunSpec& spec, std::span<const InputDigest> read, const std::string& key);
+[[noreturn]] void throw_changed(const RunSpec& spec);
+
 /// The same for a run's finished map: omits what affects only its queries, so that runs that differ
 /// in nothing else share the map.
 std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs);

@@ -111,6 +111,13 @@ void validate(const OutsideProgram& program) {
   check_limit(program, "disk limit", program.disk_limit_mb, true);
 }
 
+std::string fill_in(std::string_view command, std::string_view placeholder,
+                    std::string_view value) {
+  return replace_placeholders(command, [&](std::string_view word) {
+    return word == placeholder ? shell_quoted(value) : fmt::format("{{{}}}", word);
+  });
+}
+
 std::string expand_command(
     std::string_view command,
     const std::vector<std::pair<std::string_view, std::string>>& placeholders) {

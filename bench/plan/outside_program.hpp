@@ -49,5 +49,7 @@ std::string shell_quoted(std::string_view value);
 std::string expand_command(
     std::string_view command,
     const std::vector<std::pair<std::string_view, std::string>>& placeholders);
+/// The same for one placeholder; the others stay.
+std::string fill_in(std::string_view command, std::string_view placeholder, std::string_view value);
 
 }  // namespace mh

@@ -165,6 +165,15 @@ std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
   return value->second;
 }
 
+/// The section `parameters` that --vary stands for: on one map where that is possible.
+YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
+  const bool fixed =
+      std::ranges::all_of(vary, [](const auto& of) { return of.first.starts_with("semantics."); });
+  std::string text = fmt::format("map: {}\n", fixed ? "fixed" : "rebuilt");
+  for (const auto& [name, values] : vary) text += fmt::format("{}: [{}]\n", name, values);
+  return YamlReader::parse(text, "--vary");
+}
+
 }  // namespace
 
 bool fits(const Environment& environment, const Labels& labels) {
@@ -199,6 +208,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
 
   Suite suite;
   suite.file = file;
+  suite.text = content;
   suite.name = yaml.string("name", file.stem().string());
   if (yaml.has("name")) check_folder_name(yaml.at("name"), suite.name);
   std::optional<fs::path> robot;
@@ -211,9 +221,10 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   suite.levels = read_levels(yaml, paths, suite);
   std::set<std::string> names;
   for (const YamlReader& system : items_of(yaml.at("systems"))) {
-    suite.systems.push_back(read_system(system, paths));
-    if (!names.insert(suite.systems.back().name).second)
-      system.fail(fmt::format("'{}' stands twice", suite.systems.back().name));
+    for (SystemSpec& spec : read_systems(system, paths)) {
+      if (!names.insert(spec.name).second) system.fail(fmt::format("'{}' stands twice", spec.name));
+      suite.systems.push_back(std::move(spec));
+    }
   }
   suite.compare = read_compare(yaml, suite.systems);
   if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, &SystemSpec::takes_settings))
@@ -228,7 +239,11 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     suite.slam = read_slam_config(*slam);
     slam->finish();
   }
-  if (const auto sweep = yaml.find("parameters")) {
+  const auto sweep =
+      overrides.vary.empty() ? yaml.find("parameters") : std::optional(sweep_of(overrides.vary));
+  if (!overrides.vary.empty() && yaml.has("parameters"))
+    yaml.at("parameters").fail("the suite has a sweep of its own: leave --vary out");
+  if (sweep) {
     suite.sweep = read_sweep(*sweep, suite.slam);
     if (yaml.has("study"))
       sweep->fail(

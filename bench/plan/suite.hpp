@@ -35,6 +35,7 @@ struct SystemPair {
 struct Suite {
   std::string name;
   std::filesystem::path file;
+  std::string text;  ///< of the file, as it was read
   std::vector<Environment> environments;
   std::filesystem::path vocabulary;  ///< empty if no system needs it
   /// Sensor levels, as paths of their files; kRecordedLevel is last if there are recordings.
@@ -72,6 +73,8 @@ struct SuiteOverrides {
   std::optional<std::size_t> max_frames = {};
   /// Values that replace `${name}` in the suite's text.
   std::map<std::string, std::string> set = {};
+  /// A sweep in the place of the section `parameters`: settings and their values, "500,1000".
+  std::map<std::string, std::string> vary = {};
   /// For a suite read back from a results file: what its patterns found, so as not to search again.
   FoundRecordings found = {};
 };

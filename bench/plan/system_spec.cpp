@@ -42,6 +42,28 @@ void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& p
   }
 }
 
+/// A program for each combination of the values of its command's own placeholders.
+std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
+  std::vector<SystemSpec> all{spec};
+  for (const auto& [placeholder, list] : vary.entries()) {
+    const std::vector<YamlReader> values = list.items();
+    if (values.empty()) list.fail("has no value");
+    if (fill_in(spec.outside.command, placeholder, "") == spec.outside.command)
+      list.fail(fmt::format("{{{}}} is not in the command", placeholder));
+    std::vector<SystemSpec> more;
+    for (const SystemSpec& one : all)
+      for (const YamlReader& value : values) {
+        SystemSpec& with = more.emplace_back(one);
+        with.name += fmt::format("_{}_{}", placeholder, value.as_string());
+        check_folder_name(value, with.name);
+        with.outside.name = with.name;
+        with.outside.command = fill_in(one.outside.command, placeholder, value.as_string());
+      }
+    all = std::move(more);
+  }
+  return all;
+}
+
 /// Reads one of ours under another name.
 void read_variant(YamlReader& node, SystemSpec& spec) {
   spec.kind = one_of(node.at("system"), kOurs);
@@ -68,12 +90,12 @@ std::string_view name(OutsideMode mode) {
   return mode == OutsideMode::kLibrary ? "library" : name_of(mode, kModes);
 }
 
-SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
+std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
   SystemSpec spec;
   if (!node.is_map()) {
     spec.kind = one_of(node, kOurs);
     spec.name = name(spec.kind);
-    return spec;
+    return {spec};
   }
   spec.name = node.string("name");
   check_folder_name(node.at("name"), spec.name);
@@ -81,7 +103,7 @@ SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
     node.at("name").fail("'" + spec.name + "' is one of Modelhouse's own systems");
   if (node.has("system")) {
     read_variant(node, spec);
-    return spec;
+    return {spec};
   }
   spec.kind = SystemKind::kOutside;
   OutsideProgram& program = spec.outside;
@@ -99,13 +121,19 @@ SystemSpec read_system(YamlReader node, const SuitePaths& paths) {
       named_file(input, paths);
       program.inputs.push_back(input.as_string());
     }
+  spec.repeatable = node.boolean("repeatable", spec.repeatable);
+  std::vector<SystemSpec> all{spec};
+  if (const auto vary = node.find("vary")) {
+    if (is_library) vary->fail("is of a command: a library reads its `settings`");
+    all = varied(spec, *vary);
+  }
   node.finish();
   try {
-    validate(program);
+    for (const SystemSpec& one : all) validate(one.outside);
   } catch (const InputError& error) {
     node.at(key).fail(error.what());
   }
-  return spec;
+  return all;
 }
 
 }  // namespace mh

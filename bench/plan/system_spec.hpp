@@ -28,6 +28,9 @@ struct SystemSpec {
   /// ours under another name.
   std::vector<std::pair<std::string, YamlReader>> settings = {};
 
+  /// Equal runs give equal bits. If not, the gate judges it by the spread over its runs.
+  bool repeatable = true;
+
   // Its capabilities; no other code checks its kind.
   bool is_outside() const { return kind == SystemKind::kOutside; }
   /// Its code runs in the process of the bench that asks it.
@@ -49,9 +52,11 @@ struct SystemSpec {
 /// Reads `semantic`, `plain`, one of these under another name with settings of its own, {name,
 /// system: plain, slam: {...}}, or a mapping {name, command, protocol: trajectory | conversation}
 /// with `run_limit_s`, `reply_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
-/// and `inputs`, a list of files. The command runs in the suite's folder. Or a mapping {name,
-/// library} with `settings`, a file, and `inputs`.
+/// `repeatable: false`, and `inputs`, a list of files. The command runs in the suite's folder. Or a
+/// mapping {name, library} with `settings`, a file, `repeatable` and `inputs`.
+/// @returns that system; a command with `vary: {n: [500, 1000]}` is one for each combination of
+/// values, which stand for {n} in it and in names: "orb_n_500", "orb_n_1000"
 /// @throws InputError naming file, line, field and value; an input that must exist and does not.
-SystemSpec read_system(YamlReader node, const SuitePaths& paths);
+std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths);
 
 }  // namespace mh

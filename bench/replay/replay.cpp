@@ -136,9 +136,16 @@ Json mesh_json(const Scene& whole) {
           {"indices", base64(indices)}};
 }
 
-Replay make_replay(const RunSpec& spec, const Trajectory& estimate, const ReplayTools& tools) {
+Replay make_replay(const RunResult& result, const ReplayTools& tools) {
+  const RunSpec& spec = result.spec;
   require_auditable(spec);
   const World world = build_world(spec, tools.threads, tools.cache, tools.say);
+  for (const InputDigest& input : world.inputs)
+    if (std::ranges::find(result.place.inputs, input) == result.place.inputs.end())
+      throw InputChanged(fmt::format(
+          "{}: its '{}' was changed since this result was made: run the suite again, or put the "
+          "file back",
+          spec.name, input.name));
   SlamState frozen;
   tools.say(fmt::format("{}: runs again", spec.name));
   const RunResult run = run_with_map(spec, world, {.maps = tools.cache}, frozen);
@@ -148,7 +155,7 @@ Replay make_replay(const RunSpec& spec, const Trajectory& estimate, const Replay
            a.world_from_camera.translation() == b.world_from_camera.translation();
   };
   Json scene = {{"run", spec.name},
-                {"same", std::ranges::equal(run.estimate, estimate, is_same)},
+                {"same", std::ranges::equal(run.estimate, result.estimate, is_same)},
                 {"mesh", mesh_json(*world.simulated->scene)},
                 {"landmarks", landmarks_json(frozen.map, to_dock)},
                 {"keyframes", keyframes_json(frozen.map, to_dock)}};

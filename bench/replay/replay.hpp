@@ -7,9 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cache/cache.hpp"
-#include "bench/plan/runs.hpp"
+#include "bench/results/run_result.hpp"
 #include "scenes/scene.hpp"
-#include "slam/core/trajectory.hpp"
 
 namespace mh {
 
@@ -36,8 +35,8 @@ struct Replay {
 
 /// Executes a run again and records it. Runs repeat bit for bit; `same` in the scene states whether
 /// this one gave the positions that the result holds (a results file rounds orientations).
-/// @param estimate  of the result
-/// @throws InputError naming the run if it is of a recording or of an outside system.
-Replay make_replay(const RunSpec& spec, const Trajectory& estimate, const ReplayTools& tools);
+/// @throws InputError naming the run if it is of a recording or of an outside system; InputChanged
+/// if a file that it reads is not the one that the result is of.
+Replay make_replay(const RunResult& result, const ReplayTools& tools);
 
 }  // namespace mh

@@ -2,6 +2,7 @@
 #include "bench/report/export.hpp"
 
 #include <algorithm>
+#include <map>
 #include <type_traits>
 #include <variant>
 
@@ -11,6 +12,7 @@
 #include "bench/report/text_table.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/store/load_results.hpp"
+#include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {
@@ -60,6 +62,28 @@ nlohmann::ordered_json to_json(const Store::Value& value) {
 
 }  // namespace
 
+/// Appends what a sweep varies to rows of runs and points, each with its names first: a column for
+/// each setting; empty where a system ignores them.
+void add_varied(const Suite& suite, Rows& rows) {
+  const std::vector<std::string>& varied = suite.sweep.varied;
+  std::map<std::string, RunSpec> spec_of;
+  if (!varied.empty())
+    for (RunSpec& spec : expand(suite)) spec_of.emplace(spec.name, spec);
+  const auto column = [&](const char* name) {
+    return static_cast<std::size_t>(std::ranges::find(rows[0], name) - rows[0].begin());
+  };
+  const std::size_t run = column("run"), point = column("point");
+  for (const std::string& name : varied) {
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+      const RunSpec& spec = spec_of.at(rows[r][run]);
+      SlamConfig at = spec.slam;
+      if (!rows[r][point].empty()) at.semantics = spec.points.at(std::stoul(rows[r][point]));
+      rows[r].push_back(spec.system.takes_settings() ? setting_text(at, name) : "");
+    }
+    rows[0].push_back(name);
+  }
+}
+
 std::string export_csv(const Store& store) {
   const Rows names = store.rows("SELECT DISTINCT name FROM metrics ORDER BY name");
   std::string columns;
@@ -68,13 +92,14 @@ std::string export_csv(const Store& store) {
         ", (SELECT value FROM metrics m WHERE m.key = r.key AND m.point = o.point AND m.name = "
         "'{0}') AS \"{0}\"",
         names[i][0]);
-  const Rows rows = store.rows(
+  Rows rows = store.rows(
       "SELECT p.name AS run, r.environment, r.category, r.level, r.system, r.labels, r.trial, "
       "r.seed, r.status, r.error, o.point, o.gamma, o.label_mass, o.xi, o.alpha, o.beta, "
       "o.overlap" +
       columns +
       " FROM plan p JOIN runs r ON r.key = p.key LEFT JOIN points o ON o.key = r.key "
       "ORDER BY p.position, o.point");
+  add_varied(store.planned_suite(), rows);
   std::string text;
   for (const auto& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c)

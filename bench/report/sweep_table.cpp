@@ -68,6 +68,8 @@ std::string points_text(const Suite& suite, std::span<const CategoryRow> rows,
                         std::span<const CategoryRow> all) {
   std::vector<std::string> headings{"system"};
   for (const std::string& varied : suite.sweep.varied) headings.emplace_back(shown_name(varied));
+  const bool maps = suite.sweep.map == SweepMap::kRebuilt;
+  if (maps) std::ranges::move(trajectory_headings(), std::back_inserter(headings));
   for (const QuerySet set : kQuerySets) {
     if (!was_asked(all, set)) continue;
     std::ranges::move(query_headings(set), std::back_inserter(headings));
@@ -82,6 +84,7 @@ std::string points_text(const Suite& suite, std::span<const CategoryRow> rows,
     std::vector<std::string> cells{system.name};
     for (const std::string& varied : suite.sweep.varied)
       cells.push_back(system.takes_settings() ? shown_value(seen, varied) : "-");
+    if (maps) std::ranges::move(trajectory_cells(row), std::back_inserter(cells));
     for (const QuerySet set : kQuerySets) {
       if (!was_asked(all, set)) continue;
       std::ranges::move(query_cells(row, set), std::back_inserter(cells));

@@ -57,10 +57,13 @@ std::string circumstances(std::span<const RunResult> runs) {
 
 std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
   const std::vector<Row> rows = make_rows(suite, runs);
+  const std::vector<SharedSlamConfig> points = parameter_points(suite);
   const auto label = [&](const Row& row) {
     const SystemSpec& system = suite.systems[row.system];
     std::string text = fmt::format("{}, {}", suite.environments[row.environment].name, system.name);
     if (system.sees_labels()) text += ", " + with_labels(row.labels);
+    if (suite.sweep.map == SweepMap::kRebuilt && system.takes_settings())
+      text += ", " + shown_point(suite.sweep, settings_of(system, points[row.parameters]));
     return text;
   };
   TextTable table({"wall time, ms per call: median (p95)", "track", "relocalize"});

@@ -136,6 +136,7 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
     }
   std::vector<Job> jobs;
   Places places(suite, inputs);
+  std::map<std::string, std::string> name_of;  // by key
   for (const RunSpec& spec : specs) {
     const std::string images = images_of(spec);
     jobs.push_back({.spec = spec,
@@ -143,12 +144,17 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
                     .images = images,
                     .frames = images + "/" + folder_of(shared_noises(spec))});
     places.add(spec.environment, jobs.back().key);
+    if (const auto [first, is_new] = name_of.try_emplace(jobs.back().key, spec.name); !is_new)
+      throw InputError(fmt::format(
+          "{}: runs '{}' and '{}' are equal in every setting and every byte that they read: leave "
+          "one of them out",
+          suite.file.string(), first->second, spec.name));
   }
   return jobs;
 }
 
-std::vector<std::pair<std::string, std::string>> keys_by_name(const std::vector<Job>& jobs) {
-  std::vector<std::pair<std::string, std::string>> keys;
+PlannedKeys keys_by_name(const std::vector<Job>& jobs) {
+  PlannedKeys keys;
   for (const Job& job : jobs) keys.emplace_back(job.spec.name, job.key);
   return keys;
 }

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <functional>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "bench/inputs/inputs.hpp"
@@ -14,12 +12,13 @@ namespace mh {
 
 /// Every run of a suite, in the order of expand(), with the key of its result and what it sees.
 /// @param say  receives which recordings are left out and which programs cannot be seen
-/// @throws InputError if two runs have one name or an input cannot be read.
+/// @throws InputError if two runs have one name or are equal in all but their names, or if an input
+/// cannot be read.
 std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
                            const std::function<void(std::string_view)>& say);
 
 /// As Store::plan() takes them: name, key.
-std::vector<std::pair<std::string, std::string>> keys_by_name(const std::vector<Job>& jobs);
+PlannedKeys keys_by_name(const std::vector<Job>& jobs);
 
 /// Checks all inputs that the runs name, each once: outside programs can be started, scenes read,
 /// tours driven. Generated scenes and motions are valid by construction.

@@ -57,6 +57,14 @@ void warn_missing_outputs(const Suite& suite, const BenchResults& results,
       counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
 }
 
+/// Whether a run is still to be done, or to be done again.
+bool is_to_do(const Store& store, const Job& job, const BenchOptions& options) {
+  const auto status = store.status(job.key);
+  if (status == RunStatus::kFailed) return options.retry_failed;
+  return !status ||
+         (!options.metrics_only && shows_another_run(options.out / job.spec.name, job.key));
+}
+
 /// If a scene was changed and changed back, the existing files are from the run in between: they
 /// are removed, together with the result, which is rerun, or from next to a failure.
 void forget_outdated_runs(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
@@ -136,25 +144,31 @@ std::uint64_t limit_of_images(const std::vector<Job>& jobs, const BenchOptions& 
 
 BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options) {
-  std::optional<InputReader> inputs(std::in_place, options.say);
-  std::vector<Job> mine = plan_runs(suite, *inputs, options.say);
-  const auto plan = keys_by_name(mine);
+  InputReader own_inputs(options.say);
+  InputReader& inputs = options.inputs != nullptr ? *options.inputs : own_inputs;
+  std::vector<Job> mine = plan_runs(suite, inputs, options.say);
+  const PlannedKeys plan = keys_by_name(mine);
   take_share(mine, options);
   const fs::path results = options.out / "results.sqlite";
+  std::vector<Job> unfinished = mine;
   if (fs::exists(results)) {
-    Store before(results);
+    const Store before(results);
     before.check();
-    if (options.retry_failed)
-      for (const Job& job : mine) before.forget_failure(job.key);
-    if (!options.metrics_only) forget_outdated_runs(before, mine, options.out);
-    std::erase_if(mine, [&](const Job& job) { return before.status(job.key).has_value(); });
+    std::erase_if(unfinished, [&](const Job& job) { return !is_to_do(before, job, options); });
   }
-  validate_inputs(mine, *inputs, options.say);  // bad input leaves no file
-  inputs.reset();                               // it keeps a scene in memory
-  limit_sharing(mine, options);
+  validate_inputs(unfinished, inputs, options.say);  // bad input leaves no file
+  inputs.forget_scene();
 
   Store store(results);
-  store.plan(suite, overrides, plan);
+  FolderHold own_hold(options.out);
+  FolderHold& hold = options.hold != nullptr ? *options.hold : own_hold;
+  hold.join([&] { store.plan(suite, overrides, plan); },
+            [&] { return store.is_planned(suite, overrides, plan); });
+  if (options.retry_failed)
+    for (const Job& job : mine) store.forget_failure(job.key);
+  if (!options.metrics_only) forget_outdated_runs(store, mine, options.out);
+  std::erase_if(mine, [&](const Job& job) { return store.status(job.key).has_value(); });
+  limit_sharing(mine, options);
   options.say(fmt::format("{}, {} of them to do", counted(plan.size(), "run"), mine.size()));
 
   if (!mine.empty()) {
@@ -200,7 +214,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     run_pending(store, std::move(mine), pool);
   }
   store.check();
-  BenchResults made = load_results(store, suite);
+  BenchResults made = load_results(store, suite, plan);
   if (!options.metrics_only) warn_missing_outputs(suite, made, options);
   return made;
 }
@@ -219,16 +233,7 @@ void execute_run(const SingleRunOptions& order) {
     if (order.share_noise) images.noises = shared_noises(spec);
     return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, images);
   }();
-  const auto require_key = [&](std::span<const InputDigest> inputs) {
-    if (run_key(spec, inputs) == order.key) return;
-    std::string what = "a file that it reads";  // before it began: which one is not known
-    for (const InputDigest& input : inputs)
-      if (std::ranges::find(world.inputs, input) == world.inputs.end())
-        what = fmt::format("its '{}'", input.name);
-    throw InputChanged(fmt::format(
-        "{}: {} was changed after the suite was begun: start the suite again", spec.name, what));
-  };
-  require_key(world.inputs);
+  require_key(spec, world.inputs, order.key);
   const fs::path folder = order.folder / spec.name;
   make_output_folder(folder);
   if (!order.metrics_only) remove_run(folder);
@@ -239,11 +244,6 @@ void execute_run(const SingleRunOptions& order) {
                                  .system = {},
                                  .tamper = {},
                                  .occupancy = !order.metrics_only,
-                                 .require_unchanged =
-                                     [&] {  // a scene was read once, images are read as they come
-                                       if (spec.environment.is_recorded())
-                                         require_key(InputReader().inputs_of(spec));
-                                     },
                                  .maps = Cache(order.maps)});
   if (!order.metrics_only) {
     const ProcessorTimer timer(products_s);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/inputs/inputs.hpp"
 #include "bench/plan/suite.hpp"
 #include "bench/results/run_result.hpp"
 #include "bench/run/pool.hpp"
@@ -15,7 +16,7 @@
 #include "bench/store/load_results.hpp"
 #include "bench/store/store.hpp"
 #include "sim/world/shared_exposures.hpp"
-#include "slam/core/error.hpp"
+#include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 
@@ -34,17 +35,16 @@ struct BenchOptions {
   /// Metrics only: no occupancy map, no images and no files of runs.
   bool metrics_only = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
+  FolderHold* hold = nullptr;     ///< of `out`, kept beyond the runs; null: while they run
+  InputReader* inputs = nullptr;  ///< has read some of the inputs already; null: none
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
 
-/// Thrown if an input file changed during the runs that read it.
-struct InputChanged : InputError {
-  using InputError::InputError;
-};
-
-/// Runs a suite into options.out / "results.sqlite". A finished run is never repeated.
-/// @throws InputError if an input cannot be read; Interrupted on Ctrl-C.
+/// Runs a suite into options.out / "results.sqlite". A finished run is never repeated. Several
+/// processes may do so at a time: they share the runs.
+/// @throws InputError if an input cannot be read or changes meanwhile, or if another suite is run
+/// in that folder; Interrupted on Ctrl-C.
 BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options);
 

@@ -318,7 +318,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       const std::string kept = tools.maps.get("map", map_key(spec, world.inputs), [&] {
         map_now();
         mapped = true;
-        tools.require_unchanged();
+        require_unchanged(world.held);
         return encode(FinishedMap{system.save(), run.mapping, run.volume});
       });
       if (!mapped) {
@@ -353,7 +353,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.grid = obstacle_grid(*run.volume, {.floor_z_m = world.simulated->scene->floor.middle_m.z(),
                                            .robot_height_m = world.simulated->robot.height_m});
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
-  tools.require_unchanged();
+  require_unchanged(world.held);
   return run;
 }
 

@@ -57,14 +57,13 @@ struct RunTools {
   std::size_t first = 0;         ///< frames before it were already mapped, by this same system
   RunTamper tamper = {};
   bool occupancy = true;  ///< false: RunResult::volume stays null and its grid empty
-  /// Called before a map or a result is kept; throws if a file was changed since the run
-  /// began.
-  std::function<void()> require_unchanged = [] {};
-  Cache maps = Cache();  ///< finished maps of the same mapping are loaded from and stored here
+  Cache maps = Cache();   ///< finished maps of the same mapping are loaded from and stored here
 };
 
 /// Executes one run from the first frame to the last query: maps the tour, freezes, scores the
 /// trajectory, makes the queries under each parameter point, builds the occupancy map.
+/// @throws InputChanged if a file that it reads on demand was changed since the world was built;
+/// neither a map nor a result of it is kept.
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools);
 
 }  // namespace mh

@@ -145,9 +145,10 @@ exit "$code"
 
 SlurmResults run_on_slurm(const Suite& suite, const SuiteOverrides& overrides,
                           const BenchOptions& options, const SlurmOptions& slurm) {
-  std::optional<InputReader> inputs(std::in_place, options.say);
-  const std::vector<Job> jobs = plan_runs(suite, *inputs, options.say);
+  InputReader inputs(options.say);
+  const std::vector<Job> jobs = plan_runs(suite, inputs, options.say);
   const std::vector<PredictedShare> shares = split_runs(expand(suite), slurm.shares);
+  const PlannedKeys plan = keys_by_name(jobs);
   std::vector<std::size_t> waiting = unfinished(jobs, shares, options.out, !options.retry_failed);
   std::vector<Job> to_check;
   std::vector<std::string> costs;
@@ -156,8 +157,8 @@ SlurmResults run_on_slurm(const Suite& suite, const SuiteOverrides& overrides,
       to_check.push_back(jobs[i]);
   for (const PredictedShare& share : shares)
     costs.push_back(fmt::format("{:.0f}", share.predicted_s));
-  validate_inputs(to_check, *inputs, options.say);  // bad input leaves no file
-  inputs.reset();                                   // it keeps a scene in memory
+  validate_inputs(to_check, inputs, options.say);  // bad input leaves no file
+  inputs.forget_scene();
   options.say(fmt::format("{} in {} of {} s of processor time as predicted, {} unfinished",
                           counted(jobs.size(), "run"), counted(shares.size(), "share"),
                           fmt::join(costs, ", "), waiting.size()));
@@ -182,17 +183,17 @@ SlurmResults run_on_slurm(const Suite& suite, const SuiteOverrides& overrides,
   std::vector<fs::path> parts;
   for (std::size_t share = 1; share <= shares.size(); ++share)
     if (const fs::path part = share_folder(out, share); fs::exists(part / "results.sqlite")) {
-      Store(part / "results.sqlite").plan(suite, overrides, keys_by_name(jobs));
+      Store(part / "results.sqlite").plan(suite, overrides, plan);
       parts.push_back(part);
     }
   Store store(out / "results.sqlite");
-  store.plan(suite, overrides, keys_by_name(jobs));
+  store.plan(suite, overrides, plan);
   if (options.retry_failed)
     for (const Job& job : jobs) store.forget_failure(job.key);
   mergeable_results(out, parts);
   remove_outdated(suite, jobs, out);
   merge_parts(out, parts, [](std::string_view) {});
-  return {load_results(store, suite), unfinished(jobs, shares, out, true)};
+  return {load_results(store, suite, plan), unfinished(jobs, shares, out, true)};
 }
 
 }  // namespace mh

@@ -8,8 +8,11 @@
 namespace mh {
 
 BenchResults load_results(const Store& store, const Suite& suite) {
-  std::map<std::string, std::string> key_of;
-  for (auto& [name, key] : store.planned_keys()) key_of[name] = key;
+  return load_results(store, suite, store.planned_keys());
+}
+
+BenchResults load_results(const Store& store, const Suite& suite, const PlannedKeys& keys) {
+  const std::map<std::string, std::string> key_of(keys.begin(), keys.end());
   BenchResults results;
   for (const RunSpec& spec : expand(suite)) {
     const auto key = key_of.find(spec.name);

@@ -17,7 +17,10 @@ struct BenchResults {
   std::vector<std::string> missing;  ///< names of those that are neither: of other shards
 };
 
-/// Loads the store's results for the suite that was planned last.
+/// Loads the store's results for the runs of a suite.
+/// @param keys  of all its runs
+BenchResults load_results(const Store& store, const Suite& suite, const PlannedKeys& keys);
+/// The same for the suite that was planned last.
 BenchResults load_results(const Store& store, const Suite& suite);
 
 }  // namespace mh

@@ -88,6 +88,7 @@ nlohmann::ordered_json to_json(const SuiteOverrides& o) {
       {"frames", o.max_frames ? nlohmann::ordered_json(*o.max_frames) : nlohmann::ordered_json()}};
   if (o.frame != SceneFrame{}) json["scene_frame"] = to_json(o.frame);
   if (!o.set.empty()) json["set"] = o.set;
+  if (!o.vary.empty()) json["vary"] = o.vary;
   for (const auto& [pattern, found] : o.found)
     for (const FoundRecording& recording : found)
       json["found"][pattern].push_back({recording.sequence, recording.scene_type});
@@ -101,11 +102,21 @@ SuiteOverrides overrides_from_json(const nlohmann::json& json) {
   if (!json.at("frames").is_null()) o.max_frames = whole_number<std::size_t>(json.at("frames"));
   if (json.contains("scene_frame")) o.frame = scene_frame_from_json(json.at("scene_frame"));
   if (json.contains("set")) o.set = json.at("set");
+  if (json.contains("vary")) o.vary = json.at("vary");
   if (json.contains("found"))
     for (const auto& [pattern, found] : json.at("found").items())
       for (const auto& recording : found)
         o.found[pattern].push_back({recording.at(0), recording.at(1)});
   return o;
+}
+
+std::string place_of(const Suite& suite) {
+  return fs::absolute(suite.file).lexically_normal().string();
+}
+
+std::string stored_overrides(const Suite& suite, SuiteOverrides overrides) {
+  overrides.found = suite.found;  // may be read on a machine without the recordings
+  return to_json(overrides).dump();
 }
 
 }  // namespace
@@ -138,17 +149,15 @@ void Store::check() const {
 }
 
 void Store::plan(const Suite& suite, const SuiteOverrides& overrides,
-                 const std::vector<std::pair<std::string, std::string>>& key_of_name) {
+                 const PlannedKeys& key_of_name) {
   guarded(file_, [&] {
     SQLite::Transaction transaction = begin_writing(*database_);
     SQLite::Statement s(*database_, insert_row("suite", 6, "INSERT OR REPLACE"));
     s.bind(1, 1);
     s.bind(2, suite.name);
-    s.bind(3, fs::absolute(suite.file).lexically_normal().string());
-    s.bind(4, read_file(suite.file));
-    SuiteOverrides stored = overrides;
-    stored.found = suite.found;  // may be read on a machine without the recordings
-    s.bind(5, to_json(stored).dump());
+    s.bind(3, place_of(suite));
+    s.bind(4, suite.text);
+    s.bind(5, stored_overrides(suite, overrides));
     s.bind(6, static_cast<std::int64_t>(key_of_name.size()));
     s.exec();
     database_->exec("DELETE FROM plan");
@@ -177,9 +186,20 @@ Suite Store::planned_suite() const {
   });
 }
 
-std::vector<std::pair<std::string, std::string>> Store::planned_keys() const {
+bool Store::is_planned(const Suite& suite, const SuiteOverrides& overrides,
+                       const PlannedKeys& key_of_name) const {
   return guarded(file_, [&] {
-    std::vector<std::pair<std::string, std::string>> keys;
+    SQLite::Statement s(*database_, "SELECT file, content, overrides FROM suite");
+    return s.executeStep() && s.getColumn(0).getString() == place_of(suite) &&
+           s.getColumn(1).getString() == suite.text &&
+           s.getColumn(2).getString() == stored_overrides(suite, overrides) &&
+           planned_keys() == key_of_name;
+  });
+}
+
+PlannedKeys Store::planned_keys() const {
+  return guarded(file_, [&] {
+    PlannedKeys keys;
     SQLite::Statement s(*database_, "SELECT name, key FROM plan ORDER BY position");
     while (s.executeStep())
       keys.emplace_back(s.getColumn(0).getString(), s.getColumn(1).getString());

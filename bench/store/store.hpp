@@ -36,6 +36,9 @@ struct RunCost {
 
 enum class RunStatus { kDone, kFailed };
 
+/// Name and key of each run of a suite, in the order of expand().
+using PlannedKeys = std::vector<std::pair<std::string, std::string>>;
+
 /// The results of a suite in one SQLite file (docs/store.md). A result is stored in one
 /// transaction: it is there as a whole or not at all, whenever a process dies. Several processes
 /// may use one file. Errors state what to do: InputError for a file that is damaged, has another
@@ -56,11 +59,13 @@ class Store {
 
   /// Records the suite and which result belongs to which of its runs, replacing the earlier record.
   /// Results stay.
-  void plan(const Suite& suite, const SuiteOverrides& overrides,
-            const std::vector<std::pair<std::string, std::string>>& key_of_name);
+  void plan(const Suite& suite, const SuiteOverrides& overrides, const PlannedKeys& key_of_name);
+  /// Whether that is the recorded suite, to the letter.
+  bool is_planned(const Suite& suite, const SuiteOverrides& overrides,
+                  const PlannedKeys& key_of_name) const;
   /// The recorded suite. @throws InputError if there is none, or if its files are gone.
   Suite planned_suite() const;
-  std::vector<std::pair<std::string, std::string>> planned_keys() const;  ///< name, key; in order
+  PlannedKeys planned_keys() const;
 
   std::optional<RunStatus> status(const std::string& key) const;
   /// Error of a failed run; empty if it did not fail.

@@ -264,11 +264,19 @@ void add_detector(World& world, const DetectorSpec& spec, const Cache& cache, co
 
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
                   const BakeWatch& baked, const SharedImages& images) {
-  World world = spec.environment.is_recorded() ? open_recordings(spec)
-                                               : build(spec, threads, cache, say, baked);
+  World world;
+  if (spec.environment.is_recorded()) {
+    const ReadScope scope;
+    world = open_recordings(spec);
+    world.held = scope.record();
+  } else {
+    world = build(spec, threads, cache, say, baked);
+  }
   if (world.simulated) simulate(world, spec.labels.mode, images);
   if (spec.labels.detector) add_detector(world, *spec.labels.detector, cache, say);
-  std::ranges::move(inputs_of_program(spec), std::back_inserter(world.inputs));
+  const ReadScope scope;
+  std::ranges::move(inputs_of_program(spec.system), std::back_inserter(world.inputs));
+  world.held.append(scope.record());
   std::ranges::sort(world.inputs, {}, &InputDigest::name);
   return world;
 }

@@ -21,6 +21,7 @@
 #include "sim/sensors/sensors.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "sim/world/shared_exposures.hpp"
+#include "slam/core/read_record.hpp"
 #include "slam/core/sequence.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
@@ -51,6 +52,7 @@ struct World {
   bool cut = false;                     ///< the sequences were cut after RunSpec::max_frames
   std::vector<std::string> notes = {};  ///< PlaceFacts::notes
   std::vector<InputDigest> inputs;      ///< what was read to build it, by name
+  ReadRecord held = {};  ///< files of it that are read again: a recording's, an outside program's
 };
 
 /// What the queries of a set are frames of; null if there are none.

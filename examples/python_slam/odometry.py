@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""RGB-D odometry from frame to frame: a SLAM system as small as can take part in a suite.
+"""RGB-D odometry from frame to frame, with keyframes to recover by: a SLAM system as small as can
+take part in a suite.
 
 Reads a folder in TUM's layout, writes a trajectory in TUM's format (camera to world, the first
 frame at the origin). Needs numpy and OpenCV: apt-get install python3-opencv
@@ -57,6 +58,23 @@ def estimate_motion(before, now, k, distortion):
     return now_from_before
 
 
+def recover(now, keyframes, last, k, distortion):
+    """world_from_camera of a frame that does not follow the last one, by a keyframe near to it."""
+    near = sorted(keyframes, key=lambda of: np.linalg.norm(of[1][:3, 3] - last[:3, 3]))
+    for features, world_from_keyframe in near[:20]:
+        motion = estimate_motion(features, now, k, distortion)
+        if motion is not None:
+            return world_from_keyframe @ np.linalg.inv(motion)
+    return None
+
+
+def is_new(world_from_camera, keyframes):
+    """Whether no keyframe is within 0.25 m and 0.3 rad."""
+    return all(np.linalg.norm(pose[:3, 3] - world_from_camera[:3, 3]) > 0.25
+               or (np.trace(pose[:3, :3].T @ world_from_camera[:3, :3]) - 1) / 2 < np.cos(0.3)
+               for _, pose in keyframes)
+
+
 def quaternion(rotation):
     """x, y, z, w of a rotation matrix."""
     vector = cv2.Rodrigues(rotation)[0].ravel()
@@ -75,19 +93,24 @@ def main():
     k, distortion, steps_per_m = read_camera(arguments.settings)
     orb = cv2.ORB_create(1000)
     folder = pathlib.Path(arguments.dataset)
-    before, world_from_camera = None, np.eye(4)
+    before, world_from_camera, keyframes = None, np.eye(4), []
     with open(arguments.associations) as lines, open(arguments.trajectory, "w") as trajectory:
         for line in lines:
             stamp, color, _, depth = line.split()
             image = cv2.imread(str(folder / color), cv2.IMREAD_GRAYSCALE)
             depth_m = cv2.imread(str(folder / depth), cv2.IMREAD_UNCHANGED) / steps_per_m
             now = find_keypoints(orb, image, depth_m, k, distortion)
-            if before is not None:
-                motion = estimate_motion(before, now, k, distortion)
-                if motion is None:
-                    continue  # lost: skip this frame; match the next against the last tracked one
-                world_from_camera = world_from_camera @ np.linalg.inv(motion)
+            if keyframes:
+                motion = None if before is None else estimate_motion(before, now, k, distortion)
+                found = (world_from_camera @ np.linalg.inv(motion) if motion is not None
+                         else recover(now, keyframes, world_from_camera, k, distortion))
+                if found is None:
+                    before = None
+                    continue  # lost: this frame has no pose; the next is sought among the keyframes
+                world_from_camera = found
             before = now
+            if is_new(world_from_camera, keyframes):
+                keyframes.append((now, world_from_camera))
             pose = [*world_from_camera[:3, 3], *quaternion(world_from_camera[:3, :3])]
             print(stamp, *(f"{number:.7f}" for number in pose), file=trajectory)
 

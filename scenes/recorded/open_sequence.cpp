@@ -142,8 +142,9 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
         opened.notes.push_back(fmt::format("{}: {}", path.string(), note));
     return opened;
   };
-  if (!ReadScope::is_open()) return open();
+  if (!config.whole) return open();
   OpenedRecording opened;
+  ReadRecord held;
   std::uint64_t all = 0;
   {
     const ReadScope scope(ReadScope::Outer::kIgnores);
@@ -151,9 +152,15 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
     std::ranges::for_each(opened.files, note_content);
     all = digest(scope.record());
     opened.image_digests = digests_of(opened.images, scope.record());
+    held = scope.record();
   }
   ReadScope::report(
       {FileObservation::Kind::kRead, path / fmt::format("{} recording", reader.name), all});
+  for (FileObservation& file : held.observations) {
+    if (file.kind != FileObservation::Kind::kRead) continue;
+    file.kind = FileObservation::Kind::kHeld;
+    ReadScope::report(file);
+  }
   return opened;
 }
 

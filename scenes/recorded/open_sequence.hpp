@@ -24,6 +24,9 @@ struct RecordingConfig {
   bool labels = true;                 ///< false: ignore labels
   /// Topics of a bag or MCAP file, "color=/a,depth=/b"; empty: found by type.
   std::string topics = {};
+  /// Reads every file, images included. Open ReadScopes then receive one observation, the digest of
+  /// all of them, and which files they are (kHeld).
+  bool whole = false;
   /// Reads a calibration file, for layouts that keep one. @throws InputError
   std::function<RecordedCamera(const std::filesystem::path&)> read_camera = {};
   /// Whether a calibration file defines a camera. If so, it replaces the one that the recording
@@ -40,7 +43,7 @@ struct OpenedRecording {
   /// Files with the color images: one of each frame, or one of all.
   std::vector<std::filesystem::path> images;
   /// Digests of the contents of `images`, sorted, whatever their names: copies of a recording share
-  /// them. Empty unless a ReadScope was open.
+  /// them. Empty unless RecordingConfig::whole.
   std::vector<std::uint64_t> image_digests;
 };
 
@@ -80,9 +83,7 @@ std::string without_place(const std::string& message, const std::string& source)
 /// @throws InputError if it is neither named nor recognized.
 const SequenceReader& reader_of(const std::string& source);
 
-/// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized. If a
-/// ReadScope is open, it records one observation, the digest of all files of the recording, images
-/// included: computing it reads every file.
+/// Opens a recording, "LAYOUT:PATH" or a path whose layout is recognized.
 /// @throws InputError naming file and place.
 OpenedRecording open_sequence(const std::string& source, const RecordingConfig& config);
 

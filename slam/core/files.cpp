@@ -55,7 +55,7 @@ FileObservation::Kind look_at(const fs::path& path) {
         return FileObservation::Kind::kOther;
     }
   }();
-  ReadScope::report(FileObservation{kind, path});
+  ReadScope::report({kind, path});
   return kind;
 }
 
@@ -139,6 +139,7 @@ void write_atomically(const fs::path& file, std::string_view content) {
 
 std::string read_file(const fs::path& file) {
   const char* reason = why_unreadable(file);
+  const FileState before = ReadScope::is_open() ? state_of(file) : FileState{};
   std::ifstream in;
   if (reason == nullptr) in.open(file, std::ios::binary);
   if (!in.is_open()) {
@@ -152,7 +153,7 @@ std::string read_file(const fs::path& file) {
   std::ostringstream stream;
   stream << in.rdbuf();
   std::string text = std::move(stream).str();
-  report_read(file, text);
+  report_read(file, text, before);
   return text;
 }
 

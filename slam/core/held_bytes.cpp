@@ -57,6 +57,7 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
     report_absent(file);
     return InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
   };
+  const FileState before = ReadScope::is_open() ? state_of(file) : FileState{};
   const FileDescriptor descriptor(file);
   struct stat status {};
   if (descriptor.value() < 0 || fstat(descriptor.value(), &status) != 0)
@@ -66,7 +67,7 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   const auto size = static_cast<std::size_t>(status.st_size);
   if (pages == MapPages::kAtOnce) require_readable_at_once(file, size);
   if (size == 0) {  // nothing to map
-    report_read(file, {});
+    report_read(file, {}, before);
     return {};
   }
   void* const start = mmap(nullptr, size, PROT_READ,
@@ -76,7 +77,7 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
   HeldBytes held{std::shared_ptr<const void>(
                      start, [size](const void* p) { munmap(const_cast<void*>(p), size); }),
                  {static_cast<const char*>(start), size}};
-  report_read(file, held.view);
+  report_read(file, held.view, before);
   return held;
 }
 

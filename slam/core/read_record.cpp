@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/core/read_record.hpp"
 
+#include <sys/stat.h>
 #include <xxhash.h>
 
 #include <cstring>
+
+#include <fmt/format.h>
 
 #include "slam/core/bytes_read.hpp"
 #include "slam/core/error.hpp"
@@ -47,6 +50,14 @@ class Taker {
 
 }  // namespace
 
+FileState state_of(const std::filesystem::path& file) {
+  struct stat found {};
+  if (stat(file.c_str(), &found) != 0) return {};
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  return {found.st_dev, found.st_ino, static_cast<std::uint64_t>(found.st_size),
+          found.st_ctim.tv_sec * kSecond_ns + found.st_ctim.tv_nsec};
+}
+
 void ReadRecord::append(const ReadRecord& more) {
   observations.insert(observations.end(), more.observations.begin(), more.observations.end());
 }
@@ -54,6 +65,7 @@ void ReadRecord::append(const ReadRecord& more) {
 std::uint64_t digest(const ReadRecord& record) {
   std::string bytes;
   for (const FileObservation& o : record.observations) {
+    if (o.kind == FileObservation::Kind::kHeld) continue;
     append_bytes(bytes, static_cast<std::uint64_t>(o.kind));
     // A folder may be referred to by another name, or ".".
     append_bytes(bytes, o.kind == FileObservation::Kind::kFolder ? "" : o.path.filename().string());
@@ -68,6 +80,9 @@ std::string encode(const ReadRecord& record) {
     append_bytes(bytes, static_cast<std::uint64_t>(o.kind));
     append_bytes(bytes, o.path.native());
     append_bytes(bytes, o.digest);
+    for (const std::uint64_t part : {o.state.device, o.state.inode, o.state.bytes,
+                                     static_cast<std::uint64_t>(o.state.changed_ns)})
+      append_bytes(bytes, part);
   }
   return bytes;
 }
@@ -76,12 +91,24 @@ ReadRecord decode_read_record(std::string_view bytes) {
   ReadRecord record;
   for (Taker taker(bytes); !taker.is_done();) {
     const std::uint64_t kind = taker.number();
-    if (kind > static_cast<std::uint64_t>(FileObservation::Kind::kRead))
+    if (kind > static_cast<std::uint64_t>(FileObservation::Kind::kHeld))
       throw InputError("record of what was read: has an unknown kind of observation");
-    const std::string path(taker.text());
-    record.observations.push_back({static_cast<FileObservation::Kind>(kind), path, taker.number()});
+    FileObservation o{.kind = static_cast<FileObservation::Kind>(kind), .path = taker.text()};
+    o.digest = taker.number();
+    o.state.device = taker.number();
+    o.state.inode = taker.number();
+    o.state.bytes = taker.number();
+    o.state.changed_ns = static_cast<std::int64_t>(taker.number());
+    record.observations.push_back(std::move(o));
   }
   return record;
+}
+
+void require_unchanged(const ReadRecord& record) {
+  for (const FileObservation& o : record.observations)
+    if (o.state.inode != 0 && state_of(o.path) != o.state)
+      throw InputChanged(fmt::format("{}: was changed while it was in use: start the command again",
+                                     o.path.string()));
 }
 
 thread_local ReadScope* ReadScope::innermost_ = nullptr;
@@ -105,11 +132,12 @@ void ReadScope::report(const ReadRecord& record) {
   for (const FileObservation& observation : record.observations) report(observation);
 }
 
-void report_read(const std::filesystem::path& file, std::string_view content) {
+void report_read(const std::filesystem::path& file, std::string_view content,
+                 const FileState& before) {
   g_bytes_read += content.size();
   if (ReadScope::is_open())
     ReadScope::report(
-        {FileObservation::Kind::kRead, file, XXH3_64bits(content.data(), content.size())});
+        {FileObservation::Kind::kRead, file, XXH3_64bits(content.data(), content.size()), before});
 }
 
 void report_absent(const std::filesystem::path& file) {

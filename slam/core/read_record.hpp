@@ -7,7 +7,18 @@
 #include <string_view>
 #include <vector>
 
+#include "slam/core/error.hpp"
+
 namespace mh {
+
+/// What the file system says of a file. It changes whenever the file is written, replaced, renamed
+/// or touched, and no program can set it back.
+struct FileState {
+  std::uint64_t device = 0, inode = 0, bytes = 0;  ///< inode 0: there is no such file
+  std::int64_t changed_ns = 0;
+  friend bool operator==(const FileState&, const FileState&) = default;
+};
+FileState state_of(const std::filesystem::path& file);
 
 /// One answer from the file system that a load depended on.
 struct FileObservation {
@@ -18,11 +29,15 @@ struct FileObservation {
     kOther,   ///< looked for and found, but neither file nor folder: a pipe, a device
     kListed,  ///< the names in a folder that match a pattern; path = folder / pattern
     kRead,    ///< the whole content of a file
+    kHeld,    ///< a file that is read from again, on demand; no part of digests
   };
   Kind kind = Kind::kAbsent;
   std::filesystem::path path;  ///< as it was spelled by the caller
   std::uint64_t digest = 0;    ///< xxh3-64 of the names (kListed) or the content (kRead), else 0
-  friend bool operator==(const FileObservation&, const FileObservation&) = default;
+  FileState state = {};        ///< before the file was read (kRead, kHeld)
+  friend bool operator==(const FileObservation& a, const FileObservation& b) {
+    return a.kind == b.kind && a.path == b.path && a.digest == b.digest;
+  }
 };
 
 /// Everything that a load observed of the file system, in the order of its requests. A loader
@@ -37,6 +52,16 @@ struct ReadRecord {
 /// xxh3-64 of a record: kinds, contents and, for files, the last component of their names. The same
 /// folder elsewhere has the same digest.
 std::uint64_t digest(const ReadRecord& record);
+
+/// A file was changed while a command worked with it: what was made of it belongs to no moment.
+struct InputChanged : InputError {
+  using InputError::InputError;
+};
+
+/// Checks that no file was changed since it was read: what was made of several files, or of one
+/// that was read several times, is then of one moment.
+/// @throws InputChanged naming the first that was.
+void require_unchanged(const ReadRecord& record);
 
 /// Serializes a record, to pass it from one process to another, and back.
 /// @throws InputError if the bytes are not a record.
@@ -72,7 +97,9 @@ class ReadScope {
 };
 
 /// Reports to the scopes of this thread that a file was read; free if there are none.
-void report_read(const std::filesystem::path& file, std::string_view content);
+/// @param before  of the file, taken before it was read
+void report_read(const std::filesystem::path& file, std::string_view content,
+                 const FileState& before);
 /// Reports that a file was looked for and is missing, or cannot be read.
 void report_absent(const std::filesystem::path& file);
 

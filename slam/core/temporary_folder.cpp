@@ -2,6 +2,7 @@
 #include "slam/core/temporary_folder.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 
@@ -88,6 +90,41 @@ void OwnedFolder::remove() {
   std::error_code error;
   fs::remove_all(path_, error);
   path_.clear();
+}
+
+FolderHold::~FolderHold() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+bool FolderHold::lock(int how) {
+  if (descriptor_ < 0) descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  return flock(descriptor_, how) == 0 || errno != EWOULDBLOCK;
+}
+
+void FolderHold::take() {
+  if (!lock(LOCK_EX | LOCK_NB))
+    throw InputError(fmt::format(
+        "{}: another command is at work in this folder: wait for it, or name another folder",
+        folder_.string()));
+}
+
+void FolderHold::join(const std::function<void()>& begin, const std::function<bool()>& is_same) {
+  constexpr int kPatience_ms = 2000, kPoll_ms = 20;  // another one may just be at its begin()
+  for (int waited_ms = 0;; waited_ms += kPoll_ms) {
+    if (lock(LOCK_EX | LOCK_NB)) {
+      begin();
+      if (lock(LOCK_SH | LOCK_NB)) return;
+    } else if (lock(LOCK_SH | LOCK_NB)) {
+      if (is_same()) return;
+      break;
+    }
+    if (waited_ms >= kPatience_ms) break;
+    ::poll(nullptr, 0, kPoll_ms);
+  }
+  throw InputError(
+      fmt::format("{}: another command is at work in this folder, with something else than this "
+                  "one: wait for it, or name another folder",
+                  folder_.string()));
 }
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent) : folder_(make_hidden(parent)) {}

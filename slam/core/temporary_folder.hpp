@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 namespace mh {
@@ -31,6 +32,31 @@ class OwnedFolder {
  private:
   std::filesystem::path path_;
   int marker_ = -1;  ///< open and locked
+};
+
+/// Keeps other processes out of a folder that this one works in, until it goes or the process ends.
+/// Nothing is written there. Where a disk knows no locks, nobody is kept out.
+class FolderHold {
+ public:
+  /// Holds nothing yet. @pre the folder exists when it is taken or joined
+  explicit FolderHold(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  ~FolderHold();
+  FolderHold(const FolderHold&) = delete;
+  FolderHold& operator=(const FolderHold&) = delete;
+
+  /// Keeps everybody out. @throws InputError if another process holds the folder.
+  void take();
+  /// Keeps everybody out except those who do the same work.
+  /// @param begin    records the work in the folder; called if nobody else holds it
+  /// @param is_same  whether the recorded work is this one; called if others hold it
+  /// @throws InputError if others do other work there.
+  void join(const std::function<void()>& begin, const std::function<bool()>& is_same);
+
+ private:
+  bool lock(int how);  ///< as flock(); false if another process has it
+
+  std::filesystem::path folder_;
+  int descriptor_ = -1;
 };
 
 /// A hidden folder that is removed at the end of its scope; one left behind by a killed process is

@@ -64,6 +64,28 @@ TEST(Gate, FailsBeyondTheToleranceAndNotWithinIt) {
   EXPECT_EQ(verdict(0.96), ChangeVerdict::kBetter);
 }
 
+TEST(Gate, ASystemThatIsNotRepeatableIsWorseWhereChanceCannotSayWhy) {
+  const auto judged = [](double after) {
+    auto runs = five_runs(after);
+    for (RunFigures& run : runs) run.repeatable = false, run.digest += " other bits";
+    return compare(five_runs(0.9), runs, kConfig, true);
+  };
+  EXPECT_TRUE(judged(0.9).passed()) << "its bits differ from time to time";
+  EXPECT_EQ(judged(0.9).identical, 0u);
+  const auto verdict = [&](double after) {
+    return change_of(judged(after), "completeness").verdict;
+  };
+  // Both spread by 0.01581, so the median of five differences by 1.2533 * 0.01581 * sqrt(2 / 5):
+  // 0.01253. 1.86 of these on the tolerance of 0.05 are 0.0733.
+  EXPECT_EQ(verdict(0.84), ChangeVerdict::kWithin);
+  EXPECT_EQ(verdict(0.828), ChangeVerdict::kWithin);
+  EXPECT_EQ(verdict(0.826), ChangeVerdict::kWorse);
+  EXPECT_EQ(verdict(0.972), ChangeVerdict::kWithin);
+  EXPECT_EQ(verdict(0.974), ChangeVerdict::kBetter);
+  EXPECT_NEAR(change_of(judged(0.9), "completeness").detectable, 0.0838, 1e-4);
+  EXPECT_NE(gate_report(judged(0.9), "s").find("not repeatable is worse where"), std::string::npos);
+}
+
 TEST(Gate, MoreErrorIsWorseAndLessIsBetter) {
   const auto verdict = [](double after) {
     const GateResult r = compare(five_runs(0.9, 0.02), five_runs(0.9, after), kConfig, false);

@@ -590,6 +590,37 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
   }
 }
 
+TEST(BenchProcess, ASweepOfTheCommandLineNamesItsPointsEverywhere) {
+  const fs::path suite = write_suite("counts", "[plain]");
+  EXPECT_EQ(run(bench(suite, "counts", "--vary features.count=500,600")), 0) << errors();
+  EXPECT_EQ(run("export " + (test_folder() / "counts").string() + " --format csv"), 0) << errors();
+  std::istringstream lines(content(test_folder() / "stdout"));
+  std::vector<std::string> all;
+  for (std::string line; std::getline(lines, line);) all.push_back(line);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_TRUE(all[0].ends_with(",features.count")) << all[0];
+  EXPECT_TRUE(all[1].ends_with(",500")) << all[1];
+  EXPECT_TRUE(all[2].ends_with(",600")) << all[2];
+  const SQLite::Database results(test_folder() / "counts" / "results.sqlite");
+  SQLite::Statement counts(
+      results,
+      "SELECT group_concat(json_extract(spec, '$.slam.features.count')) FROM (SELECT spec FROM "
+      "runs ORDER BY name)");
+  ASSERT_TRUE(counts.executeStep());
+  EXPECT_EQ(counts.getColumn(0).getString(), "500,600");
+  const std::string table = content(test_folder() / "counts" / "table.txt"),
+                    times = content(test_folder() / "counts" / "times.txt");
+  EXPECT_NE(table.find("features.count  completeness"), std::string::npos) << table;
+  for (const char* point : {"plain, features.count 500", "plain, features.count 600"})
+    EXPECT_NE(times.find(point), std::string::npos) << times;
+  EXPECT_EQ(run(bench(suite, "none", "--vary features.cuont=500")), 2);
+  EXPECT_NE(errors().find("--vary:"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("did you mean 'features.count'?"), std::string::npos) << errors();
+  EXPECT_EQ(run(bench(suite, "none", "--vary features.count")), 2);
+  EXPECT_NE(errors().find("--vary features.count: is not NAME=VALUE"), std::string::npos)
+      << errors();
+}
+
 TEST(BenchProcess, BadInputFoundInTheWorkIsNoFailureOfTheMachine) {
   const fs::path mesh = test_folder() / "sliver.ply";
   std::ofstream(mesh) << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 /// What a run would read if each of its sources were one file, of whatever content.
 std::vector<InputDigest> inputs_of(const RunSpec& spec) {
-  std::vector<InputDigest> inputs = inputs_of_program(spec);
+  std::vector<InputDigest> inputs = inputs_of_program(spec.system);
   const auto add = [&](const char* name, const std::optional<fs::path>& source) {
     if (source) noted(inputs, name, *source, [&] { return read_file(*source); });
   };

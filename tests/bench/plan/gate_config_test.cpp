@@ -10,8 +10,11 @@
 
 #include "bench/check/baseline.hpp"
 #include "bench/check/from_runs.hpp"
+#include "bench/plan/runs.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/random.hpp"
+#include "slam/vocabulary/vocabulary.hpp"
 #include "source_dir.hpp"
 
 namespace mh {
@@ -39,6 +42,11 @@ TEST(GateConfig, SlipsAreNamed) {
     EXPECT_THROW(read(text), InputError) << text;
 }
 
+std::string gate_digest(const std::filesystem::path& suite) {
+  InputReader inputs;
+  return gate_suite_digest(load_suite(suite), inputs);
+}
+
 /// A suite over a scene of one triangle.
 class GateDigest : public testing::Test {
  protected:
@@ -52,11 +60,18 @@ class GateDigest : public testing::Test {
     write("robot", read_file(root + "robot.yaml"));
     write("tour", read_file(root + "tours/room.yaml"));
     write("pedestrian", read_file(root + "pedestrian.yaml"));
-    for (const char* name : {"level", "words"}) write(name, name);
+    write("level", read_file(MH_SOURCE_DIR "/sim/sensors/levels/ideal.yaml"));
+    train_words(1);
   }
   ~GateDigest() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
+  }
+  void train_words(std::uint64_t seed) const {
+    std::vector<std::vector<Descriptor>> images{std::vector<Descriptor>(40)};
+    for (std::size_t i = 0; i < images[0].size(); ++i)
+      images[0][i][0] = RandomStream(seed).below(i, UINT64_MAX);
+    Vocabulary::train(images, {.branching = 2, .depth = 1}).save(folder_ / "words");
   }
   std::string digest(const std::string& more = "") const { return digest_of("house.obj", more); }
   std::string digest_of(const std::string& scene, const std::string& more = "") const {
@@ -66,7 +81,7 @@ class GateDigest : public testing::Test {
                             "robot: robot\nvocabulary: words\nlevels: [level]\nsystems: [plain]\n"
                             "labels: [exact]\n" +
                             more);
-    return gate_suite_digest(load_suite(folder_ / "suite.yaml"));
+    return gate_digest(folder_ / "suite.yaml");
   }
   std::filesystem::path folder_;
 };
@@ -92,11 +107,26 @@ TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   EXPECT_NE(digest("graded: {distance_m: [0, 2], angle_deg: [0, 30]}"), graded);
 }
 
+// Digest and keys of the runs come from one reading: a file that changes between them is seen by
+// the runs.
+TEST_F(GateDigest, IsOfTheFilesAsTheyWereRead) {
+  const std::string before = digest();
+  const Suite suite = load_suite(folder_ / "suite.yaml");
+  InputReader inputs;
+  inputs.inputs_of(expand(suite).front());
+  for (const char* name : {"house.obj", "level"}) write(name, read_file(folder_ / name) + "\n");
+  train_words(2);
+  EXPECT_EQ(gate_suite_digest(suite, inputs), before);
+  InputReader later;
+  EXPECT_NE(gate_suite_digest(suite, later), before);
+  EXPECT_NE(gate_settings(suite, later), gate_settings(suite, inputs));
+}
+
 TEST_F(GateDigest, LeavesOutWhatAChangeMayChange) {
   const std::string before = digest();
   EXPECT_EQ(digest("slam: {semantics: {xi: 2}}"), before);
   EXPECT_EQ(digest("check: {tolerances: {completeness: 0.1}}"), before);
-  write("words", "trained anew");
+  train_words(2);
   EXPECT_EQ(digest(), before);
 }
 
@@ -104,23 +134,24 @@ TEST_F(GateDigest, LeavesOutWhatAChangeMayChange) {
 TEST(Baseline, OfTheShippedSuiteIsThatOfTheSuiteAsItIsShipped) {
   const std::filesystem::path suites = MH_SOURCE_DIR "/bench/suites";
   EXPECT_EQ(load_baseline(suites / "ci.baseline.json").suite_digest,
-            gate_suite_digest(load_suite(suites / "ci.yaml")));
+            gate_digest(suites / "ci.yaml"));
 }
 
 TEST_F(GateDigest, WhatAChangeMayChangeIsTold) {
   const auto settings = [&](const std::string& more = "") {
     digest(more);  // writes the suite
+    InputReader inputs;
     return Baseline{.suite = "s",
                     .suite_digest = "",
                     .origin = {},
-                    .settings = gate_settings(load_suite(folder_ / "suite.yaml"))};
+                    .settings = gate_settings(load_suite(folder_ / "suite.yaml"), inputs)};
   };
   const Baseline before = settings();
   EXPECT_TRUE(changed_settings(before, settings("trials: 3")).empty());
   const auto xi = changed_settings(before, settings("slam: {semantics: {xi: 3}}"));
   ASSERT_EQ(xi.size(), 1u);
   EXPECT_EQ(xi[0], "slam/semantics/xi: 1.5 -> 3.0");
-  write("words", "trained anew");
+  train_words(2);
   const auto words = changed_settings(before, settings());
   ASSERT_EQ(words.size(), 1u);
   EXPECT_TRUE(words[0].starts_with("vocabulary: ")) << words[0];

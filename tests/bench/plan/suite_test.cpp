@@ -525,6 +525,28 @@ TEST_F(SuiteFile, NamesAnOutsideProgram) {
   EXPECT_EQ(runs[1].name, "vo-exact-pepper-0");
 }
 
+TEST_F(SuiteFile, AnOutsideProgramIsOneForEachValueOfItsOwnParameters) {
+  const auto load_with = [&](const std::string& command, const std::string& vary) {
+    std::ofstream(folder_ / "suite.yaml")
+        << "environments:\n- {category: house, scene: house.yaml, mapping_tour: tour.yaml}\n"
+           "robot: robot.yaml\nlevels: [pepper.yaml]\nlabels: [exact]\nsystems:\n"
+           "- {name: orb, protocol: trajectory, command: '"
+        << command << "', vary: {" << vary << "}}\n";
+    return load_suite(folder_ / "suite.yaml").systems;
+  };
+  const auto systems =
+      load_with("slam {n} {mode} {dataset} {trajectory}", "n: [500, 1000], mode: [fast, \"a'b\"]");
+  ASSERT_EQ(systems.size(), 4U);
+  EXPECT_EQ(systems[1].name, "orb_n_500_mode_a'b");
+  EXPECT_EQ(systems[1].outside.command, "slam '500' 'a'\\''b' {dataset} {trajectory}");
+  EXPECT_EQ(systems[2].name, "orb_n_1000_mode_fast");
+  EXPECT_EQ(systems[2].outside.name, systems[2].name);
+  EXPECT_THROW(load_with("slam {dataset} {trajectory}", "n: [1]"), InputError) << "not in it";
+  EXPECT_THROW(load_with("slam {n} {trajectory}", "n: []"), InputError);
+  EXPECT_THROW(load_with("slam {n} {trajectory}", "m: [1]"), InputError);
+  EXPECT_THROW(load_with("slam {n} {trajectory}", "n: [1, 1]"), InputError) << "stands twice";
+}
+
 TEST_F(SuiteFile, AnOutsideProgramsRunIsNamedByWhatItsFilesHold) {
   const auto put = [&](const char* name, const char* text) {
     std::ofstream(folder_ / name) << text;
@@ -539,7 +561,7 @@ TEST_F(SuiteFile, AnOutsideProgramsRunIsNamedByWhatItsFilesHold) {
         << more << "]}\n";
     const RunSpec run = expand(load_suite(folder_ / "suite.yaml")).front();
     std::string names;
-    const std::vector<InputDigest> inputs = inputs_of_program(run);
+    const std::vector<InputDigest> inputs = inputs_of_program(run.system);
     for (const InputDigest& input : inputs) {
       EXPECT_TRUE(input.name.starts_with("vo: ")) << input.name;
       names += input.name.substr(4) + " ";
@@ -589,9 +611,9 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
   const RunSpec run = expand(read).front();
   EXPECT_EQ(run.name, "vo-exact-pepper-0");
   EXPECT_EQ(to_json(run_spec_from_json(to_json(run))), to_json(run));
-  const auto key = [&] { return run_key(run, inputs_of_program(run)); };
+  const auto key = [&] { return run_key(run, inputs_of_program(run.system)); };
   std::string names;
-  for (const InputDigest& input : inputs_of_program(run)) names += input.name + " ";
+  for (const InputDigest& input : inputs_of_program(run.system)) names += input.name + " ";
   EXPECT_EQ(names, "vo: libvo.so vo: vo.yaml vo: weights ");
   const std::string before = key();
   for (const char* name : {"libvo.so", "vo.yaml", "weights"}) {

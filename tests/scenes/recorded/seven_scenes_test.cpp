@@ -35,7 +35,7 @@ class SevenScenes : public MadeFolder {
     }
   }
   OpenedRecording open(const std::string& name) const {
-    return open_sequence((folder_ / name).string(), {});
+    return open_sequence((folder_ / name).string(), {.whole = true});
   }
 };
 

@@ -146,6 +146,43 @@ TEST(ReadScope, NoReaderLooksAtFilesPastIt) {
   EXPECT_GT(files, 100U);
 }
 
+TEST(RequireUnchanged, SeesEveryChangeAlsoOneThatWasTakenBack) {
+  const auto changes = {
+      std::function<void(const fs::path&)>(
+          [](const fs::path& f) { write_atomically(f, "a: 2\n"); }),
+      std::function<void(const fs::path&)>([](const fs::path& f) { fs::remove(f); }),
+      std::function<void(const fs::path&)>([](const fs::path& f) {  // and the old times
+        const auto time = fs::last_write_time(f);
+        std::ofstream(f) << "a: 2\n";
+        std::ofstream(f) << "a: 1\n";
+        fs::last_write_time(f, time);
+      }),
+      std::function<void(const fs::path&)>([](const fs::path& f) {  // equal in every byte
+        const fs::path copy = f.string() + ".copy";
+        fs::copy_file(f, copy);
+        fs::rename(copy, f);
+      })};
+  for (const auto& change : changes) {
+    const fs::path folder = made_folder("unchanged");
+    ReadRecord record = recorded([&] {
+      read_file(folder / "scene");
+      map_file(folder / "table");
+      is_there(folder / "labels");
+    });
+    // As another process passes it on.
+    record = decode_read_record(encode(record));
+    EXPECT_NO_THROW(require_unchanged(record));
+    write_atomically(folder / "labels", "was not read");
+    EXPECT_NO_THROW(require_unchanged(record));
+    for (const char* name : {"scene", "table"}) {
+      const ReadRecord before = recorded([&] { map_file(folder / name); });
+      change(folder / name);
+      EXPECT_THROW(require_unchanged(before), InputChanged) << name;
+      EXPECT_THROW(require_unchanged(record), InputChanged) << name;
+    }
+  }
+}
+
 TEST(ListFolder, GivesWhatMatchesSorted) {
   const fs::path folder = made_folder("listed");
   write_atomically(folder / "b.ply", "");

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh {
@@ -102,6 +103,31 @@ TEST_F(TemporaryFolders, AnOwnedFolderIsTakenByOneAtATime) {
   ASSERT_TRUE(taken);
   taken->remove();
   EXPECT_FALSE(fs::exists(place));
+}
+
+TEST_F(TemporaryFolders, AHeldFolderIsSharedByThoseOfTheSameWorkAlone) {
+  std::string recorded;
+  const auto join = [&](FolderHold& hold, const std::string& work) {
+    hold.join([&] { recorded = work; }, [&] { return recorded == work; });
+  };
+  {
+    FolderHold alone(folder_), late(folder_);
+    alone.take();
+    EXPECT_THROW(late.take(), InputError);
+    EXPECT_THROW(join(late, "a"), InputError);
+    EXPECT_EQ(recorded, "");
+  }
+  {
+    FolderHold first(folder_), second(folder_), other(folder_);
+    join(first, "a");
+    EXPECT_NO_THROW(join(second, "a"));
+    EXPECT_THROW(join(other, "b"), InputError);
+    EXPECT_THROW(other.take(), InputError);
+    EXPECT_EQ(recorded, "a");
+  }
+  FolderHold next(folder_);
+  join(next, "b");
+  EXPECT_EQ(recorded, "b") << "nobody was left";
 }
 
 }  // namespace

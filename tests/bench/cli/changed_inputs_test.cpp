@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is stored stands under the digest of what was read, whoever works in the same folder and
+// whatever changes meanwhile: each command is started as a user starts it, and disturbed.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+
+#include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "tests/bench/cli/small_suite.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+using test::content;
+
+const std::string kRoom = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
+
+class ChangedInputs : public testing::Test {
+ protected:
+  /// A command at work.
+  struct Started {
+    pid_t process;
+    fs::path said;
+  };
+
+  Started start(const std::string& arguments) {
+    const fs::path said = path("said" + std::to_string(++started_));
+    const pid_t process = fork();
+    if (process != 0) return {process, said};
+    const int file = open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    setenv("XDG_CACHE_HOME", path("cache").c_str(), 1);
+    execl("/bin/sh", "sh", "-c", ("exec " MH_EXECUTABLE " " + arguments).c_str(), nullptr);
+    _exit(127);
+  }
+  static int end_of(const Started& command) {
+    int status = 0;
+    waitpid(command.process, &status, 0);
+    return test::code_of(status);
+  }
+  /// Runs a command and does something as soon as it has said something. @returns what it said
+  std::string disturbed(const std::string& arguments, const std::string& moment,
+                        const std::function<void()>& disturb) {
+    const Started command = start(arguments);
+    while (content(command.said).find(moment) == std::string::npos && is_at_work(command))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_NE(content(command.said).find(moment), std::string::npos) << content(command.said);
+    disturb();
+    code_ = end_of(command);
+    return content(command.said);
+  }
+  static bool is_at_work(const Started& command) {
+    siginfo_t info{};
+    waitid(P_PID, static_cast<id_t>(command.process), &info, WEXITED | WNOHANG | WNOWAIT);
+    return info.si_pid == 0;
+  }
+  int run(const std::string& arguments) {
+    const Started command = start(arguments);
+    const int code = end_of(command);
+    said_ = content(command.said);
+    return code;
+  }
+  std::string path(const std::string& name) const { return (work_.path() / name).string(); }
+
+  /// A suite with the room and a copy of it that has another name, so that its keys are its own.
+  std::string two_rooms(const std::string& systems, const std::string& more = "") const {
+    std::string other = content(kRoom);
+    const auto at = other.find("name:");
+    EXPECT_NE(at, std::string::npos);
+    write_atomically(path("other.yaml"), other.replace(at, 5, "# of a copy\nname:") + "\n");
+    test::SmallSuite{.systems = systems, .labels = "[exact]", .more = more}.write(path("two.yaml"));
+    std::string suite = content(path("two.yaml"));
+    const auto begin = suite.find("- {"), end = suite.find("robot:");
+    std::string second = suite.substr(begin, end - begin);
+    second.replace(second.find(kRoom), kRoom.size(), path("other.yaml"));
+    second.replace(second.find("category: room"), 14, "category: room, name: other");
+    suite.insert(end, second);
+    write_atomically(path("two.yaml"), suite);
+    return path("two.yaml");
+  }
+  void change(const std::string& name) const {
+    std::ofstream(path(name), std::ios::app) << "# changed\n";
+  }
+  /// Puts another file in the place of one and that one back, with its old times.
+  void replace_for_a_moment(const std::string& name) const {
+    const auto time = fs::last_write_time(path(name));
+    fs::copy_file(path(name), path("kept"), fs::copy_options::overwrite_existing);
+    change(name);
+    fs::copy_file(path("kept"), path(name), fs::copy_options::overwrite_existing);
+    fs::last_write_time(path(name), time);
+  }
+  void expect_refused(const std::string& said, const std::string& part) const {
+    EXPECT_EQ(code_, 2) << said;
+    const auto at = said.rfind("modelhouse: error: ");
+    ASSERT_NE(at, std::string::npos) << said;
+    EXPECT_NE(said.find(part, at), std::string::npos) << said;
+  }
+  std::int64_t stored(const std::string& file, const std::string& table) const {
+    if (!fs::exists(path(file))) return 0;
+    return SQLite::Database(path(file)).execAndGet("SELECT count(*) FROM " + table).getInt64();
+  }
+
+  TemporaryFolder work_{fs::temp_directory_path()};
+  std::string said_;
+  int code_ = -1, started_ = 0;
+};
+
+TEST_F(ChangedInputs, AnotherSuiteWaitsForTheOneInItsFolder) {
+  // The first one's program holds it until the second was there.
+  const std::string slow =
+      "[{name: slow, protocol: conversation, command: 'until ls | grep -q ^g.$; do sleep 0.05; "
+      "done; exit 3'}, plain]";
+  test::SmallSuite{.systems = slow, .labels = "[exact]"}.write(path("first.yaml"));
+  test::SmallSuite{.systems = slow, .labels = "[exact]", .more = "published: table2\n"}.write(
+      path("second.yaml"));
+  const std::string to = " --frames 45 --out " + path("out");
+  const std::string said = disturbed("bench " + path("first.yaml") + to, "of them to do", [&] {
+    EXPECT_EQ(run("bench " + path("second.yaml") + to), 2) << said_;
+    EXPECT_NE(said_.find(path("out") + ": another command is at work in this folder"),
+              std::string::npos)
+        << said_;
+    EXPECT_EQ(run("scene convert " + kRoom + " --format scannet --out " + path("out")), 2) << said_;
+    EXPECT_NE(said_.find("another command is at work"), std::string::npos) << said_;
+    change("first.yaml");  // an edited suite, started again, is another one, too
+    EXPECT_EQ(run("bench " + path("first.yaml") + to), 2) << said_;
+    std::ofstream(path("go"));
+  });
+  EXPECT_EQ(code_, 3) << said;  // its program failed, as it was told to
+  EXPECT_EQ(content(path("out/table.txt")).find("published"), std::string::npos);
+  // What it recorded as its suite is what it ran.
+  EXPECT_EQ(SQLite::Database(path("out/results.sqlite"))
+                .execAndGet("SELECT content FROM suite")
+                .getString()
+                .find("changed"),
+            std::string::npos);
+  EXPECT_EQ(run("bench " + path("second.yaml") + to), 3) << said_;
+}
+
+TEST_F(ChangedInputs, RunsThatDifferInNamesAloneAreOneRun) {
+  test::SmallSuite{.systems = "[semantic]",
+                   .labels =
+                       "[{of: exact, name: one, confusion: 0.1}, {of: exact, name: two, "
+                       "confusion: 0.1}]"}
+      .write(path("suite.yaml"));
+  code_ = run("bench " + path("suite.yaml") + " --frames 45 --out " + path("out"));
+  expect_refused(said_, "runs 'semantic-one-pepper-0' and 'semantic-two-pepper-0' are equal");
+  EXPECT_FALSE(fs::exists(path("out")));
+}
+
+TEST_F(ChangedInputs, AProgramThatIsReplacedDuringItsRunHasNoResult) {
+  for (const char* name : {"run.sh", "words.txt"}) write_atomically(path(name), ": >\"$1\"\n");
+  for (const std::string changes : {"run.sh", "words.txt"}) {
+    test::SmallSuite{.systems =
+                         "[{name: p, protocol: trajectory, inputs: [words.txt], command: "
+                         "'sh run.sh {trajectory}; sh " +
+                         path("then.sh") + "'}]",
+                     .labels = "[exact]"}
+        .write(path("suite.yaml"));
+    // Replaced and put back, with its old times: only the file system knows.
+    write_atomically(path("then.sh"), "cd " + work_.path().string() + " && cp -p " + changes +
+                                          " was && echo : >>" + changes + " && cp -p was " +
+                                          changes + "\n");
+    code_ = run("bench " + path("suite.yaml") + " --frames 45 --out " + path("out"));
+    expect_refused(said_, changes + ": was changed while it was in use");
+    EXPECT_EQ(stored("out/results.sqlite", "runs"), 0);
+  }
+}
+
+TEST_F(ChangedInputs, ASceneThatChangesBetweenEpisodesHasNone) {
+  const std::string root = MH_SOURCE_DIR;
+  fs::copy_file(kRoom, path("other.yaml"));
+  const auto place = [&](const char* name, const std::string& scene) {
+    return "- {category: room, name: " + std::string(name) + ", scene: " + scene +
+           ", mapping_tour: " + root + "/bench/scenarios/tours/room.yaml}\n";
+  };
+  write_atomically(path("suite.yaml"),
+                   "robot: " + root + "/robots/pepper/pepper.yaml\nenvironments:\n" +
+                       place("first", kRoom) + place("second", path("other.yaml")) +
+                       "vocabulary: " + root + "/assets/vocabulary.mhvoc\nlevels: [" + root +
+                       "/sim/sensors/levels/ideal.yaml]\nsystems:\n- {name: p, protocol: "
+                       "conversation, command: 'echo \"# x\" >>" +
+                       path("other.yaml") +
+                       "; exit 3'}\nlabels: [exact]\nprotocol: {test_interval: 0}\nepisodes: "
+                       "{starts: 1, limit_s: 2, goals: [sofa]}\n");
+  code_ = run("bench " + path("suite.yaml") + " --out " + path("out") + " --cache " MH_TEST_CACHE);
+  expect_refused(said_, "second-p-exact-ideal-0: a file that it reads was changed");
+  EXPECT_EQ(stored("out/episodes.sqlite", "episodes"), 0);
+  EXPECT_FALSE(fs::exists(path("out/episodes.json")));
+}
+
+TEST_F(ChangedInputs, ASceneThatChangesDuringAnAuditHasNone) {
+  const std::string suite = two_rooms("[plain]");
+  const std::string said =
+      disturbed("audit " + suite + " --frames 45 --no-cache --out " + path("out"),
+                "run and audit of", [&] { change("other.yaml"); });
+  expect_refused(said, "other-plain-pepper-0: a file that it reads was changed");
+  EXPECT_FALSE(fs::exists(path("out/audit.json")));
+}
+
+TEST_F(ChangedInputs, ASceneThatChangesDuringACheckMakesNoBaseline) {
+  const std::string suite = two_rooms("[plain]", "check: {tolerances: {completeness: 0.1}}\n");
+  const std::string said = disturbed("check " + suite + " --frames 45 --update", "of them to do",
+                                     [&] { change("other.yaml"); });
+  expect_refused(said, "other-plain-pepper-0: a file that it reads was changed");
+  EXPECT_FALSE(fs::exists(path("two.baseline.json")));
+}
+
+TEST_F(ChangedInputs, AReplayIsOfTheFilesOfItsResult) {
+  fs::copy_file(kRoom, path("room.yaml"));
+  test::SmallSuite{.scene = path("room.yaml"), .systems = "[plain]", .labels = "[exact]"}.write(
+      path("suite.yaml"));
+  ASSERT_EQ(run("bench " + path("suite.yaml") + " --frames 45 --out " + path("out") +
+                " --cache " MH_TEST_CACHE),
+            0)
+      << said_;
+  const std::string report = "report " + path("out") + " --replay all --cache " MH_TEST_CACHE;
+  EXPECT_EQ(run(report + " --out " + path("pages")), 0) << said_;
+  change("room.yaml");
+  code_ = run(report + " --out " + path("other_pages"));
+  expect_refused(said_, "plain-pepper-0: its 'scene' was changed since this result was made");
+  EXPECT_FALSE(fs::exists(path("other_pages/index.html")));
+}
+
+/// Commands over a recording, whose images are read as they come.
+class ChangedRecording : public ChangedInputs {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(
+        run("render " + kRoom + " --motion handheld:0:60 --level ideal --out " + path("room")), 0)
+        << said_;
+  }
+  /// The first image, which is read by the time that a command reports progress.
+  void change_image() const {
+    replace_for_a_moment(
+        (fs::path("room/rgb") / list_folder(path("room/rgb"), "*.png").front()).string());
+  }
+  void expect_nothing_of(const std::string& command, const std::string& result) {
+    const std::string said =
+        disturbed(command + " --out " + path("out"), " %", [&] { change_image(); });
+    expect_refused(said, ".png: was changed while it was in use: start the command again");
+    EXPECT_FALSE(fs::exists(path("out/" + result))) << command;
+  }
+};
+
+TEST_F(ChangedRecording, OfARunOfSlamLeavesNoTrajectory) {
+  expect_nothing_of("slam tum:" + path("room"), "estimate.tum");
+}
+
+TEST_F(ChangedRecording, OfAMapLeavesNoGrid) {
+  expect_nothing_of("map build tum:" + path("room"), "map.bt");
+}
+
+TEST_F(ChangedRecording, OfATwinLeavesNoComparison) {
+  expect_nothing_of(
+      "twin tum:" + path("room") + " " + kRoom + " --level ideal --cache " MH_TEST_CACHE,
+      "twin.json");
+}
+
+}  // namespace
+}  // namespace mh
