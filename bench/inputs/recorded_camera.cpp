@@ -26,13 +26,13 @@ bool settings_have_camera(const std::filesystem::path& file) {
 }
 
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
-                              bool labels) {
+                              bool labels, Settings* read) {
   return open_sequence(sequence, {.calibration = environment.settings.value_or(""),
                                   .classes = environment.classes.value_or(""),
                                   .labels = labels,
                                   .topics = environment.topics,
                                   .whole = true,
-                                  .read_camera = camera_reader(),
+                                  .read_camera = camera_reader(read),
                                   .has_camera = settings_have_camera});
 }
 

@@ -23,9 +23,10 @@ bool settings_have_camera(const std::filesystem::path& file);
 
 /// Opens one of an environment's recordings, by its name, and digests all of it.
 /// @param labels  whether its frames have labels
+/// @param read    receives the settings in its calibration; may be null
 /// @throws InputError naming file and place.
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
-                              bool labels = true);
+                              bool labels = true, Settings* read = nullptr);
 
 /// Loads the camera of a settings file, our own or ORB-SLAM2's: see load_settings(). @throws
 /// InputError.

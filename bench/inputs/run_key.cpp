@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 /// Returns everything that determines a result, by content rather than by names and paths.
 nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDigest> inputs) {
   nlohmann::ordered_json json = to_json(spec);
+  if (spec.environment.suite_states_readout) json["suite_states_readout"] = true;
   if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
   for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
   if (json["labels"].is_object())

@@ -37,6 +37,9 @@ struct Environment {
   std::optional<std::filesystem::path> settings = {};  ///< calibration of both
   std::optional<std::filesystem::path> classes = {};   ///< class map for the labels of both
   std::string topics = {};  ///< of both, where they are ROS messages: "color=/a,depth=/b"
+  /// The suite states `track.readout_s` itself; otherwise that of the calibration counts, since it
+  /// is the camera's.
+  bool suite_states_readout = false;
   bool is_recorded() const { return !sequence.empty(); }
   friend bool operator==(const Environment&, const Environment&) = default;
 };

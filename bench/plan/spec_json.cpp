@@ -152,6 +152,7 @@ Json to_json(const Environment& e) {
                          {"settings", path_json(e.settings)},
                          {"classes", path_json(e.classes)}};
   if (!e.topics.empty()) json["recording"]["topics"] = e.topics;
+  if (e.suite_states_readout) json["recording"]["suite_states_readout"] = true;
   return json;
 }
 
@@ -175,6 +176,7 @@ Environment environment_from_json(const Json& json) {
   e.settings = path_from_json(recording.at("settings"));
   e.classes = path_from_json(recording.at("classes"));
   e.topics = recording.value("topics", "");
+  e.suite_states_readout = recording.value("suite_states_readout", false);
   return e;
 }
 

@@ -245,7 +245,10 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     yaml.at("parameters").fail("the suite has a sweep of its own: leave --vary out");
   if (sweep) {
     suite.sweep = read_sweep(*sweep, suite.slam);
+  if (const auto measure = yaml.find("measure")) suite.measure = one_of(*measure, kMeasures);
+  bool states_readout = false;
     if (yaml.has("study"))
+    states_readout = slam->has("track") && slam->at("track").has("readout_s");
       sweep->fail(
           "a sweep in a stated study would choose among its points by the rooms that evaluate "
           "them. "
@@ -298,6 +301,12 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     Environment& environment = only_environment(suite, "--scene");
     environment.scene = *overrides.scene;
     environment.frame = {};
+  states_readout = states_readout || std::ranges::count(suite.sweep.varied, "track.readout_s") > 0;
+  for (const SystemSpec& system : suite.systems)
+    for (const auto& [setting, value] : system.settings)
+      states_readout = states_readout || setting == "track.readout_s";
+  for (Environment& e : suite.environments)
+    e.suite_states_readout = states_readout && e.is_recorded();
     suite.scene_replaced = true;
   }
   if (overrides.frame.up) only_environment(suite, "--up").frame.up = overrides.frame.up;

@@ -52,13 +52,16 @@ void check_recordings(const Environment& e, const Labels& labels,
   }
 }
 
-/// Says which settings of SLAM a calibration file has that a run does not: a suite ignores them.
-void warn_of_ignored_settings(const fs::path& file, const SlamConfig& of_run,
+/// Says which settings of SLAM a calibration file has that a run does not: a suite ignores them,
+/// except the readout time, which is the camera's.
+void warn_of_ignored_settings(const fs::path& file, const RunSpec& run,
                               const std::function<void(std::string_view)>& say) {
+  const SlamConfig& of_run = run.slam;
   const SlamConfig of_file = load_settings(file).slam, defaults;
   std::vector<std::string> ignored;
   for (const std::string& name : setting_names())
     if (const std::string text = setting_text(of_file, name);
+        (name != "track.readout_s" || run.environment.suite_states_readout) &&
         text != setting_text(defaults, name) && text != setting_text(of_run, name))
       ignored.push_back(fmt::format("{}: {}", name, text));
   if (ignored.empty()) return;
@@ -174,7 +177,7 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
     const Environment& e = spec.environment;
     if (e.is_recorded()) {
       if (e.settings && spec.system.takes_settings() && calibrations.insert(*e.settings).second)
-        warn_of_ignored_settings(*e.settings, spec.slam, say);
+        warn_of_ignored_settings(*e.settings, spec, say);
       if (checked.insert({e.name, spec.labels == LabelMode::kRecorded}).second)
         check_recordings(e, spec.labels, say);
       continue;

@@ -239,7 +239,9 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
     return make_conversation_system(spec.system.outside, world.mapping->camera(), spec.seed,
                                     folder / kOutsideLog);
   }
-  return make_our_system(world.mapping->camera(), spec.slam, world.vocabulary);
+  SlamConfig settings = spec.slam;
+  if (world.readout_s) settings.track.readout_s = *world.readout_s;
+  return make_our_system(world.mapping->camera(), settings, world.vocabulary);
 }
 
 RandomStream mapping_stream(const RunSpec& spec) {

@@ -137,9 +137,15 @@ World open_recordings(const RunSpec& spec) {
   const Environment& e = spec.environment;
   World world;
   const auto open = [&](const char* name, const std::string& sequence) {
+    Settings calibration;
     OpenedRecording opened = noted(world.inputs, name, split_sequence(sequence).second, [&] {
-      return open_recorded(e, sequence, spec.labels == LabelMode::kRecorded);
+      return open_recorded(e, sequence, spec.labels == LabelMode::kRecorded, &calibration);
     });
+    if (const double readout_s = calibration.slam.track.readout_s;
+        readout_s > 0 && !e.suite_states_readout && !world.readout_s) {
+      world.readout_s = readout_s;
+      world.notes.push_back(fmt::format("track.readout_s: {:g}, of its calibration", readout_s));
+    }
     for (const std::string& note : opened.notes)
       world.notes.push_back(without_place(note, sequence));
     const std::size_t all = opened.sequence->size();

@@ -49,6 +49,9 @@ struct World {
   std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
   std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
   std::shared_ptr<const Vocabulary> vocabulary;
+  /// Of the recordings' rolling shutter by their calibration, in the place of the run's
+  /// `track.readout_s`; absent: the run's counts.
+  std::optional<double> readout_s = {};
   bool cut = false;                     ///< the sequences were cut after RunSpec::max_frames
   std::vector<std::string> notes = {};  ///< PlaceFacts::notes
   std::vector<InputDigest> inputs;      ///< what was read to build it, by name

@@ -10,11 +10,13 @@
 #include <regex>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "bench/inputs/inputs.hpp"
 #include "bench/inputs/run_key.hpp"
 #include "bench/plan/runs.hpp"
+#include "bench/plan/spec_json.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
@@ -30,6 +32,7 @@
 #include "scenes/recorded/sequence_writer.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/pipeline/settings.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
@@ -128,6 +131,31 @@ class Recorded : public testing::Test {
   fs::path folder_;
   RunSpec spec_;
 };
+
+TEST_F(Recorded, TheReadoutTimeOfACalibrationCountsUnlessTheSuiteStatesIt) {
+  record(room(), "tum", 0, 40);
+  EXPECT_FALSE(world().readout_s);
+  const std::string camera =
+      format_settings({.camera = BoxRoom::camera(), .has_camera = true, .slam = {}, .notes = {}});
+  const std::string without = "readout_s: 0\n";
+  ASSERT_NE(camera.find(without), std::string::npos) << camera;
+  std::string with = camera;
+  with.replace(with.find(without), without.size(), "readout_s: 0.02\n");
+  write(folder_ / "camera.yaml", camera);
+  spec_.environment.settings = folder_ / "camera.yaml";
+  EXPECT_FALSE(world().readout_s);
+  const std::string before = key();
+  write(folder_ / "camera.yaml", with);
+  EXPECT_EQ(world().readout_s, 0.02);
+  EXPECT_NE(fmt::format("{}", fmt::join(world().notes, "\n")).find("track.readout_s: 0.02"),
+            std::string::npos);
+  EXPECT_NE(key(), before);
+  const std::string counts = key();
+  spec_.environment.suite_states_readout = true;
+  EXPECT_FALSE(world().readout_s);
+  EXPECT_NE(key(), counts) << "another result under the same key";
+  EXPECT_TRUE(run_spec_from_json(to_json(spec_)).environment.suite_states_readout);
+}
 
 TEST_F(Recorded, AFolderIsMappedAndItsHeldOutFramesAndASecondRecordingAreAskedAbout) {
   record(room(), "tum", 0, 90);

@@ -41,13 +41,14 @@ class TumFr1RpySuite : public testing::Test {
     if (!folder_.empty()) fs::remove_all(folder_);
   }
 
-  Suite suite(const std::string& systems, const std::string& more = "") const {
+  Suite suite(const std::string& systems, const std::string& more = "",
+              const std::string& slam = "{}") const {
     const fs::path source = MH_SOURCE_DIR;
     std::ofstream(folder_ / "rpy.yaml")
         << "environments:\n- {category: desk, sequence: 'tum:${recordings}/tum_fr1_rpy', settings: "
         << (source / "assets/cameras/tum_freiburg1.yaml").string()
         << "}\nvocabulary: " << (source / "assets/vocabulary.mhvoc").string()
-        << "\nlabels: [none]\nsystems: " << systems << "\nslam: {track: {readout_s: 0.0261}}\n"
+        << "\nlabels: [none]\nsystems: " << systems << "\nslam: " << slam << "\n"
         << more;
     return load_suite(folder_ / "rpy.yaml",
                       {.set = {{"recordings", (source / "../shared/data").string()}}});
@@ -72,6 +73,19 @@ TEST_F(TumFr1RpySuite, AllFramesAreMappedAsWellAsBySlam) {
   EXPECT_EQ(result.trajectory.tracked, 200U);
   EXPECT_LE(result.trajectory.ate_rmse_m.value(), 0.0164);
   fmt::print("plain, all 200 frames: ATE {:.4f} m\n", *result.trajectory.ate_rmse_m);
+}
+
+TEST_F(TumFr1RpySuite, TheReadoutTimeOfTheShippedCalibrationCounts) {
+  const auto ate_m = [&](const char* slam) {
+    const std::vector<RunSpec> specs =
+        expand(suite("[plain]", "protocol: {test_interval: 0}\n", slam));
+    return run(specs.front()).trajectory.ate_rmse_m.value();
+  };
+  const double by_calibration = ate_m("{}"), off = ate_m("{track: {readout_s: 0}}");
+  fmt::print("ATE {:.4f} m with the calibration's readout time, {:.4f} m without\n", by_calibration,
+             off);
+  EXPECT_EQ(by_calibration, ate_m("{track: {readout_s: 0.0261}}"));
+  EXPECT_LT(by_calibration, off);
 }
 
 TEST_F(TumFr1RpySuite, HeldOutFramesAreFoundAndAnotherSystemStandsBesideInAllThreeWays) {
