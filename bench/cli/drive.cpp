@@ -76,6 +76,7 @@ void run(DriveArguments options) {
   if (const std::string note = note_on(motion, robot); !note.empty())
     fmt::print(stderr, "modelhouse: warning: {}\n", note);
   const DrivenPath path = travel(scene, robot, motion, others);
+  if (!path.moved.empty()) fmt::print(stderr, "modelhouse: warning: {}\n", path.moved);
   if (options.sensors && !robot.equipment)
     throw InputError(
         fmt::format("robot '{}' has no sensors: its file has no 'equipment'", robot.name));

@@ -11,8 +11,8 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/detector_option.hpp"
-#include "bench/cli/motion_option.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/render_motion.hpp"
 #include "bench/cli/ros_output.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/inputs/inputs.hpp"
@@ -27,7 +27,6 @@
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/render_sequence.hpp"
 #include "sim/world/robot_messages.hpp"
-#include "sim/world/travel.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -40,7 +39,7 @@ struct RenderArguments {
   std::string scene, robot = "pepper", camera, level, pedestrian, out, format = "tum",
                      renderer = "embree";
   std::string labels = "exact";
-  MotionOption motion;
+  RenderMotion motion;
   SceneFrameOption frame;
   DetectorOption detector;
   RenderSequenceOptions sequence;
@@ -59,7 +58,7 @@ std::string settings_of(const RenderArguments& o, const Scene& scene, const Traj
                         const std::vector<InputDigest>& inputs) {
   nlohmann::ordered_json json = {{"scene", o.scene},
                                  {"scene_digest", hex(digest(scene))},
-                                 {"motion", o.motion.given()},
+                                 {"motion", o.motion.text()},
                                  {"path_digest", hex(digest(path))},
                                  {"robot", o.robot},
                                  {"robot_digest", hex(inputs.front().digest)},
@@ -164,7 +163,7 @@ void run(RenderArguments options) {
   resolve(options.scene, Shipped::kScene);
   resolve(options.robot, Shipped::kRobot);
   resolve(options.level, Shipped::kLevel);
-  const std::string& motion = options.motion.given();
+  options.motion.read();
   const fs::path out = options.out;
   for (const LabelMode mode :
        {LabelMode::kExact, LabelMode::kAnnotated, LabelMode::kBoxes, LabelMode::kDetector})
@@ -188,7 +187,6 @@ void run(RenderArguments options) {
     options.sequence.labels = LabelMode::kNone;
   }
   const MountedCamera* const mounted = find_camera(options, robot);
-  check_motion(motion);
   SensorConfig sensors = exact_sensors();
   if (!options.level.empty()) sensors = load_sensor_config(options.level);
   std::optional<Pedestrian> pedestrian;
@@ -206,16 +204,14 @@ void run(RenderArguments options) {
     warnings.push_back(std::move(warning));
   for (const std::string& warning : warnings) progress.say("warning: " + warning);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene, options.renderer);
-  progress.say(fmt::format("moving along {}", motion));
-  if (const std::string note = note_on(motion, robot); !note.empty())
-    progress.say("warning: " + note);
   std::vector<MovingObstacle> others;
   if (pedestrian) others.push_back(as_obstacle(scene, *pedestrian));
-  const DrivenPath driven =
-      hurried(travel(scene, robot, motion, others), motion, sensors, robot.camera.rate_hz);
+  const DrivenPath driven = options.motion.path(scene, robot, others, sensors,
+                                                [&](std::string_view line) { progress.say(line); });
   const Camera camera = mounted != nullptr ? mounted->camera : robot.camera;
-  const Trajectory path =
-      mounted != nullptr ? path_of(*mounted, *robot.equipment, driven) : driven.camera;
+  const Trajectory path = mounted != nullptr && !options.motion.is_of_camera()
+                              ? path_of(*mounted, *robot.equipment, driven)
+                              : driven.camera;
 
   if (detector != nullptr) {
     progress.say("labels from " + detector->description());
@@ -275,7 +271,7 @@ void run(RenderArguments options) {
   if (is_ros_format(options.format)) {
     std::unique_ptr<MessageWriter> file = options.ros.open(options.format, out);
     std::optional<MessageLog> of_robot;
-    if (is_driven(motion))
+    if (options.motion.is_driven())
       of_robot = robot_messages(
           file->wire(), record_drive(scene, robot, driven, path, options.sequence.seed, others));
     writer = std::make_unique<RosRecorder>(std::move(file), reported_camera, std::move(of_robot));

@@ -228,7 +228,10 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   };
   const auto along = [&](const Scene& in, const std::string& motion,
                          const std::vector<MovingObstacle>& others = {}) {
-    return hurried(travel(in, world.robot, motion, others), motion, world.sensors, rate_hz);
+    DrivenPath path =
+        hurried(travel(in, world.robot, motion, others), motion, world.sensors, rate_hz);
+    if (say && !path.moved.empty()) say("warning: " + path.moved);
+    return path;
   };
   world.mapping = input("mapping_tour", environment.mapping_tour,
                         [&] { return along(*scene, environment.mapping_tour, obstacles(0)); });

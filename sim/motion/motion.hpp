@@ -65,6 +65,8 @@ struct DrivenPath {
   double max_penetration_m = 0.0;
   double contact_time_s = 0.0;  ///< time spent touching something
   DrivePeaks peaks;             ///< all 0 if the camera was not moved by physics
+  /// How the poses of a file were moved, for the user; empty: they were not, or come from no file.
+  std::string moved = {};
 };
 
 /// Drives the robot through the scene with Bullet, along the reference_motion of the tour, limited

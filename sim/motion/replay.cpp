@@ -8,6 +8,7 @@
 
 #include "robots/navigation/floor_grid.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/path_length.hpp"
 #include "slam/core/random.hpp"
 
 namespace mh {
@@ -97,6 +98,13 @@ DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& re
                     name, scene.name, kPlacings, config.room_m));
 
   DrivenPath driven;
+  const Eigen::Matrix3d turn = world_from_recording->rotation();
+  const Vector3d shift_m = world_from_recording->translation();
+  driven.moved = fmt::format(
+      "{}: its poses are moved to where the camera touches nothing: turned by {:.1f} deg about the "
+      "vertical, then shifted by [{:.3f}, {:.3f}] m, and sampled at {:g} Hz",
+      name, std::atan2(turn(1, 0), turn(0, 0)) * 180 / M_PI, shift_m.x(), shift_m.y(),
+      camera.rate_hz);
   for (const TimedPose& pose : path) {
     const SE3 world_from_camera = *world_from_recording * pose.world_from_camera;
     const Vector3d ahead = world_from_camera.rotation().col(2), p = world_from_camera.translation();
@@ -111,6 +119,18 @@ DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& re
               .norm();
   }
   return driven;
+}
+
+DrivenPath as_given(const Trajectory& poses, PosesOf of, const SE3& base_from_camera) {
+  DrivenPath path;
+  for (const TimedPose& given : poses) {
+    const SE3& pose = given.world_from_camera;
+    const bool of_camera = of == PosesOf::kCamera;
+    path.camera.push_back({given.stamp_ns, of_camera ? pose : pose * base_from_camera});
+    path.base.push_back({given.stamp_ns, of_camera ? pose * base_from_camera.inverse() : pose});
+  }
+  path.length_m = path_length_m(path.camera);
+  return path;
 }
 
 }  // namespace mh

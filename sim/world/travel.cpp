@@ -150,6 +150,7 @@ DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& mot
   const LevelScene level(scene);
   DrivenPath path = travel_on_level(*level, robot, parse(motion), others);
   if (scene.floor.is_level_zero()) return path;
+  if (!path.moved.empty()) path.moved += ", their ground put onto the scene's floor";
   for (Trajectory* poses : {&path.camera, &path.base})
     for (TimedPose& pose : *poses)
       pose.world_from_camera = level.world_from_level() * pose.world_from_camera;
@@ -181,6 +182,8 @@ DrivenPath hurried(DrivenPath path, const std::string& motion, const SensorConfi
     }
   }
   path.contact_time_s /= speed;
+  if (!path.moved.empty())
+    path.moved += fmt::format(", {:g} times as fast by the level's hurry", speed);
   return path;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motions on floors as scanners and other programs leave them.
 #include "sim/world/travel.hpp"
+#include "sim/motion/replay.hpp"
+#include "slam/core/temporary_folder.hpp"
+#include "slam/core/trajectory_io.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -119,6 +122,37 @@ TEST(Travel, AHurriedHandPassesTheSameWayInLessTime) {
   }
   // 89 frames of the path at 1.5 fit in 59 steps.
   EXPECT_EQ(hurry("handheld:0:90", 1.5).camera.size(), 60U);
+}
+
+TEST(Travel, PosesOfAFileStayWhereTheyAreAndAReplaySaysWhereItPutsThem) {
+  const Scene room = settled(ScannedRoom{}.build());
+  const Robot robot = test::pepper();
+  const Trajectory scan = travel(room, robot, "handheld:0:30").camera;
+  Trajectory elsewhere = scan;  // as recorded in another room
+  for (TimedPose& pose : elsewhere)
+    pose.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {40, 0, 0}) * pose.world_from_camera;
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  const std::filesystem::path file = folder.path() / "poses.tum";
+  write_tum(file, elsewhere);
+  const DrivenPath replayed = travel(room, robot, "replay:" + file.string());
+  EXPECT_NE(replayed.moved.find("its poses are moved"), std::string::npos) << replayed.moved;
+  EXPECT_NE(replayed.moved.find("shifted by [-"), std::string::npos) << replayed.moved;
+  EXPECT_EQ(travel(room, robot, "handheld:0:30").moved, "");
+
+  const DrivenPath given = as_given(elsewhere, PosesOf::kCamera, robot.base_from_camera);
+  EXPECT_EQ(given.moved, "");
+  const DrivenPath driven = as_given(given.base, PosesOf::kRobot, robot.base_from_camera);
+  ASSERT_EQ(given.camera.size(), elsewhere.size());
+  for (std::size_t i = 0; i < elsewhere.size(); ++i) {
+    EXPECT_EQ(given.camera[i].stamp_ns, elsewhere[i].stamp_ns);
+    const SE3 &seen = given.camera[i].world_from_camera, &asked = elsewhere[i].world_from_camera;
+    EXPECT_EQ(seen.translation(), asked.translation());
+    EXPECT_EQ(seen.rotation(), asked.rotation());
+    EXPECT_LT((driven.camera[i].world_from_camera.inverse() * elsewhere[i].world_from_camera)
+                  .log()
+                  .norm(),
+              1e-12);
+  }
 }
 
 }  // namespace
