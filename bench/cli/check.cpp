@@ -64,8 +64,9 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
   }
 }
 
-/// Runs the suite. Reuses no earlier results except those of the same interrupted check; baked
-/// light is shared among these runs only.
+/// Runs the suite. Reuses no earlier results except those of the same interrupted check, and no
+/// maps, which runs without images never take from the cache: only light and detections, whose keys
+/// cover everything that decides them.
 /// @param inputs  which may have been read already
 Baseline measure(const Suite& suite, const CheckArguments& of, InputReader& inputs,
                  Progress& progress) {
@@ -76,10 +77,11 @@ Baseline measure(const Suite& suite, const CheckArguments& of, InputReader& inpu
                 .suite_digest = gate_suite_digest(suite, inputs),
                 .origin = gate_origin(),
                 .settings = gate_settings(suite, inputs)};
+  const fs::path usual = Cache::default_folder();
   const BenchOptions options{.out = place ? place->path() : folder->path(),
                              .jobs = of.jobs,
                              .shard = {},
-                             .cache = {},
+                             .cache = usual.empty() ? std::nullopt : std::optional(usual),
                              .retry_failed = true,
                              .metrics_only = true,
                              .inputs = &inputs,

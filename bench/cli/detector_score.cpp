@@ -17,6 +17,7 @@
 #include "bench/cli/detector_option.hpp"
 #include "bench/cli/level_file.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/studies/detector_score.hpp"
 #include "bench/studies/draw_detections.hpp"
 #include "bench/studies/survey.hpp"
@@ -114,7 +115,7 @@ void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
   for (std::size_t n = 0; n < names.size(); ++n) {
     std::vector<std::string> warnings;
     Scene scene = load_scene(names[n], &warnings);
-    light_from_cache(scene, options.threads, Cache(options.detector.cache));
+    light_from_cache(scene, options.threads, usual_cache(options.detector.cache));
     for (const std::string& warning : warnings) progress.say("warning: " + warning);
     const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
     const Trajectory scan = travel(scene, robot, "handheld").camera;

@@ -15,12 +15,15 @@
 #include "bench/cli/render_motion.hpp"
 #include "bench/cli/ros_output.hpp"
 #include "bench/cli/scene_option.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/inputs/inputs.hpp"
 #include "bench/plan/check_labels.hpp"
 #include "bench/plan/labels.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/world/cached_detections.hpp"
+#include "bench/world/cached_light.hpp"
+#include "scenes/load.hpp"
 #include "scenes/recorded/ros/recorder.hpp"
 #include "scenes/scannet/files.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -197,8 +200,10 @@ void run(RenderArguments options) {
   std::vector<std::string> warnings;
   const Scene scene = [&] {
     Progress light("light");
-    return load_lit_scene(options.scene, options.sequence.threads, &warnings, options.frame.frame(),
-                          [&](double share) { light.share(share); });
+    Scene loaded = load_scene(options.scene, &warnings, options.frame.frame());
+    light_from_cache(loaded, options.sequence.threads, usual_cache(), {},
+                     [&](double share) { light.share(share); });
+    return loaded;
   }();
   if (std::string warning = check_labels(scene, options.sequence.labels); !warning.empty())
     warnings.push_back(std::move(warning));

@@ -7,6 +7,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/pages/plot.hpp"
 #include "bench/pages/write.hpp"
 #include "bench/replay/replay.hpp"
@@ -26,10 +27,9 @@ struct ReportArguments {
 /// answered correctly) or `all`. @throws InputError if no results hold a run of a name.
 void add_replays(std::vector<PagesSource>& sources, const ReportArguments& options) {
   const ReplayTools tools{
-      .cache = Cache(options.cache.empty() ? Cache::default_folder()
-                                           : std::filesystem::absolute(options.cache)),
-      .threads = 1,
-      .say = [](std::string_view stage) { fmt::print(stderr, "report: {}\n", stage); }};
+      .cache = usual_cache(options.cache), .threads = 1, .say = [](std::string_view stage) {
+        fmt::print(stderr, "report: {}\n", stage);
+      }};
   const auto is_asked = [&](const RunResult& run) {
     bool failed = false;
     for_each_query(run, [&](const QueryScore& q) { failed |= is_judged(q) && !q.correct; });

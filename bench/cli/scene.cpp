@@ -15,9 +15,11 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/drawing/contact_sheet.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/studies/scan_views.hpp"
+#include "bench/world/cached_light.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/generate/grammar.hpp"
 #include "scenes/house/house.hpp"
@@ -140,7 +142,7 @@ std::pair<std::string, std::vector<View>> see(const std::string& name,
   const ReadScope reading;
   Scene scene = load(find_scene(name).string(), options.frame);
   require_not_read(options.out, reading.record());
-  light_scene(scene, kThreads, baked);
+  light_from_cache(scene, kThreads, usual_cache(), {}, baked);
   const auto renderer = make_scene_renderer(scene);
   return {scene.name, views_of(scene, *renderer)};
 }
@@ -201,10 +203,11 @@ Scene scanned(const Scene& scene) {
   return scan_look(scene, *renderer, camera, scan_views(scene, 0, kViews));
 }
 
-/// Bakes the scene's light, which takes a while, and reports progress.
+/// Bakes the scene's light unless it is cached, and reports progress.
 void light(Scene& scene) {
   Progress progress("light");
-  light_scene(scene, kThreads, [&](double share) { progress.share(share); });
+  light_from_cache(scene, kThreads, usual_cache(), {},
+                   [&](double share) { progress.share(share); });
 }
 
 void write_mesh(Scene scene, const fs::path& out, bool scan = false) {

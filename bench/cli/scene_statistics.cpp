@@ -10,6 +10,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/studies/survey.hpp"
 #include "bench/world/cached_light.hpp"
 #include "scenes/image_file.hpp"
@@ -47,7 +48,7 @@ MeasuredPlace measure_scene(const std::string& name, std::size_t frames,
                             const SensorConfig& sensors) {
   std::vector<std::string> warnings;
   Scene scene = load_scene(name, &warnings, options.frame.frame());
-  light_from_cache(scene, options.threads, Cache(options.cache));
+  light_from_cache(scene, options.threads, usual_cache(options.cache));
   print_warnings(warnings);
   const std::shared_ptr<const Renderer> renderer = make_scene_renderer(scene);
   const Trajectory scan = travel(scene, robot, "handheld").camera;
@@ -174,7 +175,7 @@ void add_scene_statistics(CLI::App& scene) {
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
   command->add_option("--cache", options->cache,
-                      "Cache folder for baked light; without it, it is baked again");
+                      "Cache folder for baked light (default: $XDG_CACHE_HOME/modelhouse)");
   command->add_flag("--json", options->json, "Prints JSON, with the median of each scene");
   command->footer("Example:\n  modelhouse scene statistics --per-category 3 --frames 540");
   command->callback([options] { run(*options); });

@@ -11,9 +11,12 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/studies/figures.hpp"
 #include "bench/studies/sheets.hpp"
+#include "bench/world/cached_light.hpp"
 #include "scenes/images/write_image.hpp"
+#include "scenes/load.hpp"
 #include "sim/sensors/config.hpp"
 #include "sim/sensors/difficulty.hpp"
 #include "sim/world/lit_scene.hpp"
@@ -60,8 +63,8 @@ void sheet(SensorsArguments options) {
   const OutputFolder folder(options.out, "sensors sheet",
                             {"color.png", "depth.png", "frames.png", "labels.png"});
   Progress light("light");
-  const Scene scene =
-      load_lit_scene(options.scene, 2, nullptr, {}, [&](double share) { light.share(share); });
+  Scene scene = load_scene(options.scene);
+  light_from_cache(scene, 2, usual_cache(), {}, [&](double share) { light.share(share); });
   light.end();
   const SensorSheets sheets = draw_sensor_sheets(scene, make_scene_renderer(scene));
   for (const auto& [name, image] :

@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include "bench/cli/arguments.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/results/statistics.hpp"
+#include "bench/world/cached_light.hpp"
 #include "scenes/recorded/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
 #include "slam/core/counted.hpp"
@@ -106,13 +108,15 @@ Source open_source(const SourceOptions& options) {
   if (options.is_scene()) {
     if (options.tour.empty()) throw InputError(fmt::format("source '{}' needs --tour", source));
     std::vector<std::string> notes;
-    auto frames = open_scene({.scene = find_scene(source.substr(kSceneSource.size())),
-                              .tour = find_shipped(options.tour, Shipped::kTour),
-                              .robot = options.robot_file(),
-                              .level = find_shipped(options.level, Shipped::kLevel),
-                              .seed = options.seed,
-                              .frame = options.frame.frame()},
-                             &notes);
+    auto frames =
+        open_scene({.scene = find_scene(source.substr(kSceneSource.size())),
+                    .tour = find_shipped(options.tour, Shipped::kTour),
+                    .robot = options.robot_file(),
+                    .level = find_shipped(options.level, Shipped::kLevel),
+                    .seed = options.seed,
+                    .frame = options.frame.frame(),
+                    .light = [](Scene& scene) { light_from_cache(scene, 2, usual_cache()); }},
+                   &notes);
     return {settings_beside(options, *frames, notes), std::move(frames)};
   }
   Settings settings;

@@ -12,6 +12,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/drawing/contact_sheet.hpp"
 #include "bench/inputs/recorded_camera.hpp"
 #include "bench/plan/shipped.hpp"
@@ -187,7 +188,7 @@ void run(TwinArguments options) {
   std::vector<std::string> warnings;
   Scene scene = load_scene(options.scene, &warnings, options.frame.frame());
   print_warnings(warnings);
-  light_from_cache(scene, options.threads, Cache(options.cache));
+  light_from_cache(scene, options.threads, usual_cache(options.cache));
   const auto twin =
       std::make_shared<const SimulatedSequence>(make_scene_renderer(scene), recorded->camera(),
                                                 *recorded->truth(), sensors, LabelMode::kNone);
@@ -261,7 +262,7 @@ void add_twin(CLI::App& app) {
   command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
       ->check(CLI::Range(1, 1024));
   command->add_option("--cache", options->cache,
-                      "Cache folder for baked light; without it, it is baked again");
+                      "Cache folder for baked light (default: $XDG_CACHE_HOME/modelhouse)");
   options->frame.add_to(*command);
   command->footer(
       "Example:\n  modelhouse twin scannet:scans/scene0000_00 scans/scene0000_00 --out out/twin");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world/scene_sequence.hpp"
 
+#include "scenes/load.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/sequence.hpp"
@@ -12,10 +13,9 @@ namespace {
 class SceneSequence : public Sequence {
  public:
   SceneSequence(const SceneDrive& source, const Robot& robot, const Scene& scene,
-                const SensorConfig& sensors)
+                const DrivenPath& path, const SensorConfig& sensors)
       : sensors_(sensors),
-        shutter_(make_scene_renderer(scene), robot.camera,
-                 travel(scene, robot, source.tour.string()).camera, sensors),
+        shutter_(make_scene_renderer(scene), robot.camera, path.camera, sensors),
         arriving_(arriving(shutter_.path().size(), sensors, RandomStream(source.seed))) {}
   const Camera& camera() const override { return shutter_.camera(); }
   std::size_t size() const override { return arriving_.size(); }
@@ -39,8 +39,11 @@ std::unique_ptr<Sequence> open_scene(const SceneDrive& source, std::vector<std::
   SensorConfig sensors = exact_sensors();
   if (!source.level.empty()) sensors = load_sensor_config(source.level);
   const Robot robot = load_robot(source.robot);
-  const Scene scene = load_lit_scene(source.scene, 2, notes, source.frame);
-  return std::make_unique<SceneSequence>(source, robot, scene, sensors);
+  Scene scene = load_scene(source.scene, notes, source.frame);
+  source.light ? source.light(scene) : light_scene(scene, 2);
+  const DrivenPath path = travel(scene, robot, source.tour.string());
+  if (notes != nullptr && !path.moved.empty()) notes->push_back(path.moved);
+  return std::make_unique<SceneSequence>(source, robot, scene, path, sensors);
 }
 
 }  // namespace mh

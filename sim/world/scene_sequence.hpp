@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "scenes/scene.hpp"
 #include "scenes/scene_frame.hpp"
 #include "slam/core/sequence.hpp"
 
@@ -18,6 +20,7 @@ struct SceneDrive {
   std::filesystem::path level;  ///< of the sensors; empty = no noise
   std::uint64_t seed = 0;       ///< determines which frames are delivered
   SceneFrame frame = {};
+  std::function<void(Scene&)> light = {};  ///< adds its light; empty: it is baked
 };
 
 /// Opens a scene seen by a robot along a tour, with exact labels, rendered on demand.
