@@ -47,11 +47,14 @@ OptionDeclaration declaration(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) made.names.push_back("-" + name);
   made.meaning = option.get_description();
   made.usual = option.get_default_str();
-  made.takes_value = option.get_type_size() != 0;
+  made.takes_value = option.get_items_expected_max() > 0;  // a flag expects none
   made.required = option.get_required();
   made.choices = words_in(option.get_type_name());
   if (made.choices.empty())
-    if (const auto what = shipped_for(made.names.front())) made.choices = shipped_names(*what);
+    if (const auto what = shipped_for(made.names.front())) {
+      made.choices = shipped_names(*what);
+      made.or_file = true;
+    }
   return made;
 }
 

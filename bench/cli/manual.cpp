@@ -27,10 +27,10 @@ std::string option_entry(const OptionDeclaration& option) {
   std::string text =
       fmt::format(".TP\n\\fB{}\\fR", roff(fmt::format("{}", fmt::join(option.names, ", "))));
   if (option.takes_value && !option.positional)
-    text +=
-        option.choices.empty() || option.choices.size() > 6
-            ? " \\fIVALUE\\fR"
-            : fmt::format(" \\fI{}\\fR", roff(fmt::format("{}", fmt::join(option.choices, "|"))));
+    text += option.choices.empty() || option.choices.size() > 6
+                ? " \\fIVALUE\\fR"
+                : fmt::format(" \\fI{}{}\\fR", option.or_file ? "FILE|" : "",
+                              roff(fmt::format("{}", fmt::join(option.choices, "|"))));
   text += "\n" + roff(option.meaning);
   if (!option.meaning.ends_with('.')) text += ".";
   if (!option.usual.empty()) text += fmt::format(" Default: {}.", roff(option.usual));

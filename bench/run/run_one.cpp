@@ -198,6 +198,9 @@ std::string status_of(const MappedFrame& call, std::size_t frames) {
 }
 
 std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
+  // A program that returns a trajectory: each frame is written and then read.
+  if (!spec.system.is_asked())
+    return 2 * offered_frames(world.mapping->size(), spec.protocol).size();
   std::size_t queries = 0;
   for (const QuerySet set : kQuerySets)
     if (const Sequence* sequence = sequence_of(world, set))
@@ -207,22 +210,26 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
 
 /// Writes the mapping frames as a folder and returns an outside program's trajectory for them.
 /// @param skipped  receives the frames that could not be written
-Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, RandomStream stream,
-                        const fs::path& folder, const std::function<void(std::string_view)>& status,
-                        SkippedFrames& skipped) {
+Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, const RunTools& tools,
+                        WorkDone& work, SkippedFrames& skipped) {
+  const RandomStream stream = mapping_stream(spec);
   const std::vector<std::size_t> offered = offered_frames(mapping.size(), spec.protocol);
   UsableFrames frames(mapping);
-  ProgramFolder given(folder);
+  ProgramFolder given(tools.folder);
   const std::vector<Stamp> stamps =
       write_dataset(given.path() / "dataset", mapping.camera(), offered.size(), [&](std::size_t i) {
-        status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
+        tools.status(fmt::format("writing frame {} of {}", i + 1, offered.size()));
+        work.reached(i + 1);
         return frames.frame(offered[i], mapping_noise(stream, 0));
       });
   frames.require_any();
   skipped = frames.skipped();
-  status(fmt::format("runs over {}", counted(offered.size(), "frame")));
-  Trajectory trajectory =
-      run_on_dataset(spec.system.outside, given.path(), stamps, spec.seed, folder / kOutsideLog);
+  Trajectory trajectory = run_on_dataset(
+      spec.system.outside, given.path(), stamps, spec.seed, tools.folder / kOutsideLog,
+      [&](std::size_t read) {
+        tools.status(fmt::format("has read {} of {}", read, counted(stamps.size(), "frame")));
+        work.reached(offered.size() + std::min(read, stamps.size()));
+      });
   given.move_to_run();
   return trajectory;
 }
@@ -286,8 +293,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
                                       : make_system(spec, world, tools.folder, tools.status);
   if (inner == nullptr) {  // a program that only returns a trajectory: no queries
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
-    run.estimate = run_recorded(spec, frames, mapping_stream(spec), tools.folder, tools.status,
-                                run.mapping.skipped);
+    run.estimate = run_recorded(spec, frames, tools, work, run.mapping.skipped);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
     run.frames = frames_of(run.estimate, run.truth);
     integrate();

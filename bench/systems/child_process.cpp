@@ -217,13 +217,14 @@ std::string ChildProcess::read_line(double limit_s, std::string_view doing) {
   }
 }
 
-void ChildProcess::wait_for_success(double limit_s) {
+void ChildProcess::wait_for_success(double limit_s, const std::function<void()>& meanwhile) {
   const auto deadline = after(limit_s);
   constexpr int kWait_ms = 100;
   while (!watcher_->end(kWait_ms)) {
     if (Clock::now() > deadline)
       fail(fmt::format("was still running after {:g} s, its limit", limit_s));
     check_limits("its run");
+    meanwhile();
   }
   if (!ended_well()) fail(ending(0));
   watcher_->end_all();

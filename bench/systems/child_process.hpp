@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,7 +41,9 @@ class ChildProcess {
   /// limit.
   std::string read_line(double limit_s, std::string_view doing);
   /// Waits until it ends. Anything but exit code 0 within the limit is an error.
-  void wait_for_success(double limit_s);
+  /// @param meanwhile  called about ten times a second
+  void wait_for_success(
+      double limit_s, const std::function<void()>& meanwhile = [] {});
   /// Closes its input, which signals it to end, and kills it if it has not ended within the limit.
   /// Any end other than exit code 0 is an error.
   void finish(double limit_s);

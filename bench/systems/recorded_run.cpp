@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bench/systems/child_process.hpp"
+#include "bench/systems/frames_read.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "scenes/recorded/tum_folder.hpp"
 #include "slam/core/files.hpp"
@@ -76,7 +77,8 @@ std::vector<Stamp> write_dataset(
 }
 
 Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& folder,
-                          std::span<const Stamp> stamps, std::uint64_t seed, const fs::path& log) {
+                          std::span<const Stamp> stamps, std::uint64_t seed, const fs::path& log,
+                          const std::function<void(std::size_t)>& read) {
   validate(program);
   const fs::path place = fs::absolute(folder), dataset = place / "dataset";
   const fs::path trajectory = place / "trajectory.txt";
@@ -88,7 +90,9 @@ Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& folder,
                                        {"trajectory", trajectory.string()},
                                        {"seed", std::to_string(seed)}});
   ChildProcess child(program, command, ChildProcess::Talk::kNo, fs::absolute(log), place);
-  child.wait_for_success(program.run_limit_s);
+  FramesRead images(dataset / "rgb");
+  child.wait_for_success(program.run_limit_s, [&] { read(images.count()); });
+  read(images.count());
   if (!fs::exists(trajectory)) child.fail("ended well but wrote no trajectory");
   try {
     if (tracked_nothing(trajectory)) return {};

@@ -27,12 +27,14 @@ std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Came
 ///                writes its trajectory.txt there
 /// @param stamps  of the dataset's frames, increasing
 /// @param log     file for what the program prints; outside the folder
+/// @param read    receives, again and again, how many of the color images were opened so far
 /// @returns the program's trajectory with the frames' own stamps
 /// @throws InputError if validate(program) does; OutsideError if the program fails, or its
 ///         trajectory is missing, malformed, or contains a non-finite number, a pose beyond
 ///         kFarthestPose_m, a stamp that matches no frame or two poses for one frame.
-Trajectory run_on_dataset(const OutsideProgram& program, const std::filesystem::path& folder,
-                          std::span<const Stamp> stamps, std::uint64_t seed,
-                          const std::filesystem::path& log);
+Trajectory run_on_dataset(
+    const OutsideProgram& program, const std::filesystem::path& folder,
+    std::span<const Stamp> stamps, std::uint64_t seed, const std::filesystem::path& log,
+    const std::function<void(std::size_t)>& read = [](std::size_t) {});
 
 }  // namespace mh

@@ -495,6 +495,82 @@ TEST_F(CommandLine, ARenderingThatWroteNothingDoesNotBindTheNext) {
     EXPECT_EQ(content(folder_ / name), "mine") << name;
 }
 
+TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
+  const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
+  // Cameras 2 m above the floor that look down at it, one of them beyond its edge.
+  const fs::path poses = write("poses.tum",
+                               "1305031229.5287 1 1 2 1 0 0 0\n1305031229.7 2.25 1.5 2 1 0 0 0\n"
+                               "1305031230 -7 1.5 2 1 0 0 0\n");
+  const std::string render = "render " + mesh.string() + " --robot " + robot_ + " --poses " +
+                             poses.string() + " --out " + (folder_ / "out").string();
+  ASSERT_EQ(run(render), 0) << err_;
+  EXPECT_NE(err_.find("3 poses of " + poses.string() + ", exactly as they are: of the camera"),
+            std::string::npos)
+      << err_;
+  EXPECT_NE(err_.find("3 of 3 poses stand outside of the scene"), std::string::npos)
+      << err_ << "2 m above all there is";
+  EXPECT_NE(err_.find("every camera looks straight up or down"), std::string::npos) << err_;
+  std::istringstream truth(content(folder_ / "out/groundtruth.txt"));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(truth, line);)
+    if (!line.starts_with("#")) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_TRUE(lines[0].starts_with("1305031229.528700000 1 1 2 ")) << lines[0];
+  EXPECT_TRUE(lines[1].starts_with("1305031229.700000000 2.25 1.5 2 ")) << lines[1];
+  expect_refused(render + " --motion auto:0", "stands in place of a motion");
+  expect_refused("render " + mesh.string() + " --poses-of robot --motion auto --out x", "--poses");
+  expect_refused("render " + mesh.string() + " --poses none.tum --out " + (folder_ / "x").string(),
+                 "none.tum");
+  // A replay moves the poses, and says so.
+  const fs::path walk =
+      write("walk.tum", "0 40 0 1 0.5 -0.5 0.5 -0.5\n1 40.5 0 1 0.5 -0.5 0.5 -0.5\n");
+  ASSERT_EQ(run("render " + mesh.string() + " --robot " + robot_ + " --motion replay:" +
+                walk.string() + " --frames 1 --out " + (folder_ / "replayed").string()),
+            0)
+      << err_;
+  EXPECT_NE(err_.find("its poses are moved"), std::string::npos) << err_;
+  EXPECT_NE(err_.find("--poses renders at a file's poses as they are"), std::string::npos) << err_;
+}
+
+TEST_F(CommandLine, TheManualGivesFlagsNoValueAndNamesOfFilesAsOneChoice) {
+  ASSERT_EQ(run("manual"), 0);
+  for (const char* entry :
+       {".TP\n\\fB\\-\\-json\\fR\n", ".TP\n\\fB\\-\\-help, \\-h\\fR\n",
+        ".TP\n\\fB\\-\\-no\\-cache\\fR\n", "\\fB\\-\\-frames\\fR \\fIVALUE\\fR\n",
+        "\\fB\\-\\-robot\\fR \\fIFILE|pepper\\fR\n"})
+    EXPECT_NE(out_.find(entry), std::string::npos) << entry;
+}
+
+TEST_F(CommandLine, TheLightThatOneCommandBakedServesTheOthers) {
+  const std::string room = std::string(MH_SOURCE_DIR) + "/bench/scenarios/room.yaml";
+  const std::string at = (folder_ / "cache").string();
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("XDG_CACHE_HOME", at.c_str(), 1);
+  const auto lights = [&] {
+    std::size_t count = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(at))
+      if (entry.is_regular_file() && entry.path().string().find("/light/") != std::string::npos)
+        ++count;
+    return count;
+  };
+  const auto convert = [&](const char* name) {
+    EXPECT_EQ(run("scene convert " + room + " --out " + (folder_ / name).string()), 0) << err_;
+    return err_.find("light: ") != std::string::npos;  // its progress
+  };
+  EXPECT_TRUE(convert("a.glb"));
+  EXPECT_EQ(lights(), 1U);
+  EXPECT_FALSE(convert("b.glb")) << "baked again";
+  EXPECT_EQ(content(folder_ / "a.glb"), content(folder_ / "b.glb"));
+  EXPECT_EQ(run("render " + room + " --motion handheld:0 --frames 1 --robot " + robot_ + " --out " +
+                (folder_ / "frames").string()),
+            0)
+      << err_;
+  EXPECT_EQ(err_.find("light: "), std::string::npos) << err_;
+  EXPECT_EQ(lights(), 1U);
+  kept.empty() ? unsetenv("XDG_CACHE_HOME") : setenv("XDG_CACHE_HOME", kept.c_str(), 1);
+}
+
 TEST_F(CommandLine, AFileBeyondTheLimitIsAnErrorNotASilentEnd) {
   const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
   const std::string command =

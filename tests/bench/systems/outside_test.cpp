@@ -219,8 +219,11 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
   // `find` writes the names of all that the program is given to standard output: its log.
   program.command =
       "find {dataset} && " VO_RUN_DATASET " {dataset} {associations} {settings} {trajectory}";
+  std::size_t read = 0;
   const Trajectory recorded =
-      run_on_dataset(program, folder_ / "given", stamps, 0, folder_ / "outside.log");
+      run_on_dataset(program, folder_ / "given", stamps, 0, folder_ / "outside.log",
+                     [&](std::size_t so_far) { read = so_far; });
+  EXPECT_EQ(read, 87u) << "how far it is, in frames";
   EXPECT_EQ(recorded.size(), 87u);
   EXPECT_LT(*score_trajectory(recorded, path_, offered.size()).ate_rmse_m, 0.05);
   EXPECT_EQ(digest(recorded), digest(mapped(converse())->trajectory()));

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace mh {
+
+/// Which files of a folder have been opened since this object was made, by any process (inotify):
+/// how far a program is with a recording, whether or not it says so. Counts nothing where the
+/// system has no watch left.
+class FramesRead {
+ public:
+  explicit FramesRead(const std::filesystem::path& folder);
+  ~FramesRead();
+  FramesRead(const FramesRead&) = delete;
+  FramesRead& operator=(const FramesRead&) = delete;
+
+  /// The number of different files so far.
+  std::size_t count();
+
+ private:
+  int events_ = -1;
+  std::set<std::string> names_;
+};
+
+}  // namespace mh
