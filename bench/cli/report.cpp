@@ -8,6 +8,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/usual_cache.hpp"
+#include "bench/pages/place_images.hpp"
 #include "bench/pages/plot.hpp"
 #include "bench/pages/write.hpp"
 #include "bench/replay/replay.hpp"
@@ -94,6 +95,8 @@ void run(const ReportArguments& options) {
   name_apart(sources);
   const OutputFolder folder(options.out, "report", names_of_pages());
   if (!options.replay.empty()) add_replays(sources, options);
+  for (PagesSource& source : sources)
+    if (source.suite) source.frames = frames_json(*source.suite);
   const WrittenPages written = write_pages(options.out, sources);
   for (const PagesSource& source : sources)
     if (!source.problem.empty())

@@ -15,6 +15,7 @@
 #include "bench/results/sweep.hpp"
 #include "scenes/generate/generate.hpp"
 #include "slam/config/slam.hpp"
+#include "slam/core/interpolate.hpp"
 
 namespace mh {
 namespace {
@@ -29,20 +30,35 @@ struct Sum {
   double mean() const { return sum / static_cast<double>(count); }
 };
 
+/// Which frame of its tour each pose of a run's estimate is of: by the calls that mapped it, else
+/// (a program that returned a trajectory alone) by the frames of a simulated truth, else by
+/// counting poses.
+std::vector<std::size_t> frames_of_estimate(const RunResult& run) {
+  std::map<Stamp, std::size_t> frame_at;
+  for (const MappedFrame& call : run.mapping.calls) frame_at.emplace(call.stamp_ns, call.index);
+  if (frame_at.empty() && run.truth.size() == run.place.mapping.frames)
+    for (std::size_t i = 0; i < run.truth.size(); ++i) frame_at.emplace(run.truth[i].stamp_ns, i);
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < run.estimate.size(); ++i) {
+    const auto found = frame_at.find(run.estimate[i].stamp_ns);
+    frames.push_back(found == frame_at.end() ? i : found->second);
+  }
+  return frames;
+}
+
 /// Mean position error of a run per window of frames; a window without a tracked frame has no
-/// count.
+/// count. A recording's truth is interpolated to the frames.
 std::vector<Sum> window_errors(const RunResult& run) {
   std::vector<Sum> windows;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < run.truth.size(); ++i) {
-    while (next < run.estimate.size() && run.estimate[next].stamp_ns < run.truth[i].stamp_ns)
-      ++next;
-    if (next == run.estimate.size()) break;
-    if (run.estimate[next].stamp_ns != run.truth[i].stamp_ns) continue;
+  const std::vector<std::size_t> frames = frames_of_estimate(run);
+  for (std::size_t i = 0; i < run.estimate.size(); ++i) {
+    const auto truth = interpolated_pose(run.truth, run.estimate[i].stamp_ns, kMaxTruthGap_ns);
+    if (!truth) continue;
     const Eigen::Vector3d at =
-        run.frames.truth_from_estimate * run.estimate[next].world_from_camera.translation();
-    if (windows.size() <= i / kWindow) windows.resize(i / kWindow + 1);
-    windows[i / kWindow].add((at - run.truth[i].world_from_camera.translation()).norm());
+        run.frames.truth_from_estimate * run.estimate[i].world_from_camera.translation();
+    const std::size_t window = frames[i] / kWindow;
+    if (windows.size() <= window) windows.resize(window + 1);
+    windows[window].add((at - truth->translation()).norm());
   }
   return windows;
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/pages/plot.hpp"
+#include "bench/pages/tables.hpp"
 #include "bench/results/placed.hpp"
 
 namespace mh {

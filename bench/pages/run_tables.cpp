@@ -146,12 +146,13 @@ Json runs_json(const PagesSource& source) {
   return table.json();
 }
 
-Json queries_json(const PagesSource& source) {
+Json queries_json(const PagesSource& source, const RunResult* only) {
   PageTable table("Queries",
                   "Distance and angle are measured from the nearest mapped frame, so that a bent "
                   "map is no error of its answers (docs/protocol.md).");
   const Causes causes = causes_in(source.audit_csv);
   for (const RunResult& run : source.results.runs) {
+    if (only != nullptr && &run != only) continue;
     const std::vector<std::string> points = points_of(source, run);
     for (std::size_t p = 0; p < run.points.size(); ++p)
       for (const QuerySet set : kQuerySets)

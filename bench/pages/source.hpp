@@ -29,6 +29,8 @@ struct PagesSource {
   nlohmann::ordered_json audit = {};         ///< the folder's audit.json, or null
   std::string audit_csv = {};                ///< the folder's audit.csv: a line per query
   std::vector<std::string> damaged = {};     ///< files of the folder that could not be read
+  /// Frames of the first recording, if it is at hand (frames_json()); null: not asked for.
+  nlohmann::ordered_json frames = {};
   /// What was recorded of runs by running them again (bench/replay), by name.
   std::map<std::string, nlohmann::ordered_json> replay_of = {}, views_of = {};
 };

@@ -74,8 +74,8 @@ std::vector<Arm> arms_of(const Suite& suite) {
 std::string definitions_text(const Suite& suite) {
   return fmt::format(
       "Success: a pose was returned, right or wrong. Correct: returned, and within {:g} m and "
-      "{:g}° "
-      "of the true pose, measured from the nearest mapped frame: a bent map is no error of its "
+      "{:g}° of the true pose, measured from the nearest mapped frame: a bent map is no error of "
+      "its "
       "answers. False positive: returned, and not correct.",
       suite.protocol.correct_distance_m, suite.protocol.correct_angle_deg);
 }
@@ -105,7 +105,9 @@ Json table1_json(const Suite& suite, std::span<const CategoryRow> rows) {
 Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
   PageTable table("Table 2: relocalization",
                   "Means over all environments of the suite. " + definitions_text(suite) +
-                      " Published, other data: a real house of 60 m², labels from YOLOv3's boxes.");
+                      (suite.published ? " Published, other data: a real house of 60 m², labels "
+                                         "from YOLOv3's boxes."
+                                       : ""));
   const PageColumn queries{"query_set", "queries"},
       count{"queries", "queries per environment", "", 1}, success{"success", "success", "%", 2},
       correct{"correct", "correct", "%", 2}, false_positive{"false_positive", "false pos.", "%", 2},
@@ -126,13 +128,14 @@ Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
       table.text(remark, remark_on(suite, row, s));
     }
   if (table.rows() == 0) return nullptr;  // no queries were asked
-  for (const PublishedRow& row : kTable2) {
-    table.begin_row();
-    table.text(kSystem, row.system);
-    table.text(queries, "published, other data");
-    table.number(success, row.success);
-    table.number(mean_m, row.distance_m);
-  }
+  if (suite.published)
+    for (const PublishedRow& row : kTable2) {
+      table.begin_row();
+      table.text(kSystem, row.system);
+      table.text(queries, "published, other data");
+      table.number(success, row.success);
+      table.number(mean_m, row.distance_m);
+    }
   return table.json();
 }
 
@@ -162,6 +165,7 @@ Json candidates_json(const Suite& suite, std::span<const CategoryRow> rows) {
       table.number(mass, s.label_mass);
     }
   if (table.rows() == 0) return nullptr;
+  if (!suite.published) return table.json();
   table.begin_row();
   table.text(kSystem, "the paper's semantic system");
   table.text(queries, "published, other data");

@@ -32,17 +32,20 @@ std::string definitions_text(const Suite& suite);
 /// The paper's Table 1: a row per category and system; null for a suite of one environment.
 nlohmann::ordered_json table1_json(const Suite& suite, std::span<const CategoryRow> rows);
 
-/// The paper's Table 2: a row per level, labels, query set and system, with the published figures.
+/// The paper's Table 2: a row per level, labels, query set and system; the published figures where
+/// the suite names them (`published`).
 nlohmann::ordered_json table2_json(const Suite& suite, std::span<const CategoryRow> rows);
 
-/// Section 3.3.3: keyframes left after each step of Algorithm 1, as shares, with the published.
+/// Section 3.3.3: keyframes left after each step of Algorithm 1, as shares; the published ones
+/// where the suite names them.
 nlohmann::ordered_json candidates_json(const Suite& suite, std::span<const CategoryRow> rows);
 
 /// A row per run: what it is, whether it failed, every metric at its first point, its cost.
 nlohmann::ordered_json runs_json(const PagesSource& source);
 
 /// A row per query of every run and point, with its cause where an audit states one.
-nlohmann::ordered_json queries_json(const PagesSource& source);
+/// @param only  this run alone; null: all
+nlohmann::ordered_json queries_json(const PagesSource& source, const RunResult* only = nullptr);
 
 /// The rows of audit.json and, apart, those of single environments; null without an audit.
 nlohmann::ordered_json audit_tables_json(const PagesSource& source);

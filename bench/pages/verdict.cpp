@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "bench/pages/headlines.hpp"
 #include "bench/pages/page_table.hpp"
 #include "bench/report/wording.hpp"
 #include "slam/core/counted.hpp"
@@ -60,18 +62,9 @@ std::string needed_text(const Comparison& c, bool over_scenes) {
                      needed_pairs(c, *needed, over_scenes));
 }
 
-/// One comparison with what it is of.
-struct Judged {
-  SystemPair systems;
-  std::size_t level = 0;
-  std::string environment;  ///< empty: over all of them
-  Comparison comparison;
-  bool saturated = false;  ///< both systems answer nearly everything
-};
-
-/// Whether both systems answer so many of the queries that no difference could show.
+/// Whether both systems do so well that no difference could show.
 bool both_answer_all(std::span<const Row> rows, const Judged& j, const Suite& suite) {
-  if (j.comparison.what.measure != "success") return false;
+  if (j.comparison.what.measure != name(suite.measure)) return false;
   const auto share = [&](std::size_t system) {
     std::vector<double> shares;
     for (const Row& row : rows)
@@ -81,7 +74,9 @@ bool both_answer_all(std::span<const Row> rows, const Judged& j, const Suite& su
             with_labels(row.labels) == j.comparison.what.labels && !row.trials.empty() &&
             (j.environment.empty() || suite.environments[row.environment].name == j.environment) &&
             summary(row, set).queries > 0)
-          shares.push_back(summary(row, set).success);
+          shares.push_back(suite.measure == Measure::kSuccess
+                               ? summary(row, set).success
+                               : summary(row, set).correct.value_or(0));
     return mean(shares);
   };
   return share(j.systems.first) > kSaturated && share(j.systems.second) > kSaturated;
@@ -97,33 +92,7 @@ std::string compared(const Suite& suite, const SystemPair& systems, const Compar
   return what.text();
 }
 
-std::string sentence(const Suite& suite, const Judged& j) {
-  const Comparison& c = j.comparison;
-  std::string what = compared(suite, j.systems, c);
-  std::ranges::replace(what, '_', ' ');
-  const std::string& first = suite.systems[j.systems.first].name;
-  const std::string& second = suite.systems[j.systems.second].name;
-  const bool over_scenes = j.environment.empty();
-  if (c.pairs == 0)
-    return fmt::format("{}: {} and {} cannot be compared: nothing that both have a value for.",
-                       what, first, second);
-  const std::string interval =
-      std::isfinite(c.low) && std::isfinite(c.high)
-          ? fmt::format("95 % interval {} to {}", amount(c, c.low, false), amount(c, c.high, false))
-          : std::string("too few for an interval");
-  const Verdict v = verdict(c);
-  if (v != Verdict::kUndecided)
-    return fmt::format("{} is better than {} in {}: {} ({}) over {}.",
-                       v == Verdict::kFirstBetter ? first : second,
-                       v == Verdict::kFirstBetter ? second : first, what, amount(c, c.difference),
-                       interval, pairs_text(c, over_scenes));
-  return fmt::format(
-      "Undecided whether {} or {} is better in {}{}: {} ({}) over {}.{}", first, second, what,
-      c.more_is_better ? "" : " (less is better)", amount(c, c.difference), interval,
-      pairs_text(c, over_scenes),
-      j.saturated ? " Saturated: both answer nearly everything, so that no difference can show."
-                  : needed_text(c, over_scenes));
-}
+}  // namespace
 
 std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
   std::vector<Judged> all;
@@ -140,15 +109,13 @@ std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
             {family.systems, family.level, suite.environments[family.environment].name, c});
   }
   for (Judged& j : all) j.saturated = both_answer_all(rows, j, suite);
-  // Success first: the paper's first measure; what is judged before what is shown beside it.
-  std::ranges::stable_sort(all, {}, [](const Judged& j) {
+  // What the suite is judged by first, then what else is judged, then what stands beside it.
+  std::ranges::stable_sort(all, {}, [&](const Judged& j) {
     const Comparison& c = j.comparison;
-    return std::array{c.pairs == 0, c.what.measure != "success", !c.in_family};
+    return std::array{c.pairs == 0, !c.in_family, c.what.measure != name(suite.measure)};
   });
   return all;
 }
-
-}  // namespace
 
 std::optional<double> pairs_to_decide(const Comparison& c) {
   const double size = static_cast<double>(c.clusters > 0 ? c.clusters : c.pairs);
@@ -158,8 +125,22 @@ std::optional<double> pairs_to_decide(const Comparison& c) {
   return std::ceil(size * ratio * ratio);
 }
 
-std::string verdict_sentence(const Suite& suite, const SystemPair& systems, const Comparison& c) {
-  return sentence(suite, {systems, 0, suite.environments.size() > 1 ? "" : "here", c});
+std::string finding(const Suite& suite, const Judged& j) {
+  const Comparison& c = j.comparison;
+  std::string what = compared(suite, j.systems, c);
+  std::ranges::replace(what, '_', ' ');
+  what.front() = static_cast<char>(std::toupper(what.front()));
+  if (c.pairs == 0) return what + ": nothing that both have a value for.";
+  const bool over_scenes = j.environment.empty();
+  const std::string interval =
+      std::isfinite(c.low) && std::isfinite(c.high)
+          ? fmt::format("95 % interval {} to {}", amount(c, c.low, false), amount(c, c.high, false))
+          : std::string("too few for an interval");
+  return fmt::format("{}: {} ({}) over {}.{}", what, amount(c, c.difference), interval,
+                     pairs_text(c, over_scenes),
+                     verdict(c) != Verdict::kUndecided ? ""
+                     : j.saturated ? " Saturated: both do so well that no difference can show."
+                                   : needed_text(c, over_scenes));
 }
 
 Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
@@ -168,30 +149,35 @@ Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
       "First minus second, 95 % bootstrap intervals, p corrected by Holm over the "
       "declared family; shares in percentage points, distances in mm. p of pooled rows is "
       "of random signs, so that it has a least value.");
-  Json sentences = Json::array();
-  for (const Judged& j : judged(suite, rows)) {
+  Json differences = Json::array();
+  const std::vector<Judged> all = judged(suite, rows);
+  for (const Judged& j : all) {
     const Comparison& c = j.comparison;
     const auto known = [&](double value) {
       return c.pairs > 0 ? std::optional(value) : std::nullopt;
     };
-    const char* unit = is_share(c) ? "%" : "m";
+    const std::string& first = suite.systems[j.systems.first].name;
+    const std::string& second = suite.systems[j.systems.second].name;
+    const std::string& level = level_name(suite.levels[j.level]);
     const Verdict v = verdict(c);
-    sentences.push_back({{"text", sentence(suite, j)},
-                         {"decided", v != Verdict::kUndecided},
-                         {"in_family", c.in_family},
-                         {"what", compared(suite, j.systems, c)},
-                         {"level", level_name(suite.levels[j.level])},
-                         {"unit", unit},
-                         {"first", suite.systems[j.systems.first].name},
-                         {"second", suite.systems[j.systems.second].name},
-                         {"difference", page_number(known(c.difference))},
-                         {"low", page_number(known(c.low))},
-                         {"high", page_number(known(c.high))}});
+    differences.push_back({{"finding", finding(suite, j)},
+                           {"decided", v != Verdict::kUndecided},
+                           {"in_family", c.in_family},
+                           {"pooled", c.clusters > 0},
+                           {"measure", c.what.measure},
+                           {"what", compared(suite, j.systems, c)},
+                           {"level", level},
+                           {"unit", is_share(c) ? "%" : "m"},
+                           {"first", first},
+                           {"second", second},
+                           {"difference", page_number(known(c.difference))},
+                           {"low", page_number(known(c.low))},
+                           {"high", page_number(known(c.high))}});
     table.begin_row();
     table.text({"what", "compared"}, compared(suite, j.systems, c));
-    table.text({"level", "level"}, level_name(suite.levels[j.level]));
-    table.text({"first", "first"}, suite.systems[j.systems.first].name);
-    table.text({"second", "second"}, suite.systems[j.systems.second].name);
+    table.text({"level", "level"}, level);
+    table.text({"first", "first"}, first);
+    table.text({"second", "second"}, second);
     const bool over_scenes = j.environment.empty();
     const auto scaled = [&](double value) { return known(shown(c, value)); };
     table.text({"over", "over"}, c.pairs > 0 ? pairs_text(c, over_scenes) : "");
@@ -204,13 +190,14 @@ Json verdicts_json(const Suite& suite, std::span<const Row> rows) {
     table.number({"detectable", "detectable", "", 2}, scaled(c.detectable));
     const auto needed = pairs_to_decide(c);
     table.text({"needed", "would decide"}, needed ? needed_pairs(c, *needed, over_scenes) : "");
-    table.text({"verdict", "verdict"}, !c.in_family               ? "beside the family"
-                                       : v == Verdict::kUndecided ? "undecided"
-                                       : v == Verdict::kFirstBetter
-                                           ? suite.systems[j.systems.first].name + " is better"
-                                           : suite.systems[j.systems.second].name + " is better");
+    table.text({"verdict", "verdict"}, !c.in_family                 ? "beside the family"
+                                       : v == Verdict::kUndecided   ? "no difference shown"
+                                       : v == Verdict::kFirstBetter ? first + " is better"
+                                                                    : second + " is better");
   }
-  return {{"sentences", sentences}, {"table", table.json()}};
+  return {{"headlines", headlines_json(suite, rows, all)},
+          {"differences", differences},
+          {"table", table.json()}};
 }
 
 }  // namespace mh

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -16,11 +17,24 @@ namespace mh {
 /// square root of their number. Absent if no difference was observed or nothing can be detected.
 std::optional<double> pairs_to_decide(const Comparison& comparison);
 
-/// A comparison in one sentence with its interval, as a reader of the overview sees it.
-std::string verdict_sentence(const Suite& suite, const SystemPair& systems, const Comparison& c);
+/// One comparison with what it is of.
+struct Judged {
+  SystemPair systems;
+  std::size_t level = 0;
+  std::string environment = {};  ///< empty: over all of them
+  Comparison comparison;
+  bool saturated = false;  ///< both systems do so well that no difference can show
+};
 
-/// Every comparison of a suite, over scenes where it has several: a table with a sentence each. The
-/// sentence that matters most comes first: success in the declared family.
+/// Every comparison of a suite at its first parameter point, over scenes where it has several;
+/// those by the suite's measure first.
+std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows);
+
+/// A comparison in figures: the difference with its interval, over what, and how many pairs would
+/// decide it if nothing was shown.
+std::string finding(const Suite& suite, const Judged& judged);
+
+/// Headlines (headlines.hpp), and every comparison: as a list for charts, and as a table.
 nlohmann::ordered_json verdicts_json(const Suite& suite, std::span<const Row> rows);
 
 }  // namespace mh

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "bench/pages/curves.hpp"
+#include "bench/pages/headlines.hpp"
 #include "bench/pages/page_table.hpp"
+#include "bench/pages/place_images.hpp"
 #include "bench/pages/run_page.hpp"
 #include "bench/pages/tables.hpp"
 #include "bench/pages/verdict.hpp"
@@ -59,41 +61,46 @@ void remove_earlier_data(const fs::path& folder) {
       fs::remove(entry.path(), error);
 }
 
-/// What a reader must know before any figure.
-Json remarks_json(const PagesSource& source) {
-  Json remarks = Json::array();
-  if (!source.problem.empty()) remarks.push_back(source.problem);
+/// What makes figures other than the suite's own: a reader must know it first.
+Json warnings_json(const PagesSource& source) {
+  Json warnings = Json::array();
+  if (!source.problem.empty()) warnings.push_back(source.problem);
   const BenchResults& r = source.results;
   if (std::ranges::any_of(r.runs, [](const RunResult& run) { return run.place.cut; }))
-    remarks.push_back(fmt::format(
+    warnings.push_back(fmt::format(
         "Shortened to the first {} of each tour: a quick look, no result of this suite.",
         counted(source.suite->max_frames.value_or(0), "frame")));
   if (!r.failed.empty())
-    remarks.push_back(fmt::format("{} failed; the figures do not include them.",
-                                  counted(r.failed.size(), "run")));
+    warnings.push_back(fmt::format("{} failed; the figures do not include them.",
+                                   counted(r.failed.size(), "run")));
   if (const auto gave_up =
           std::ranges::count_if(r.runs, [](const RunResult& run) { return run.mapping.gave_up; });
       gave_up > 0)
-    remarks.push_back(
+    warnings.push_back(
         fmt::format("{} gave up mapping (protocol: max_effort) after going back too often; the "
                     "figures include what they mapped until then.",
                     counted(static_cast<std::size_t>(gave_up), "run")));
   if (!r.missing.empty())
-    remarks.push_back(fmt::format("{} not made yet; the figures do not include them.",
-                                  counted(r.missing.size(), "run")));
-  if (source.suite && source.suite->trials == 1)
-    remarks.push_back("One trial: this holds for these maps; other seeds draw other maps.");
-  if (source.suite && std::ranges::any_of(source.suite->environments, &Environment::is_recorded))
-    remarks.push_back("Recordings have one noise: trials differ in RANSAC's draws alone.");
-  if (source.suite)
-    for (const std::string& line : base_lines(*source.suite)) remarks.push_back(line);
+    warnings.push_back(fmt::format("{} not made yet; the figures do not include them.",
+                                   counted(r.missing.size(), "run")));
   if (source.reproduction.is_object() &&
       source.reproduction.value("commit", "").ends_with("-dirty"))
-    remarks.push_back(fmt::format("Made by a program with changes that were not committed ({}).",
-                                  source.reproduction.value("commit", "")));
+    warnings.push_back(fmt::format("Made by a program with changes that were not committed ({}).",
+                                   source.reproduction.value("commit", "")));
   for (const std::string& file : source.damaged)
-    remarks.push_back(fmt::format("{} is damaged and left out.", file));
-  return remarks;
+    warnings.push_back(fmt::format("{} is damaged and left out.", file));
+  return warnings;
+}
+
+/// How the figures were made, for who wants to know.
+Json notes_json(const Suite& suite) {
+  Json notes = Json::array();
+  if (suite.trials == 1)
+    notes.push_back("One trial: this holds for these maps; other seeds draw other maps.");
+  if (std::ranges::any_of(suite.environments, &Environment::is_recorded))
+    notes.push_back("Recordings have one noise: trials differ in RANSAC's draws alone.");
+  for (const std::string& line : base_lines(suite)) notes.push_back(line);
+  return notes;
 }
 
 /// Where tables and figures are if the suite sweeps settings; otherwise null.
@@ -126,20 +133,23 @@ Json suite_facts(const Suite& suite) {
           {"systems", systems},
           {"labels", labels},
           {"levels", levels_json(suite)},
+          {"measure", name(suite.measure)},
           {"settings", suite_json(suite)}};
 }
 
 void write_source(Pieces& pieces, const std::string& place, const PagesSource& source,
                   std::size_t moments) {
-  Json overview = {{"remarks", remarks_json(source)}};
+  Json overview = {{"warnings", warnings_json(source)}, {"notes", Json::array()}};
   Json figures = Json::object();
   if (source.suite) {
     const Suite& suite = *source.suite;
     const std::vector<Row> rows = make_rows(suite, source.results.runs, source.results.failed);
     const std::vector<CategoryRow> categories = make_category_rows(suite, rows);
     overview["suite"] = suite_facts(suite);
+    overview["notes"] = notes_json(suite);
     overview["definitions"] = definitions_text(suite);
     overview["verdicts"] = verdicts_json(suite, rows);
+    overview["tiles"] = tiles_json(suite, rows, categories);
     overview["table1"] = table1_json(suite, categories);
     overview["table2"] = table2_json(suite, categories);
     figures = {{"candidates", candidates_json(suite, categories)},
@@ -149,6 +159,7 @@ void write_source(Pieces& pieces, const std::string& place, const PagesSource& s
                {"graded", graded_json(suite, rows)}};
   }
   pieces.put(place + "/overview", overview);
+  pieces.put(place + "/place", place_images_json(source));
   pieces.put(place + "/figures", figures);
   pieces.put(place + "/runs", runs_json(source));
   pieces.put(place + "/queries", queries_json(source));

@@ -26,6 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
+constexpr Names<Measure, 2> kMeasures{
+    {{"correct", Measure::kCorrect}, {"success", Measure::kSuccess}}};
 
 /// @throws InputError at this place if no system of the suite has the name.
 std::size_t system_named(const YamlReader& node, const std::vector<SystemSpec>& systems) {
@@ -176,6 +178,10 @@ YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
 
 }  // namespace
 
+std::string_view name(Measure measure) {
+  return name_of(measure, kMeasures);
+}
+
 bool fits(const Environment& environment, const Labels& labels) {
   return labels.mode == LabelMode::kNone ||
          environment.is_recorded() == (labels.mode == LabelMode::kRecorded);
@@ -235,7 +241,10 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   if (const auto study = yaml.find("study")) check_design(*study, paths);
   if (const auto published = yaml.find("published"))
     suite.published = one_of(*published, kPublished);
+  if (const auto measure = yaml.find("measure")) suite.measure = one_of(*measure, kMeasures);
+  bool states_readout = false;
   if (auto slam = yaml.find("slam")) {
+    states_readout = slam->has("track") && slam->at("track").has("readout_s");
     suite.slam = read_slam_config(*slam);
     slam->finish();
   }
@@ -245,10 +254,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     yaml.at("parameters").fail("the suite has a sweep of its own: leave --vary out");
   if (sweep) {
     suite.sweep = read_sweep(*sweep, suite.slam);
-  if (const auto measure = yaml.find("measure")) suite.measure = one_of(*measure, kMeasures);
-  bool states_readout = false;
     if (yaml.has("study"))
-    states_readout = slam->has("track") && slam->at("track").has("readout_s");
       sweep->fail(
           "a sweep in a stated study would choose among its points by the rooms that evaluate "
           "them. "
@@ -295,18 +301,18 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     suite.gate = read_gate(*check, names_of_all);
   }
   yaml.finish();
-
-  if (overrides.scene) {
-    if (files_must_exist && !is_scannet_scene(*overrides.scene)) require_readable(*overrides.scene);
-    Environment& environment = only_environment(suite, "--scene");
-    environment.scene = *overrides.scene;
-    environment.frame = {};
   states_readout = states_readout || std::ranges::count(suite.sweep.varied, "track.readout_s") > 0;
   for (const SystemSpec& system : suite.systems)
     for (const auto& [setting, value] : system.settings)
       states_readout = states_readout || setting == "track.readout_s";
   for (Environment& e : suite.environments)
     e.suite_states_readout = states_readout && e.is_recorded();
+
+  if (overrides.scene) {
+    if (files_must_exist && !is_scannet_scene(*overrides.scene)) require_readable(*overrides.scene);
+    Environment& environment = only_environment(suite, "--scene");
+    environment.scene = *overrides.scene;
+    environment.frame = {};
     suite.scene_replaced = true;
   }
   if (overrides.frame.up) only_environment(suite, "--up").frame.up = overrides.frame.up;

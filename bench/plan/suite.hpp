@@ -25,11 +25,17 @@ namespace mh {
 /// A table of the paper that a suite reproduces.
 enum class Published { kTable2 };
 
+/// By which share of a system's answers it is judged.
+enum class Measure { kCorrect, kSuccess };
+
 /// Two systems of a suite, by index.
 struct SystemPair {
   std::size_t first = 0, second = 0;
   friend bool operator==(const SystemPair&, const SystemPair&) = default;
 };
+
+/// "correct", "success"
+std::string_view name(Measure measure);
 
 /// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
 struct Suite {
@@ -53,8 +59,10 @@ struct Suite {
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;
-  /// The first of a pair is non-inferior if the confidence interval of its success rate minus the
-  /// second's lies above -margin. Fixed in the suite, before any measurement.
+  /// What decides which system is better; the other share stands beside it.
+  Measure measure = Measure::kCorrect;
+  /// The first of a pair is non-inferior if the confidence interval of its share by `measure` minus
+  /// the second's lies above -margin. Fixed in the suite, before any measurement.
   std::optional<double> non_inferiority_margin;
   std::optional<Published> published;      ///< results to show next to the measured ones
   GateConfig gate;                         ///< what `modelhouse check` tolerates

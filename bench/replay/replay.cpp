@@ -10,8 +10,8 @@
 #include <meshoptimizer.h>
 
 #include "bench/audit/audit.hpp"
-#include "bench/replay/packed.hpp"
 #include "bench/replay/views.hpp"
+#include "bench/report/packed.hpp"
 #include "scenes/mesh_io/seen_colors.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/labels.hpp"

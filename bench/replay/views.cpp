@@ -6,15 +6,13 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
 
 #include "bench/audit/ask_again.hpp"
 #include "bench/audit/true_map.hpp"
 #include "bench/protocol/usable_frame.hpp"
 #include "bench/provenance/digest.hpp"
-#include "bench/replay/packed.hpp"
+#include "bench/report/packed.hpp"
 #include "bench/run/run_one.hpp"
-#include "scenes/image_file.hpp"
 #include "sim/sensors/lens.hpp"
 #include "slam/core/error.hpp"
 
@@ -67,7 +65,7 @@ class ViewsOf {
       };
       list.push_back({{"frame", call.index},
                       {"ms", (keyframe.stamp_ns - run_.truth.front().stamp_ns) / 1'000'000},
-                      {"jpeg", image(shown(call))},
+                      {"jpeg", small_jpeg(shown(call).color, kViewWidth_px)},
                       {"keypoints", keypoints(keyframe.features, flag_of)}});
     }
     return list;
@@ -111,7 +109,7 @@ class ViewsOf {
     return {{"set", name(set)},
             {"frame", score.answer.index},
             {"stage", name(answer.stage)},
-            {"jpeg", image(frame)},
+            {"jpeg", small_jpeg(frame.color, kViewWidth_px)},
             {"keypoints", keypoints(prepared.features, [](std::size_t) { return 0U; })},
             {"candidates", std::move(tried)}};
   }
@@ -156,17 +154,6 @@ class ViewsOf {
       const double tenths = std::round(10.0 * ((pixel + 0.5) * scale_ - 0.5));
       put(bytes, static_cast<std::uint32_t>(std::clamp(tenths, 0.0, 65535.0)), 2);
     }
-  }
-
-  std::string image(const RgbdFrame& frame) const {
-    constexpr int kQuality = 72;
-    const Grid2d<Rgb8>& color = frame.color;
-    const cv::Mat whole(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data()));
-    Grid2d<Rgb8> small(static_cast<int>(std::lround(color.width() * scale_)),
-                       static_cast<int>(std::lround(color.height() * scale_)));
-    cv::Mat out(small.height(), small.width(), CV_8UC3, small.data());
-    cv::resize(whole, out, out.size(), 0, 0, cv::INTER_AREA);
-    return base64(encode_jpeg(small, kQuality));
   }
 
   const RunResult& run_;

@@ -42,9 +42,10 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
                      p.starts_with('<') ? "" : "= ", p, corrected);
 }
 
-/// The line of a comparison of success for a suite that states a margin.
+/// The line of a comparison by the suite's measure for a suite that states a margin.
 std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
-  if (!suite.non_inferiority_margin || c.pairs == 0 || c.what.measure != "success") return "";
+  if (!suite.non_inferiority_margin || c.pairs == 0 || c.what.measure != name(suite.measure))
+    return "";
   const double margin = *suite.non_inferiority_margin;
   const std::string finding = fmt::format("{} is not worse", names.first);
   return fmt::format("  {:<61} {} by more than the {:.3f} stated beforehand\n", "",
@@ -54,13 +55,14 @@ std::string margin_line(const Suite& suite, const PairNames& names, const Compar
                      margin);
 }
 
-/// "semantic minus plain, level pepper: HOW, 95 % intervals, Holm over 4 comparisons of WHAT"
+/// "semantic minus plain, level pepper: HOW, 95 % intervals, Holm over 4 comparisons of correct"
+/// and what else there is
 std::string heading(const Suite& suite, const SystemPair& systems, std::size_t level,
                     std::span<const Comparison> comparisons, const char* how, const char* what) {
   const PairNames names(suite, systems);
-  return fmt::format("\n{} minus {}, level {}: {}, Holm over {} of {}\n", names.first, names.second,
-                     level_name(suite.levels[level]), how,
-                     counted(family_size(comparisons), "comparison"), what);
+  return fmt::format("\n{} minus {}, level {}: {}, Holm over {} of {}{}\n", names.first,
+                     names.second, level_name(suite.levels[level]), how,
+                     counted(family_size(comparisons), "comparison"), name(suite.measure), what);
 }
 
 }  // namespace
@@ -73,7 +75,7 @@ std::string interval(const Comparison& c) {
 
 std::string comparisons_text(const Suite& suite, const Family& family) {
   std::string text = heading(suite, family.systems, family.level, family.comparisons,
-                             "blocks of queries resampled, 95 % intervals", "success and distance");
+                             "blocks of queries resampled, 95 % intervals", " and distance");
   if (suite.trials == 1)
     text += "  one trial: this holds for these maps; other seeds draw other maps (--trials 10)\n";
   const PairNames names(suite, family.systems);
@@ -83,9 +85,9 @@ std::string comparisons_text(const Suite& suite, const Family& family) {
 }
 
 std::string comparisons_text(const Suite& suite, const SceneFamily& family) {
-  std::string text = heading(suite, family.systems, family.level, family.comparisons,
-                             "scenes resampled, 95 % intervals, Wilcoxon signed-rank",
-                             "success, distance and ATE");
+  std::string text =
+      heading(suite, family.systems, family.level, family.comparisons,
+              "scenes resampled, 95 % intervals, Wilcoxon signed-rank", ", distance and ATE");
   const PairNames names(suite, family.systems);
   const std::size_t scenes = suite.environments.size();
   for (const Comparison& c : family.comparisons) {

@@ -100,7 +100,7 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
         Json json = comparison_json(suite, family.systems, c);
         json["level"] = level_name(suite.levels[family.level]);
         json["parameters"] = family.parameters;
-        if (suite.non_inferiority_margin && c.what.measure == "success")
+        if (suite.non_inferiority_margin && c.what.measure == name(suite.measure))
           json["not_inferior"] = not_inferior(c, *suite.non_inferiority_margin);
         over_scenes.push_back(std::move(json));
       }

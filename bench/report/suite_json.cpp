@@ -158,6 +158,7 @@ Json suite_json(const Suite& suite) {
       {"graded", suite.graded ? to_json(*suite.graded) : Json()},
       {"episodes", episodes_json(suite)},
       {"compare", compare_json(suite)},
+      {"measure", name(suite.measure)},
       {"non_inferiority_margin", json_of(suite.non_inferiority_margin)},
       {"protocol", to_json(suite.protocol)}};
 }

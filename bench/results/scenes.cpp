@@ -89,7 +89,8 @@ PairedDifference ate(const Row& a, const Row& b, QuerySet) {
 
 std::vector<Comparison> compare(const std::vector<const Row*>& first,
                                 const std::vector<const Row*>& second, const Labels& labels,
-                                std::uint64_t seed) {
+                                const Suite& suite) {
+  const std::uint64_t seed = suite.seed;
   std::vector<Comparison> comparisons;
   const auto add = [&](const Compared& what, Difference between_rows, QuerySet set,
                        bool more_is_better, bool in_family) {
@@ -122,9 +123,11 @@ std::vector<Comparison> compare(const std::vector<const Row*>& first,
     const auto what = [&](const char* measure, const char* unit = "") {
       return Compared{measure, unit, std::string(name(set)), with_labels(labels)};
     };
-    add(what("success"), share<&QuerySummary::success>, set, true, true);
+    add(what("success"), share<&QuerySummary::success>, set, true,
+        suite.measure == Measure::kSuccess);
     add_pooled(what("pooled success"), paired_success, set);
-    add(what("correct"), share<&QuerySummary::correct>, set, true, false);
+    add(what("correct"), share<&QuerySummary::correct>, set, true,
+        suite.measure == Measure::kCorrect);
     add_pooled(what("pooled correct"), paired_correct, set);
     add(what("false positive"), share<&QuerySummary::false_positive>, set, false, false);
     add(what("distance where both answer", "m"), distance, set, false, true);
@@ -166,9 +169,9 @@ std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const
       for (std::size_t p = 0; p < parameter_points(suite).size(); ++p) {
         SceneFamily family{level, p, systems, {}};
         for (const Labels& labels : suite.labels)
-          for (Comparison& c : compare(scenes_of(suite, rows, level, labels, p, systems.first),
-                                       scenes_of(suite, rows, level, labels, p, systems.second),
-                                       labels, suite.seed))
+          for (Comparison& c :
+               compare(scenes_of(suite, rows, level, labels, p, systems.first),
+                       scenes_of(suite, rows, level, labels, p, systems.second), labels, suite))
             family.comparisons.push_back(std::move(c));
         if (family.comparisons.empty()) continue;
         holm(family.comparisons);
@@ -177,12 +180,12 @@ std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const
   return families;
 }
 
-bool enough_for(const Comparison& success, double margin) {
-  return margin * static_cast<double>(success.pairs) >= 3.0;
+bool enough_for(const Comparison& share, double margin) {
+  return margin * static_cast<double>(share.pairs) >= 3.0;
 }
 
-bool not_inferior(const Comparison& success, double margin) {
-  return success.low > -margin && enough_for(success, margin);
+bool not_inferior(const Comparison& share, double margin) {
+  return share.low > -margin && enough_for(share, margin);
 }
 
 }  // namespace mh

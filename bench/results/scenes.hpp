@@ -34,9 +34,10 @@ inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
 std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const Row> rows);
 
 /// First minus second of each pair that the suite compares, over scenes: one family per pair, level
-/// and parameter point, corrected by Holm. Success, correct, false positive, distance over the
-/// queries that both answered, ATE over the frames that both tracked. Beside the means over scenes,
-/// outside the family: success and correct of all queries pooled, with scenes as clusters.
+/// and parameter point, corrected by Holm. In it are the share that the suite's `measure` names,
+/// correct or success, distance over the queries that both answered, ATE over the frames that both
+/// tracked. Outside stand the other share, false positive, and both shares of all queries pooled,
+/// with scenes as clusters.
 struct SceneFamily {
   std::size_t level = 0, parameters = 0;
   SystemPair systems;
@@ -46,10 +47,10 @@ std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const
 
 /// Whether there are enough pairs to detect a loss as large as the margin: by the rule of three,
 /// fewer than 3 / margin may well contain no loss at all.
-bool enough_for(const Comparison& success, double margin);
+bool enough_for(const Comparison& share, double margin);
 
 /// Whether the interval of a share stays above -margin, over enough pairs: not inferior by more
 /// than the margin.
-bool not_inferior(const Comparison& success, double margin);
+bool not_inferior(const Comparison& share, double margin);
 
 }  // namespace mh

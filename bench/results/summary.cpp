@@ -92,7 +92,8 @@ std::vector<PairedDifference> paired_correct(const Row& first, const Row& second
 
 namespace {
 
-std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::uint64_t seed) {
+std::vector<Comparison> compare_rows(const Row& first, const Row& second, const Suite& suite) {
+  const std::uint64_t seed = suite.seed;
   std::vector<Comparison> comparisons;
   for (const QuerySet set : kQuerySets) {
     if (summary(first, set).queries == 0) continue;
@@ -100,8 +101,10 @@ std::vector<Comparison> compare_rows(const Row& first, const Row& second, std::u
       c.what = {measure, unit, std::string(name(set)), with_labels(first.labels)};
       return comparisons.emplace_back(std::move(c));
     };
-    add("success", "", compare_paired(paired_success(first, second, set), true, seed));
-    add("correct", "", compare_correct(first, second, set, seed)).in_family = false;
+    add("success", "", compare_paired(paired_success(first, second, set), true, seed)).in_family =
+        suite.measure == Measure::kSuccess;
+    add("correct", "", compare_correct(first, second, set, seed)).in_family =
+        suite.measure == Measure::kCorrect;
     add("distance where both answer", "m", compare_distances(first, second, set, seed))
         .more_is_better = false;
   }
@@ -251,7 +254,7 @@ std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> row
       if (families.empty() || families.back().environment != first.environment ||
           families.back().level != first.level || families.back().systems != systems)
         families.push_back({first.environment, first.level, systems, {}});
-      for (Comparison& c : compare_rows(first, *second, suite.seed))
+      for (Comparison& c : compare_rows(first, *second, suite))
         families.back().comparisons.push_back(std::move(c));
     }
   for (Family& family : families) holm(family.comparisons);

@@ -59,9 +59,9 @@ struct Family {
 
 /// First minus second of each pair that the suite compares, at its first parameter point, for each
 /// environment, level, label kind, query set and measure. The family of one pair, environment and
-/// level, which Holm's correction covers, is the two figures of the paper's Table 2 for each label
-/// kind and query set: success, and the distance where both answer. *Correct* is shown alongside:
-/// without false positives it equals success.
+/// level, which Holm's correction covers, is for each label kind and query set the share that the
+/// suite's `measure` names, correct or success, and the distance where both answer. The other share
+/// is shown alongside.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 
 /// Per query that both were asked, in order: first minus second, each the median over trials.

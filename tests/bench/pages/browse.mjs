@@ -96,6 +96,7 @@ async function walk(browser, report, themesOf) {
         await go(place);
         const name = place.startsWith("run/") ? "run" : place;
         await checkCharts(page, `${report} ${name} ${size}`);
+        if (name === "overview" && size === "laptop") await firstScreen(page, `${report} ${name}`);
         const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         expect(wide <= 0, `${report} ${name} ${size}: ${wide} px wider than the window`);
         mkdirSync(join(screenshots, report), { recursive: true });
@@ -104,6 +105,25 @@ async function walk(browser, report, themesOf) {
       }
       await context.close();
     }
+}
+
+/** A newcomer sees at once who is better, what each system did, and the place. */
+async function firstScreen(page, where) {
+  if (!(await page.evaluate(() => globalThis.modelhouse.index.folders.some((folder) => folder.suite !== null)))) return;
+  const seen = await page.evaluate(() => {
+    const top = (selector) => document.querySelector(selector)?.getBoundingClientRect().top ?? 1e9;
+    return {
+      verdict: top(".verdict"),
+      tiles: top(".tiles"),
+      place: top(".first-screen figure"),
+      ate: [...document.querySelectorAll(".tiles dt")].some((dt) => dt.textContent === "ATE"),
+      text: document.querySelector(".verdict")?.textContent ?? "",
+    };
+  });
+  for (const what of ["verdict", "tiles", "place"]) expect(seen[what] < sizes.laptop.height, `${where}: ${what} at ${seen[what]} px is below the first screen`);
+  expect(seen.ate || where.includes("bare"), `${where}: no ATE among the tiles`);
+  expect(!/Undecided/.test(seen.text), `${where}: ${seen.text}`);
+  measured.first_screens = (measured.first_screens ?? 0) + 1;
 }
 
 async function firstRun(page, go) {

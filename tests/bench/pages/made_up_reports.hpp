@@ -10,7 +10,7 @@
 
 #include "bench/metrics/trajectory_score.hpp"
 #include "bench/pages/source.hpp"
-#include "bench/replay/packed.hpp"
+#include "bench/report/packed.hpp"
 #include "scenes/image_file.hpp"
 #include "tests/bench/results/made_up_results.hpp"
 

@@ -18,6 +18,7 @@
 #include "bench/inputs/run_key.hpp"
 #include "bench/plan/find_program.hpp"
 #include "bench/plan/runs.hpp"
+#include "bench/plan/shipped.hpp"
 #include "bench/plan/spec_json.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/core/error.hpp"
@@ -80,6 +81,17 @@ TEST_F(SuiteFile, ReadsWhatStandsThere) {
   EXPECT_EQ(suite.protocol.truth, QueryTruth::kInterpolated);
   EXPECT_EQ(suite.trials, 3);
   EXPECT_EQ(suite.seed, 7u);
+}
+
+TEST_F(SuiteFile, IsJudgedByCorrectAnswersUnlessItNamesSuccess) {
+  EXPECT_EQ(load("").measure, Measure::kCorrect);
+  EXPECT_EQ(load("measure: success\n").measure, Measure::kSuccess);
+  EXPECT_NE(error("measure: sucess\n").find("'sucess' is not one of correct, success"),
+            std::string::npos);
+  // Designs that were stated before measuring name success.
+  for (const char* name : {"four_arms", "rules_verdict", "table1", "like_rooms"})
+    EXPECT_EQ(load_suite(shipped_file(name, Shipped::kSuite)).measure, Measure::kSuccess) << name;
+  EXPECT_EQ(load_suite(shipped_file("model_house", Shipped::kSuite)).measure, Measure::kCorrect);
 }
 
 TEST_F(SuiteFile, RefusesADesignThatChangedSinceItWasStated) {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/replay/packed.hpp"
+#include "bench/report/packed.hpp"
 #include "scenes/image_file.hpp"
 #include "tests/bench/audit/box_room_run.hpp"
 

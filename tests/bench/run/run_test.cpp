@@ -893,8 +893,8 @@ TEST(Results, TellWhatASuiteAsks) {
   EXPECT_FALSE(kidnapped["goals"].empty());
 }
 
-TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsSuccessAndDistance) {
-  const Place place;
+TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsCorrectOrWhatTheSuiteNamesAndDistance) {
+  Place place;
   std::vector<RunResult> runs = place.run();
   const auto family = [&] {
     std::map<std::string, bool> counted;  // by what; whether it has a corrected p
@@ -904,8 +904,17 @@ TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsSuccessAndDistance) {
   };
   const auto of_all = family();
   EXPECT_EQ(of_all.size(), 12u);
-  for (const auto& [what, counts] : of_all) EXPECT_EQ(counts, !what.starts_with("correct")) << what;
-  EXPECT_NE(results_table(place.suite, runs).find("Holm over 8 comparisons"), std::string::npos);
+  for (const auto& [what, counts] : of_all) EXPECT_EQ(counts, !what.starts_with("success")) << what;
+  EXPECT_NE(
+      results_table(place.suite, runs).find("Holm over 8 comparisons of correct and distance"),
+      std::string::npos);
+  place.suite.measure = Measure::kSuccess;
+  for (const auto& [what, counts] : family())
+    EXPECT_EQ(counts, !what.starts_with("correct")) << what;
+  EXPECT_NE(
+      results_table(place.suite, runs).find("Holm over 8 comparisons of success and distance"),
+      std::string::npos);
+  place.suite.measure = Measure::kCorrect;
 
   for (RunResult& run : runs)
     if (run.spec.system.kind == SystemKind::kPlain)

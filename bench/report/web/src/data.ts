@@ -35,10 +35,13 @@ export interface Folder {
   levels: string[];
   damaged: string[]; // files beside the results
 }
-export interface Sentence {
-  text: string;
+/** One comparison of two systems. */
+export interface Difference {
+  finding: string; // in figures
   decided: boolean;
   in_family: boolean;
+  pooled: boolean;
+  measure: string; // "correct"
   what: string;
   level: string;
   unit: string;
@@ -48,8 +51,18 @@ export interface Sentence {
   low: number | null;
   high: number | null;
 }
+/** The verdict on a pair in one plain sentence, and the comparison that it rests on. */
+export interface Headline {
+  level: string;
+  first: string;
+  second: string;
+  text: string;
+  detail: string;
+  decided: boolean;
+}
 export interface Overview {
-  remarks: string[];
+  warnings: string[];
+  notes: string[];
   definitions?: string;
   suite?: {
     name: string;
@@ -58,11 +71,20 @@ export interface Overview {
     systems: string[];
     labels: string[];
     levels: string[];
+    measure: string; // what the suite is judged by: "correct" or "success"
     settings: unknown;
   };
-  verdicts?: { sentences: Sentence[]; table: WrittenTable };
+  verdicts?: { headlines: Headline[]; differences: Difference[]; table: WrittenTable };
+  tiles?: WrittenTable;
   table1?: WrittenTable | null;
   table2?: WrittenTable | null;
+}
+/** What the overview shows of a place. */
+export interface PlaceImages {
+  plans: { run: string; system: string; labels: string; environment: string; png: string }[];
+  run: RunPaths | null;
+  queries: WrittenTable | null;
+  frames: { environment: string; problem: string | null; list: { frame: number; jpeg: string }[] } | null;
 }
 export interface GradedShare {
   success: number;

@@ -27,7 +27,7 @@ function useArm(table: Table, noted: string): { rows: number[]; picker: JSX.Elem
 
 function Density({ folder, density }: { folder: Folder; density: NonNullable<Figures["density"]> }): JSX.Element {
   const table = useMemo(() => new Table(density.table), [density]);
-  const measures = table.columns.filter((c) => !c.isText && ["ate_rmse_m", "rpe_frame_rmse_m", "held_out.success", "held_out.distance_mean_m", "second_tour.success", "graded.success"].includes(c.key));
+  const measures = table.columns.filter((c) => !c.isText && ["ate_rmse_m", "rpe_frame_rmse_m", "held_out.correct", "held_out.success", "held_out.distance_mean_m", "second_tour.correct", "second_tour.success", "graded.correct", "graded.success"].includes(c.key));
   const place = folders.indexOf(folder);
   const [key, setKey] = useNoted(`measure-${place}`, measures[0]?.key ?? "");
   const { rows, picker, arm } = useArm(table, `level3-${place}`);
@@ -208,7 +208,8 @@ function FromAbove({ place }: { place: number }): JSX.Element {
   );
 }
 
-export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | undefined; queries: Table; chosen?: number | null }): JSX.Element {
+/** @param brief  without remarks on what is missing */
+export function RunFromAbove({ run, queries, chosen = null, brief = false }: { run: RunPaths | undefined; queries: Table; chosen?: number | null; brief?: boolean }): JSX.Element {
   const rows = useMemo(() => (run ? queries.where({ run: run.name }).filter((row) => (queries.number("point", row) ?? 0) === 0) : []), [run, queries]);
   const sets = [...new Set(rows.map((row) => queries.text("query_set", row)))];
   const usual = sets.includes("second_tour") ? "second_tour" : (sets[0] ?? "");
@@ -229,7 +230,7 @@ export function RunFromAbove({ run, queries, chosen = null }: { run: RunPaths | 
   return (
     <>
       {sets.length > 1 && <Choice label="Queries" options={sets.map((key) => ({ key, title: key.replaceAll("_", " ") }))} value={set} onPick={setSet} />}
-      {missing.length > 0 && <Missing>{missing.join(" ")}</Missing>}
+      {missing.length > 0 && !brief && <Missing>{missing.join(" ")}</Missing>}
       <Chart
         title={`From above: ${run.name}`}
         about={`x and y in m, in the frame of the truth; the estimate is aligned by its first pose${rows.length > 0 ? "; a line joins a query's true place and its answer, which is drawn as it was scored: relative to the nearest mapped frame" : ""}. Source: results.sqlite${run.grid ? ", map.pgm" : ""}.`}
@@ -259,7 +260,7 @@ export function FiguresPage(): JSX.Element {
                   <h2>Figure 3: error by density of objects</h2>
                   {figures.density ? <Density folder={folder} density={figures.density} /> : <Missing>No environment of this suite was generated, so that the number of its objects is unknown.</Missing>}
                   <h2>Figure 4: error against frames</h2>
-                  {figures.by_frame ? <ByFrame folder={folder} written={figures.by_frame} /> : <Missing>No run has both a true and an estimated path.</Missing>}
+                  {figures.by_frame ? <ByFrame folder={folder} written={figures.by_frame} /> : <Missing>No run has a true and an estimated path at the same moments.</Missing>}
                   <h2>Section 3.3.3: candidates</h2>
                   {figures.candidates ? <DataTable id={`cand-${place}`} table={new Table(figures.candidates)} /> : <Missing>No system reported its candidates: no queries were asked, or the system reports a trajectory alone.</Missing>}
                   <GradedCurves folder={folder} graded={figures.graded} />

@@ -2,24 +2,27 @@
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
 import { useCallback, useMemo } from "preact/hooks";
-import { type Overview, type Sentence, Table } from "../data";
+import { type Difference, type Folder, type Headline, type Overview, type PlaceImages, Table, shownNumber } from "../data";
+import { linkTo, useNoted } from "../route";
 import { colorOf, ink } from "../theme";
+import { styleOf } from "../view/arm";
 import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
-import { Facts, Missing, PerFolder, Piece } from "../view/parts";
+import { Choice, Missing, PerFolder, Piece } from "../view/parts";
+import { RunFromAbove } from "./figures";
 
-/** Intervals of all comparisons in one unit, around a line at no difference. */
-function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string }): JSX.Element | null {
+/** Intervals of comparisons in one unit, around a line at no difference. */
+function Differences({ all, unit }: { all: Difference[]; unit: string }): JSX.Element | null {
   const shown = useMemo(
     () =>
-      sentences
+      all
         .filter((s) => s.unit === unit && s.difference !== null)
         .map((s) => {
           const scale = unit === "%" ? 100 : 1000;
           const of = (value: number | null) => (value === null ? null : scale * value);
           return {
-            what: `${s.what.replaceAll("_", " ")}${sentences.some((o) => o.level !== s.level) ? `, ${s.level}` : ""}${
-              sentences.some((o) => o.first !== s.first || o.second !== s.second)
+            what: `${s.what.replaceAll("_", " ")}${all.some((o) => o.level !== s.level) ? `, ${s.level}` : ""}${
+              all.some((o) => o.first !== s.first || o.second !== s.second)
                 ? `: ${s.first} − ${s.second}`
                 : ""
             }`,
@@ -29,7 +32,7 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
             state: s.decided ? "decided" : s.in_family ? "undecided" : "not judged",
           };
         }),
-    [sentences, unit],
+    [all, unit],
   );
   const bounded = shown.filter((d) => d.low !== null && d.high !== null);
   const make = useCallback(
@@ -80,11 +83,11 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
     [shown],
   );
   if (shown.length === 0) return null;
-  const first = sentences[0];
-  const pair = sentences.every((o) => o.first === first?.first && o.second === first?.second);
+  const first = all[0];
+  const pair = all.every((o) => o.first === first?.first && o.second === first?.second);
   return (
     <Chart
-      title={unit === "%" ? "Differences of shares" : "Differences of distances"}
+      title={unit === "%" ? "Differences in answers" : "Differences in distances"}
       about={`${pair ? `${first?.first} minus ${first?.second}` : "First minus second"}, ${
         unit === "%" ? "percentage points" : "mm"
       }, with 95 % bootstrap intervals; colored circles are decided, gray diamonds are not; gray crosses stand beside the declared family and are not judged. Source: results.sqlite.`}
@@ -94,36 +97,222 @@ function Differences({ sentences, unit }: { sentences: Sentence[]; unit: string 
   );
 }
 
-function Verdict({ verdicts, definitions, systems }: { verdicts: NonNullable<Overview["verdicts"]>; definitions: string; systems: number }): JSX.Element {
-  const [first, ...others] = verdicts.sentences;
-  if (!first) return <Missing>{systems > 1 ? "Nothing can be compared: no environment has queries or paths of both systems of a pair." : "This suite compares no two systems."}</Missing>;
-  const undecided = others.filter((s) => s.in_family && !s.decided);
-  const decided = others.filter((s) => s.in_family && s.decided);
-  const table = new Table(verdicts.table);
+/** Who is better, by how much; or that no difference was shown. */
+function Headlines({ headlines, alone }: { headlines: Headline[]; alone: string }): JSX.Element {
+  if (headlines.length === 0) return <p class="verdict">{alone}</p>;
   return (
     <>
-      <p class={first.decided ? "verdict decided" : "verdict"}>{first.text}</p>
-      <p class="note">{definitions}</p>
-      {decided.length > 0 && (
-        <>
-          <h3>Also decided</h3>
-          <ul>{decided.map((s) => <li key={s.text}>{s.text}</li>)}</ul>
-        </>
-      )}
-      {undecided.length > 0 && (
-        <>
-          <h3>Not decided</h3>
-          <ul>{undecided.map((s) => <li key={s.text}>{s.text}</li>)}</ul>
-        </>
-      )}
-      <div class="charts">
-        <Differences sentences={verdicts.sentences} unit="%" />
-        <Differences sentences={verdicts.sentences} unit="m" />
+      {headlines.map((h, i) => (
+        <div key={i} class={`verdict${h.decided ? " decided" : ""}${headlines.length > 2 ? " one-of-many" : ""}`}>
+          <p>{h.text}</p>
+          {h.detail !== "" && <p class="note">{h.detail}</p>}
+        </div>
+      ))}
+    </>
+  );
+}
+
+interface Tile {
+  name: string;
+  value: string;
+  beside: string;
+}
+
+/** A figure with its unit: a length below a meter in mm. */
+function withUnit(value: number, unit: string, decimals: number): string {
+  if (unit === "m") return Math.abs(value) < 1 ? `${shownNumber(1e3 * value, "mm", 1)} mm` : `${shownNumber(value, unit, 2)} m`;
+  return `${shownNumber(value, unit, decimals)} ${unit}`;
+}
+
+/** The figures of a row that matter first. */
+function tilesOf(tiles: Table, row: number): Tile[] {
+  return tiles.columns
+    .filter((c) => !c.isText && !c.key.endsWith(".success"))
+    .map((column) => {
+      const answered = tiles.column(column.key.replace(/correct$/, "success"));
+      const both = column.key.endsWith(".correct") && answered;
+      const value = tiles.number(column.key, row);
+      return {
+        name: column.title,
+        value: value === null ? "–" : withUnit(value, column.unit, column.decimals),
+        beside: both ? `${tiles.shown(answered, row)} % answered` : "",
+      };
+    });
+}
+
+/** What a system alone did, in words. */
+function aloneText(tiles: Table, systems: number): string {
+  if (tiles.rows === 0) return "No run is finished yet.";
+  if (tiles.rows > 1) return systems > 1 ? "This suite compares no two systems; each stands below." : "One system, with several kinds of labels or levels.";
+  const shown = (key: string, decimals: number) => shownNumber(tiles.number(key, 0), tiles.column(key)?.unit ?? "", decimals);
+  const set = ["second_tour", "held_out", "graded"].find((key) => tiles.has(`${key}.correct`) && tiles.number(`${key}.correct`, 0) !== null);
+  const answers = set ? ` It answers ${shown(`${set}.correct`, 1)} % of the queries correctly ${tiles.column(`${set}.correct`)?.title.replace(/^correct,? /, "")}.` : "";
+  const ate = tiles.number("ate_rmse_m", 0) === null ? "" : `, with an ATE of ${shown("ate_rmse_m", 3)} m`;
+  return `${tiles.text("system", 0)} maps ${shown("completeness", 1)} % of the tour${ate}.${answers}`;
+}
+
+const kMostSystems = 8;
+
+function Tiles({ folder, tiles, rows }: { folder: Folder; tiles: Table; rows: number[] }): JSX.Element {
+  const several = new Set(rows.map((row) => tiles.text("labels", row)).filter((word) => word !== "none")).size > 1;
+  return (
+    <>
+      {rows.slice(0, kMostSystems).map((row) => {
+        const labels = tiles.text("labels", row);
+        const style = styleOf(folder, tiles.text("system", row), labels, tiles.text("level", row));
+        return (
+          <section key={row} class="system" aria-label={tiles.text("system", row)}>
+            <h3>
+              <svg width="14" height="14" aria-hidden="true">
+                <rect width="14" height="14" rx="3" fill={style.color} />
+              </svg>
+              {tiles.text("system", row)}
+              {several && labels !== "none" ? `, ${labels} labels` : ""}
+              {tiles.text("remark", row) !== "" && <span class="note"> ({tiles.text("remark", row)})</span>}
+            </h3>
+            <dl class="tiles">
+              {tilesOf(tiles, row).map((tile) => (
+                <div key={tile.name}>
+                  <dt>{tile.name}</dt>
+                  <dd>
+                    {tile.value}
+                    {tile.beside !== "" && <small>{tile.beside}</small>}
+                  </dd>
+                </div>
+              ))}
+            </dl>
+          </section>
+        );
+      })}
+      {rows.length > kMostSystems && <p class="note">{rows.length - kMostSystems} more systems stand in Table 2.</p>}
+    </>
+  );
+}
+
+function Plans({ images, place }: { images: PlaceImages; place: number }): JSX.Element {
+  const [chosen, choose] = useNoted(`plan-${place}`, "0");
+  const plan = images.plans[Number(chosen)] ?? images.plans[0]!;
+  const name = (p: PlaceImages["plans"][number]) => `${p.system}${p.labels === "" ? "" : `, ${p.labels} labels`}`;
+  const page = linkTo(["run", String(place), plan.run]);
+  return (
+    <figure class="plan">
+      <a href={page}>
+        <img src={`data:image/png;base64,${plan.png}`} alt={`Plan of ${plan.environment} with the paths of ${name(plan)}, queries and answers. Opens its page and replay.`} />
+      </a>
+      <figcaption>
+        {images.plans.length > 1 && <Choice label="Plan of" options={images.plans.map((p, i) => ({ key: String(i), title: name(p) }))} value={chosen} onPick={choose} />}
+        <a class="open" href={page}>
+          Replay and page of this run
+        </a>
+      </figcaption>
+    </figure>
+  );
+}
+
+function Frames({ frames }: { frames: NonNullable<PlaceImages["frames"]> }): JSX.Element {
+  if (frames.list.length === 0) return <p class="note">No frames of {frames.environment} are shown: {frames.problem}.</p>;
+  return (
+    <figure class="plan">
+      <div class="frames">
+        {frames.list.map((f) => (
+          <img key={f.frame} src={`data:image/jpeg;base64,${f.jpeg}`} alt={`Frame ${f.frame} of ${frames.environment}`} />
+        ))}
       </div>
-      <details>
-        <summary>All comparisons</summary>
-        <DataTable id="verdicts" table={table} />
-      </details>
+      <figcaption class="note">
+        {frames.environment}: frames {frames.list.map((f) => f.frame).join(", ")}
+      </figcaption>
+    </figure>
+  );
+}
+
+/** The place: as it was drawn from above or, where no drawing is left, its paths. */
+function PlaceSeen({ place }: { place: number }): JSX.Element {
+  return (
+    <Piece<PlaceImages | null> piece={`${place}/place`}>
+      {(images) => {
+        if (images === null) return <Missing>There is nothing to show: no run left a path.</Missing>;
+        return (
+          <>
+            {images.frames && <Frames frames={images.frames} />}
+            {images.plans.length > 0 ? (
+              <Plans images={images} place={place} />
+            ) : (
+              images.run &&
+              images.queries && (
+                <>
+                  <RunFromAbove run={images.run} queries={new Table(images.queries)} brief />
+                  <a class="open" href={linkTo(["run", String(place), images.run.name])}>
+                    Replay and page of this run
+                  </a>
+                </>
+              )
+            )}
+          </>
+        );
+      }}
+    </Piece>
+  );
+}
+
+/** The shares that a suite is judged by, with the other share beside them. */
+function isShown(d: Difference): boolean {
+  return d.unit === "%" && !d.pooled && (d.in_family || d.measure === "success" || d.measure === "correct");
+}
+
+function counted(count: number, one: string): string {
+  return `${count} ${one}${count === 1 ? "" : "s"}`;
+}
+
+function Top({ folder, place, overview }: { folder: Folder; place: number; overview: Overview }): JSX.Element | null {
+  const { suite, verdicts } = overview;
+  const [picked, setLevel] = useNoted(`level-${place}`, suite?.levels[0] ?? "");
+  if (!suite || !verdicts || !overview.tiles) return null;
+  const tiles = new Table(overview.tiles);
+  const level = suite.levels.includes(picked) ? picked : (suite.levels[0] ?? "");
+  const differences = verdicts.differences.filter((d) => d.level === level);
+  const done = folder.failed + folder.missing === 0 ? counted(folder.runs, "run") : `${folder.runs} runs done, ${folder.failed} failed, ${folder.missing} missing`;
+  return (
+    <>
+      <p class="lead">
+        Suite {suite.name}: {counted(suite.systems.length, "system")} in {counted(suite.environments, "environment")}, {counted(suite.trials, "trial")}, labels {suite.labels.join(", ")}; {done}.
+      </p>
+      {overview.warnings.length > 0 && folder.problem === null && (
+        <ul class="remarks">
+          {overview.warnings.map((warning) => (
+            <li key={warning}>{warning}</li>
+          ))}
+        </ul>
+      )}
+      <div class="first-screen">
+        <div>
+          {suite.levels.length > 1 && (
+            <div class="choices">
+              <Choice label="Level" options={suite.levels.map((key) => ({ key, title: key }))} value={level} onPick={setLevel} />
+            </div>
+          )}
+          <Headlines headlines={verdicts.headlines.filter((h) => h.level === level)} alone={aloneText(tiles, suite.systems.length)} />
+          <Tiles folder={folder} tiles={tiles} rows={tiles.where({ level })} />
+          <p class="note">{overview.definitions}</p>
+          <Differences all={differences.filter(isShown)} unit="%" />
+        </div>
+        <div>
+          <PlaceSeen place={place} />
+        </div>
+      </div>
+      {differences.length > 0 && (
+        <details>
+          <summary>All comparisons</summary>
+          <Differences all={differences} unit="m" />
+          <DataTable id={`verdicts-${place}`} table={new Table(verdicts.table)} />
+        </details>
+      )}
+      {overview.notes.length > 0 && (
+        <ul class="note">
+          {overview.notes.map((note) => (
+            <li key={note}>{note}</li>
+          ))}
+        </ul>
+      )}
     </>
   );
 }
@@ -137,23 +326,7 @@ export function OverviewPage(): JSX.Element {
           <Piece<Overview> piece={`${place}/overview`}>
             {(overview) => (
               <>
-                {overview.suite && (
-                  <Facts
-                    facts={[
-                      ["suite", overview.suite.name],
-                      ["environments", overview.suite.environments],
-                      ["trials", overview.suite.trials],
-                      ["systems", overview.suite.systems.join(", ")],
-                      ["labels", overview.suite.labels.join(", ")],
-                      ["levels", overview.suite.levels.join(", ")],
-                      ["runs", `${folder.runs} done, ${folder.failed} failed, ${folder.missing} missing`],
-                    ]}
-                  />
-                )}
-                {overview.remarks.length > 0 && folder.problem === null && (
-                  <ul class="remarks">{overview.remarks.map((remark) => <li key={remark}>{remark}</li>)}</ul>
-                )}
-                {overview.verdicts && <Verdict verdicts={overview.verdicts} definitions={overview.definitions ?? ""} systems={overview.suite?.systems.length ?? 0} />}
+                <Top folder={folder} place={place} overview={overview} />
                 {overview.table2 ? (
                   <>
                     <h2>{new Table(overview.table2).title}</h2>
@@ -178,6 +351,7 @@ export function OverviewPage(): JSX.Element {
                         "ate_rmse_m",
                         "rpe_frame_rmse_m",
                         "completeness",
+                        "held_out.correct",
                         "held_out.success",
                         "held_out.distance_mean_m",
                         "remark",

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "slam/core/rgbd_frame.hpp"
+
 namespace mh {
 
 /// Appends a number, the lowest byte first.
@@ -14,5 +16,8 @@ void put(std::vector<std::uint8_t>& bytes, std::uint32_t value, int count);
 /// Bytes as text of four characters for three (RFC 4648).
 std::string base64(const std::vector<std::uint8_t>& bytes);
 std::string base64(std::string_view bytes);
+
+/// An image for a page: at most `width_px` wide, as JPEG in base64.
+std::string small_jpeg(const Grid2d<Rgb8>& image, int width_px);
 
 }  // namespace mh

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/replay/packed.hpp"
+#include "bench/report/packed.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+#include "scenes/image_file.hpp"
 
 namespace mh {
 
@@ -27,6 +32,17 @@ std::string base64(std::string_view bytes) {
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {
   return base64(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+std::string small_jpeg(const Grid2d<Rgb8>& image, int width_px) {
+  constexpr int kQuality = 72;
+  const double scale = std::min(1.0, static_cast<double>(width_px) / image.width());
+  const cv::Mat whole(image.height(), image.width(), CV_8UC3, const_cast<Rgb8*>(image.data()));
+  Grid2d<Rgb8> small(static_cast<int>(std::lround(image.width() * scale)),
+                     static_cast<int>(std::lround(image.height() * scale)));
+  cv::Mat out(small.height(), small.width(), CV_8UC3, small.data());
+  cv::resize(whole, out, out.size(), 0, 0, cv::INTER_AREA);
+  return base64(encode_jpeg(small, kQuality));
 }
 
 }  // namespace mh
