@@ -130,7 +130,7 @@ function tilesOf(tiles: Table, row: number): Tile[] {
     .filter((c) => !c.isText && !c.key.endsWith(".success"))
     .map((column) => {
       const answered = tiles.column(column.key.replace(/correct$/, "success"));
-      const both = column.key.endsWith(".correct") && answered;
+      const both = column.key.endsWith(".correct") && answered && tiles.number(answered.key, row) !== null;
       const value = tiles.number(column.key, row);
       return {
         name: column.title,
