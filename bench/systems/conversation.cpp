@@ -60,6 +60,26 @@ std::string shortened(std::string_view line) {
   return line.size() > kMost ? text + "..." : text;
 }
 
+/// k4 to k6 only where they are not 0.
+Json json_of(const Camera& camera) {
+  const Distortion& d = camera.distortion;
+  Json json = {{"width", camera.width_px},
+               {"height", camera.height_px},
+               {"fx", camera.fx_px},
+               {"fy", camera.fy_px},
+               {"cx", camera.cx_px},
+               {"cy", camera.cy_px},
+               {"k1", d.k1},
+               {"k2", d.k2},
+               {"p1", d.p1},
+               {"p2", d.p2},
+               {"k3", d.k3},
+               {"fps", camera.rate_hz},
+               {"bf", camera.baseline_m * camera.fx_px}};
+  if (d.is_rational()) json.update({{"k4", d.k4}, {"k5", d.k5}, {"k6", d.k6}});
+  return json;
+}
+
 /// The exchange of lines: numbers requests and checks replies.
 class Conversation {
  public:
@@ -68,25 +88,11 @@ class Conversation {
       : reply_limit_s_(program.reply_limit_s),
         child_(program, command(program, camera, seed), ChildProcess::Talk::kOverPipes, log,
                scratch_.path) {
-    const Distortion& d = camera.distortion;
     Json classes_by_id = Json::array();
     for (const ClassInfo& info : classes()) classes_by_id.push_back(info.name);
     const Json reply = ask("hello",
                            {{"protocol", kProtocol},
-                            {"camera",
-                             {{"width", camera.width_px},
-                              {"height", camera.height_px},
-                              {"fx", camera.fx_px},
-                              {"fy", camera.fy_px},
-                              {"cx", camera.cx_px},
-                              {"cy", camera.cy_px},
-                              {"k1", d.k1},
-                              {"k2", d.k2},
-                              {"p1", d.p1},
-                              {"p2", d.p2},
-                              {"k3", d.k3},
-                              {"fps", camera.rate_hz},
-                              {"bf", camera.baseline_m * camera.fx_px}}},
+                            {"camera", json_of(camera)},
                             {"depth_per_meter", kDepthPerMeter},
                             {"settings", settings().string()},
                             {"classes", classes_by_id}},

@@ -129,7 +129,10 @@ class Setup {
                  .settings = settings_.empty() ? nullptr : settings_.c_str(),
                  .class_count = static_cast<std::int32_t>(class_names_.size()),
                  .classes = class_names_.data(),
-                 .message = message_.data()};
+                 .message = message_.data(),
+                 .k4 = d.k4,
+                 .k5 = d.k5,
+                 .k6 = d.k6};
   }
   Setup(const Setup&) = delete;
   Setup& operator=(const Setup&) = delete;

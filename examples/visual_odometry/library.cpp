@@ -85,7 +85,7 @@ mh_system* mh_make_system(const mh_setup* setup) try {
   const mh_camera& c = setup->camera;
   example::Camera camera;
   camera.matrix = {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1};
-  camera.distortion = {c.k1, c.k2, c.p1, c.p2, c.k3};
+  camera.distortion = {c.k1, c.k2, c.p1, c.p2, c.k3, setup->k4, setup->k5, setup->k6};
   camera.depth_per_meter = c.depth_per_meter;
   auto* library = new Library{{}, example::VisualOdometry(std::move(camera)), setup->message};
   library->system = {.version = MH_SYSTEM_VERSION,

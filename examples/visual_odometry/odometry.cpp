@@ -50,7 +50,8 @@ Camera read_settings(const std::string& file) {
                    0,
                    0,
                    1};
-  for (const char* key : {"Camera.k1", "Camera.k2", "Camera.p1", "Camera.p2", "Camera.k3"})
+  for (const char* key : {"Camera.k1", "Camera.k2", "Camera.p1", "Camera.p2", "Camera.k3",
+                          "Camera.k4", "Camera.k5", "Camera.k6"})
     camera.distortion.push_back(settings[key].empty() ? 0.0 : number(key));
   camera.depth_per_meter = number("DepthMapFactor");
   return camera;

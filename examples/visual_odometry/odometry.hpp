@@ -17,7 +17,7 @@ namespace example {
 
 struct Camera {
   cv::Matx33d matrix = cv::Matx33d::eye();
-  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3
+  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3 k4 k5 k6
   double depth_per_meter = 5000;
 };
 

@@ -52,6 +52,7 @@ typedef struct mh_setup {
   int32_t class_count;
   const char* const* classes; /**< name of each class id; 0 is void (unknown) */
   char* message;              /**< MH_MESSAGE_SIZE characters: why a function failed */
+  double k4, k5, k6; /**< rest of the camera's distortion, as in OpenCV; 0 with five coefficients */
 } mh_setup;
 
 /** A registered frame: a given pixel shows the same point in all images. Rows are stored from top

@@ -80,7 +80,7 @@ Camera read_calibrated(YamlReader& yaml) {
   camera.cx_px = k[2];
   camera.cy_px = k[3];
   const std::vector<double> d = yaml.at("k1_k2_p1_p2_k3").as_numbers(5);
-  camera.distortion = {d[0], d[1], d[2], d[3], d[4]};
+  camera.distortion = distortion_of(d);
   try {
     validate(camera);
   } catch (const InputError& e) {

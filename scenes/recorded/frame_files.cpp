@@ -62,12 +62,16 @@ FrameFiles show(const RgbdFrame& frame, const fs::path& folder) {
 
 std::string settings_text(const Camera& camera) {
   const Distortion& d = camera.distortion;
+  const std::string rational =
+      d.is_rational()
+          ? fmt::format("Camera.k4: {:#}\nCamera.k5: {:#}\nCamera.k6: {:#}\n", d.k4, d.k5, d.k6)
+          : "";
   return fmt::format(
       "%YAML:1.0\n"
       "# Written by Modelhouse. Pixel centers at integers; depth is metric and registered.\n"
       // '#' keeps a decimal point in whole numbers: some readers refuse an integer here.
       "Camera.fx: {:#}\nCamera.fy: {:#}\nCamera.cx: {:#}\nCamera.cy: {:#}\n"
-      "Camera.k1: {:#}\nCamera.k2: {:#}\nCamera.p1: {:#}\nCamera.p2: {:#}\nCamera.k3: {:#}\n"
+      "Camera.k1: {:#}\nCamera.k2: {:#}\nCamera.p1: {:#}\nCamera.p2: {:#}\nCamera.k3: {:#}\n{}"
       "Camera.width: {}\nCamera.height: {}\nCamera.fps: {:#}\nCamera.bf: {:#}\n"
       "# Images are RGB; OpenCV's imread hands them over as BGR.\nCamera.RGB: 0\n"
       "DepthMapFactor: {:#}\nThDepth: 40.0\n"
@@ -78,12 +82,15 @@ std::string settings_text(const Camera& camera) {
       "Viewer.ViewpointX: 0\nViewer.ViewpointY: -0.7\nViewer.ViewpointZ: -1.8\n"
       "Viewer.ViewpointF: 500\n",
       camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, d.k1, d.k2, d.p1, d.p2, d.k3,
-      camera.width_px, camera.height_px, camera.rate_hz, camera.baseline_m * camera.fx_px,
+      rational, camera.width_px, camera.height_px, camera.rate_hz, camera.baseline_m * camera.fx_px,
       kDepthPerMeter);
 }
 
+const char* distortion_model(const Distortion& distortion) {
+  return distortion.is_rational() ? "rational_polynomial" : "plumb_bob";
+}
+
 std::string camera_info_text(const Camera& camera) {
-  const Distortion& d = camera.distortion;
   const auto matrix = [](const char* name, int rows, const std::vector<double>& data) {
     return fmt::format("{}:\n  rows: {}\n  cols: {}\n  data: [{}]\n", name, rows,
                        data.size() / static_cast<std::size_t>(rows), fmt::join(data, ", "));
@@ -92,8 +99,8 @@ std::string camera_info_text(const Camera& camera) {
   return fmt::format("image_width: {}\nimage_height: {}\ncamera_name: modelhouse\n",
                      camera.width_px, camera.height_px) +
          matrix("camera_matrix", 3, {fx, 0, cx, 0, fy, cy, 0, 0, 1}) +
-         "distortion_model: plumb_bob\n" +
-         matrix("distortion_coefficients", 1, {d.k1, d.k2, d.p1, d.p2, d.k3}) +
+         fmt::format("distortion_model: {}\n", distortion_model(camera.distortion)) +
+         matrix("distortion_coefficients", 1, coefficients_of(camera.distortion)) +
          matrix("rectification_matrix", 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}) +
          matrix("projection_matrix", 3, {fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0});
 }

@@ -37,6 +37,9 @@ FrameFiles show(const RgbdFrame& frame, const std::filesystem::path& folder);
 /// ORBextractor.*, Viewer.*. load_recorded_camera() reads it back.
 std::string settings_text(const Camera& camera);
 
+/// ROS' word for a distortion of five or eight coefficients.
+const char* distortion_model(const Distortion& distortion);
+
 /// The same calibration as ROS' camera_info YAML; load_settings() reads it back.
 std::string camera_info_text(const Camera& camera);
 

@@ -179,7 +179,7 @@ struct LensDistortionConfig {
 template <Either<LensDistortionConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, lens] = c;
-  auto& [k1, k2, p1, p2, k3] = lens;
+  [[maybe_unused]] auto& [k1, k2, p1, p2, k3, k4, k5, k6] = lens;  // k4 to k6: no level has them
   v("enabled", enabled, setting::kSwitch, "Brown-Conrady as in OpenCV; off: the camera's own lens");
   v("k1", k1, {-2, 2}, "radial");
   v("k2", k2, {-2, 2}, "radial");

@@ -3,32 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include <Eigen/LU>
 
 #include "sim/render/color.hpp"
 
 namespace mh {
 namespace {
 
-using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-/// Brown-Conrady distortion at unit depth, and its Jacobian.
-Vector2d distort(const Distortion& d, const Vector2d& p, Matrix2d* jacobian = nullptr) {
-  const double x = p.x(), y = p.y(), r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
-  if (jacobian != nullptr) {
-    const double slope = 2.0 * (d.k1 + r2 * (2.0 * d.k2 + 3.0 * r2 * d.k3));  // d radial / d r2 * 2
-    *jacobian << radial + x * x * slope + 2.0 * d.p1 * y + 6.0 * d.p2 * x,
-        x * y * slope + 2.0 * d.p1 * x + 2.0 * d.p2 * y,
-        x * y * slope + 2.0 * d.p1 * x + 2.0 * d.p2 * y,
-        radial + y * y * slope + 6.0 * d.p1 * y + 2.0 * d.p2 * x;
-  }
-  return {x * radial + 2.0 * d.p1 * x * y + d.p2 * (r2 + 2.0 * x * x),
-          y * radial + d.p1 * (r2 + 2.0 * y * y) + 2.0 * d.p2 * x * y};
-}
 
 // A wider margin than this is not rendered: the lens is outside the range of its model.
 constexpr double kMostMargin = 0.5;
@@ -36,21 +17,13 @@ constexpr double kMostMargin = 0.5;
 }  // namespace
 
 Vector2d distort_px(const Camera& camera, const Vector2d& at_unit_depth) {
-  const Vector2d p = distort(camera.distortion, at_unit_depth);
+  const Vector2d p = camera.distortion.distorted(at_unit_depth.x(), at_unit_depth.y());
   return {camera.fx_px * p.x() + camera.cx_px, camera.fy_px * p.y() + camera.cy_px};
 }
 
 Vector2d undistort_px(const Camera& camera, const Vector2d& pixel) {
-  const Vector2d wanted((pixel.x() - camera.cx_px) / camera.fx_px,
-                        (pixel.y() - camera.cy_px) / camera.fy_px);
-  Vector2d p = wanted;
-  for (int i = 0; i < 20; ++i) {
-    Matrix2d jacobian;
-    const Vector2d error = distort(camera.distortion, p, &jacobian) - wanted;
-    if (error.norm() < 1e-10) return p;
-    p -= jacobian.inverse() * error;
-  }
-  return Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  return camera.distortion.undistorted((pixel.x() - camera.cx_px) / camera.fx_px,
+                                       (pixel.y() - camera.cy_px) / camera.fy_px);
 }
 
 Lens::Lens(const Camera& camera)

@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// Distorts pinhole images like a camera's lens (Brown-Conrady). Color is blended in linear light;
+/// Distorts pinhole images like a camera's lens. Color is blended in linear light;
 /// depth, class and instance are those of the nearest pixel.
 class Lens {
  public:

@@ -1,16 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <Eigen/Core>
 
 namespace mh {
 
-/// Brown-Conrady ("plumb bob") lens distortion, coefficients in the order of OpenCV and ROS.
+/// Brown-Conrady ("plumb bob") lens distortion, or with k4 to k6 OpenCV's rational one;
+/// coefficients in the order of OpenCV and ROS.
 struct Distortion {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
-  bool none() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0; }
+  double k4 = 0, k5 = 0, k6 = 0;
+  bool is_rational() const { return k4 != 0 || k5 != 0 || k6 != 0; }
+  bool none() const {
+    return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0 && !is_rational();
+  }
+  /// What the radius is multiplied by, from its square: (1 + k1 r^2 + k2 r^4 + k3 r^6) /
+  /// (1 + k4 r^2 + k5 r^4 + k6 r^6).
+  double radial(double r2) const {
+    return (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
+  }
+  /// Where the lens shows a point of the plane at unit depth.
+  Eigen::Vector2d distorted(double x, double y) const {
+    const double r2 = x * x + y * y, factor = radial(r2);
+    return {x * factor + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+            y * factor + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  }
+  /// The inverse, by Newton's method; NaN if the lens maps no point there.
+  Eigen::Vector2d undistorted(double x, double y) const;
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
+/// "k1 0.1, k2 0, ...", with k4 to k6 only where they are not 0.
+/// @param is  between a name and its value
+std::string text_of(const Distortion& distortion, const char* is = " ");
+/// @param coefficients  k1 k2 p1 p2 [k3 [k4 k5 k6]], those that are absent being 0
+Distortion distortion_of(std::vector<double> coefficients);
+/// The inverse: five coefficients, or eight if k4 to k6 are not all 0.
+std::vector<double> coefficients_of(const Distortion& distortion);
 
 /// A pinhole RGB-D camera: x right, y down, z forward; pixel centers at integers.
 struct Camera {

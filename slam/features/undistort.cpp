@@ -16,10 +16,6 @@ cv::Matx33d matrix_of(const Camera& c) {
   return {c.fx_px, 0, c.cx_px, 0, c.fy_px, c.cy_px, 0, 0, 1};
 }
 
-cv::Vec<double, 5> coefficients_of(const Distortion& d) {
-  return {d.k1, d.k2, d.p1, d.p2, d.k3};
-}
-
 }  // namespace
 
 void undistort(const Camera& camera, std::vector<Eigen::Vector2d>& points_px) {
@@ -51,13 +47,10 @@ void require_undistortable(const Camera& camera) {
                     coefficients_of(camera.distortion), back);
   for (std::size_t i = 0; i < pixels.size(); ++i)
     if (!(std::hypot(back[i].x - pixels[i].x(), back[i].y - pixels[i].y()) <
-          kAstray_px)) {  // NaN: diverged as well
-      const Distortion& d = camera.distortion;
-      throw InputError(fmt::format(
-          "k1 {}, k2 {}, p1 {}, p2 {}, k3 {}: a distortion that cannot be undone at pixel "
-          "({:.0f}, {:.0f})",
-          d.k1, d.k2, d.p1, d.p2, d.k3, pixels[i].x(), pixels[i].y()));
-    }
+          kAstray_px))  // NaN: diverged as well
+      throw InputError(
+          fmt::format("{}: a distortion that cannot be undone at pixel ({:.0f}, {:.0f})",
+                      text_of(camera.distortion), pixels[i].x(), pixels[i].y()));
 }
 
 }  // namespace mh

@@ -25,15 +25,12 @@ constexpr std::size_t kNoPixel = SIZE_MAX;
 /// The pixel of a frame that shows what a thinned, undistorted pixel shows; kNoPixel outside.
 std::vector<std::size_t> pixels_behind(const Camera& camera, const Camera& thin) {
   std::vector<std::size_t> pixels;
-  const Distortion& d = camera.distortion;
   for (int v = 0; v < thin.height_px; ++v)
     for (int u = 0; u < thin.width_px; ++u) {
       const double x = (u - thin.cx_px) / thin.fx_px, y = (v - thin.cy_px) / thin.fy_px;
-      const double r2 = x * x + y * y, radial = 1 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
-      const double px = x * radial + 2 * d.p1 * x * y + d.p2 * (r2 + 2 * x * x),
-                   py = y * radial + d.p1 * (r2 + 2 * y * y) + 2 * d.p2 * x * y;
-      const long at_x = std::lround(camera.fx_px * px + camera.cx_px),
-                 at_y = std::lround(camera.fy_px * py + camera.cy_px);
+      const Eigen::Vector2d seen = camera.distortion.distorted(x, y);
+      const long at_x = std::lround(camera.fx_px * seen.x() + camera.cx_px),
+                 at_y = std::lround(camera.fy_px * seen.y() + camera.cy_px);
       const bool inside =
           at_x >= 0 && at_y >= 0 && at_x < camera.width_px && at_y < camera.height_px;
       pixels.push_back(inside ? static_cast<std::size_t>(at_y * camera.width_px + at_x) : kNoPixel);

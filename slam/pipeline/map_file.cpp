@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map file, little-endian:
 //   8 bytes  magic "MHMAP\n\0\0"
-//   u32      version
+//   u32      version: 6, or 7 if the camera's distortion has k4 to k6
 //   u64      digest of the vocabulary
 //   u64      size of the content
-//   content  settings (YAML), camera, keyframes, landmarks, state of tracking and loop closing,
+//   content  settings (YAML), camera, in version 7 its k4 to k6, keyframes, landmarks, state of
+//   tracking and loop closing,
 //            tracked frames; lists start with their length (u64), see slam/map/archive.hpp
 //   u64      xxh3-64 of all preceding bytes
 #include "slam/pipeline/map_file.hpp"
@@ -87,9 +88,20 @@ void check(const Reader& reader, const Tracker& tracker, const Map& map) {
 constexpr std::string_view kMagic{"MHMAP\n\0\0", 8};
 constexpr std::size_t kHeaderSize = kMagic.size() + 4 + 8 + 8;
 
+/// Calls a(k4, k5, k6), which files of kMapFileVersionRational alone hold.
+void rational_terms(auto& a, auto& camera) {
+  auto& d = camera.distortion;
+  a(d.k4, d.k5, d.k6);
+}
+
+struct Content {
+  std::uint32_t version = 0;
+  std::string_view bytes;
+};
+
 /// The content of a map file, after its header and checksum are checked.
-std::string_view checked_content(std::string_view bytes, const std::string& name,
-                                 std::uint64_t vocabulary_digest) {
+Content checked_content(std::string_view bytes, const std::string& name,
+                        std::uint64_t vocabulary_digest) {
   const std::string_view start = bytes.substr(0, kMagic.size());
   if (start.empty() || start != kMagic.substr(0, start.size()))
     throw InputError(fmt::format("{}: is not a map of Modelhouse's", name));
@@ -103,9 +115,9 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
   std::uint32_t version = 0;
   std::uint64_t vocabulary = 0, size = 0, stored = 0;
   header(version, vocabulary, size);
-  if (version != kMapFileVersion)
-    throw InputError(fmt::format("{}: is a map of version {}, but this program reads {}", name,
-                                 version, kMapFileVersion));
+  if (version != kMapFileVersion && version != kMapFileVersionRational)
+    throw InputError(fmt::format("{}: is a map of version {}, but this program reads {} and {}",
+                                 name, version, kMapFileVersion, kMapFileVersionRational));
   const std::uint64_t all = bytes.size() - kHeaderSize;  // no sum with sizes from the file: they
                                                          // may be wrong
   if (all < sizeof stored || size != all - sizeof stored)
@@ -120,7 +132,7 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
     throw InputError(
         fmt::format("{}: was made with another vocabulary: digest {:016x}, this one has {:016x}",
                     name, vocabulary, vocabulary_digest));
-  return before.substr(kHeaderSize);
+  return {version, before.substr(kHeaderSize)};
 }
 
 SlamConfig parse_config(const std::string& text, const std::string& name) {
@@ -139,6 +151,8 @@ std::string encode_slam(const SlamState& state) {
                last_stamp_ns] = state;
   Writer content;
   content(format_slam_config(config), camera);
+  const bool rational = camera.distortion.is_rational();
+  if (rational) rational_terms(content, camera);
   write_map(content, map);
   content(tracker, loop_memory);
   write_tracked_frames(content, tracked_frames);
@@ -147,7 +161,8 @@ std::string encode_slam(const SlamState& state) {
 
   Writer whole;
   whole.bytes(kMagic.data(), kMagic.size());
-  whole(kMapFileVersion, vocabulary->digest(), static_cast<std::uint64_t>(body.size()));
+  whole(rational ? kMapFileVersionRational : kMapFileVersion, vocabulary->digest(),
+        static_cast<std::uint64_t>(body.size()));
   whole.bytes(body.data(), body.size());
   std::string bytes = whole.take();
   const std::uint64_t checksum = XXH3_64bits(bytes.data(), bytes.size());
@@ -158,10 +173,12 @@ std::string encode_slam(const SlamState& state) {
 SlamState decode_slam(const std::string& bytes, const std::string& name,
                       std::shared_ptr<const Vocabulary> vocabulary) {
   using namespace archive;
-  Reader content(checked_content(bytes, name, vocabulary->digest()), name);
+  const auto [version, inner] = checked_content(bytes, name, vocabulary->digest());
+  Reader content(inner, name);
   std::string settings;
   Camera camera;
   content(settings, camera);
+  if (version == kMapFileVersionRational) rational_terms(content, camera);
   SlamState state = make_slam(camera, parse_config(settings, name), std::move(vocabulary));
   state.map = read_map(content, camera, state.config.features.levels, state.vocabulary->size());
   content(state.tracker, state.loop_memory);

@@ -28,7 +28,10 @@ void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera
                        .k2 = yaml.number_or(prefix + "k2", 0, -kMost, kMost),
                        .p1 = yaml.number_or(prefix + "p1", 0, -kMost, kMost),
                        .p2 = yaml.number_or(prefix + "p2", 0, -kMost, kMost),
-                       .k3 = yaml.number_or(prefix + "k3", 0, -kMost, kMost)};
+                       .k3 = yaml.number_or(prefix + "k3", 0, -kMost, kMost),
+                       .k4 = yaml.number_or(prefix + "k4", 0, -kMost, kMost),
+                       .k5 = yaml.number_or(prefix + "k5", 0, -kMost, kMost),
+                       .k6 = yaml.number_or(prefix + "k6", 0, -kMost, kMost)};
 }
 
 /// @param place  of the distortion
@@ -68,6 +71,7 @@ void read_camera(YamlReader& yaml, Settings& settings) {
 Settings read_own(YamlReader yaml, Settings settings) {
   read_camera(yaml, settings);
   if (auto images = yaml.find("images")) {
+    settings.has_depth_per_meter = images->find("depth_per_meter").has_value();
     settings.depth_per_meter =
         images->number_or("depth_per_meter", settings.depth_per_meter, 1e-3, 1e9);
     settings.exchange_red_blue = images->boolean("exchange_red_blue", false);
@@ -78,89 +82,108 @@ Settings read_own(YamlReader yaml, Settings settings) {
   return settings;
 }
 
-/// Keys of ORB-SLAM2's files that are read; the rest are for its viewer, or for other sensors.
-constexpr auto kOrbSlamKeys = std::to_array<std::string_view>({"Camera.fx",
-                                                               "Camera.fy",
-                                                               "Camera.cx",
-                                                               "Camera.cy",
-                                                               "Camera.k1",
-                                                               "Camera.k2",
-                                                               "Camera.p1",
-                                                               "Camera.p2",
-                                                               "Camera.k3",
-                                                               "Camera.width",
-                                                               "Camera.height",
-                                                               "Camera.fps",
-                                                               "Camera.bf",
-                                                               "Camera.RGB",
-                                                               "ThDepth",
-                                                               "DepthMapFactor",
-                                                               "ORBextractor.nFeatures",
-                                                               "ORBextractor.scaleFactor",
-                                                               "ORBextractor.nLevels",
-                                                               "ORBextractor.iniThFAST",
-                                                               "ORBextractor.minThFAST"});
+/// The keys of ORB-SLAM2's files, or of ORB-SLAM3's since its version 1.0, that are read; the rest
+/// are for its viewer, or for other sensors.
+struct OrbSlamKeys {
+  const char* program;
+  std::string lens;  ///< what the names of focal lengths, center and distortion begin with
+  std::string baseline, close_depth, depth_scale;
 
-/// Other keys of such files: the camera type, of which ours is the only one, and keys for other
-/// sensors.
+  std::vector<std::string> all() const {
+    std::vector<std::string> keys;
+    for (const char* key : {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"})
+      keys.push_back(lens + key);
+    for (const std::string& key :
+         {std::string("Camera.width"), std::string("Camera.height"), std::string("Camera.fps"),
+          baseline, std::string("Camera.RGB"), close_depth, depth_scale})
+      keys.push_back(key);
+    for (const char* key : {"nFeatures", "scaleFactor", "nLevels", "iniThFAST", "minThFAST"})
+      keys.push_back(std::string("ORBextractor.") + key);
+    return keys;
+  }
+};
+const OrbSlamKeys kOrbSlam2{"ORB-SLAM2", "Camera.", "Camera.bf", "ThDepth", "DepthMapFactor"};
+const OrbSlamKeys kOrbSlam3{"ORB-SLAM3", "Camera1.", "Stereo.b", "Stereo.ThDepth",
+                            "RGBD.DepthMapFactor"};
+
+/// Other keys of such files: the camera type, sizes that its images are shrunk to (ours are not),
+/// and keys for other sensors.
 constexpr auto kOrbSlamOthers = std::to_array<std::string_view>(
-    {"Camera.type", "Camera.bFishEye", "Tbc", "Tlr", "loopClosing", "thFarPoints"});
+    {"Camera.type", "Camera.bFishEye", "Camera.newWidth", "Camera.newHeight", "Camera.imageScale",
+     "Stereo.T_c1_c2", "Tbc", "Tlr", "loopClosing", "thFarPoints"});
 
 bool is_one_of(const auto& keys, std::string_view key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
+std::string section_of(const std::string& key) {
+  return lower_case(key.substr(0, key.find('.')));
+}
+
 /// Keys outside of sections and in sections that are read must be known: a typo would silently drop
 /// the camera's distortion. Other sections belong to other programs.
-void refuse_unknown_keys(YamlReader& yaml) {
+void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
+  const std::vector<std::string> known = keys.all();
+  std::set<std::string> read_sections{"camera"};
+  for (const std::string& key : known) read_sections.insert(section_of(key));
   for (const auto& [key, node] : yaml.entries()) {
-    if (key == "Camera.type" && node.as_string() != "PinHole")
-      node.fail(fmt::format("'{}' is not PinHole", node.as_string()));
+    if (key == "Camera.type" && node.as_string() != "PinHole" && node.as_string() != "Rectified")
+      node.fail(fmt::format("'{}' is neither PinHole nor Rectified", node.as_string()));
     if (key == "Camera.bFishEye" && node.as_string() != "0")
       node.fail("fisheye cameras are not supported");
-    if (is_one_of(kOrbSlamKeys, key) || is_one_of(kOrbSlamOthers, key)) continue;
-    const std::string section = lower_case(key.substr(0, key.find('.')));
-    if (section == "camera" || section == "orbextractor" || key.find('.') == std::string::npos)
-      node.fail(fmt::format("is not a key of ORB-SLAM2's settings (known: {})",
-                            fmt::join(kOrbSlamKeys, ", ")));
+    if (is_one_of(known, key) || is_one_of(kOrbSlamOthers, key)) continue;
+    if (read_sections.contains(section_of(key)) || key.find('.') == std::string::npos)
+      node.fail(fmt::format("is not a key of {}'s settings (known: {})", keys.program,
+                            fmt::join(known, ", ")));
   }
 }
 
 /// "Somebody.Else, Viewer.*": keys that nothing reads, those of the viewer as one.
-/// Nobody would miss the position of a window (Viewer.*).
-std::string unread_keys(YamlReader& yaml) {
+/// Nobody would miss the position of a window (Viewer.*) or the number of a format (File.version).
+std::string unread_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
+  const std::vector<std::string> known = keys.all();
   std::vector<std::string> unread;
   for (const auto& [key, node] : yaml.entries())
-    if (!is_one_of(kOrbSlamKeys, key) && !key.starts_with("Camera.") && !key.starts_with("Viewer."))
+    if (!is_one_of(known, key) && key != "Camera.type" && key != "Camera.bFishEye" &&
+        !key.starts_with("Viewer.") && !key.starts_with("File."))
       unread.push_back(key);
   return fmt::format("{}", fmt::join(unread, ", "));
 }
 
-Settings read_orb_slam(YamlReader yaml, Settings settings) {
-  settings.has_camera = true;
-  refuse_unknown_keys(yaml);
-  Camera& c = settings.camera;
+/// The lens of an ORB-SLAM file; that of rectified images has no distortion.
+void read_orb_slam_lens(YamlReader& yaml, const OrbSlamKeys& keys, Camera& c) {
   c.width_px = static_cast<int>(yaml.integer_or("Camera.width", c.width_px, 1, 100000));
   c.height_px = static_cast<int>(yaml.integer_or("Camera.height", c.height_px, 1, 100000));
-  c.fx_px = yaml.number("Camera.fx", 1, kMost);
-  c.fy_px = yaml.number("Camera.fy", 1, kMost);
-  c.cx_px = yaml.number("Camera.cx", 0, c.width_px - 1);
-  c.cy_px = yaml.number("Camera.cy", 0, c.height_px - 1);
-  read_distortion(yaml, "Camera.", c);
-  const auto k1 = yaml.find("Camera.k1");
+  c.fx_px = yaml.number(keys.lens + "fx", 1, kMost);
+  c.fy_px = yaml.number(keys.lens + "fy", 1, kMost);
+  c.cx_px = yaml.number(keys.lens + "cx", 0, c.width_px - 1);
+  c.cy_px = yaml.number(keys.lens + "cy", 0, c.height_px - 1);
+  const auto type = yaml.find("Camera.type");
+  if (!type || type->as_string() != "Rectified") read_distortion(yaml, keys.lens, c);
+  const auto k1 = yaml.find(keys.lens + "k1");
   check_camera(c, k1 ? *k1 : yaml);
+}
+
+Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settings) {
+  settings.has_camera = true;
+  refuse_unknown_keys(yaml, keys);
+  Camera& c = settings.camera;
+  read_orb_slam_lens(yaml, keys, c);
   // Zero means the original's own default.
   const double rate_hz = yaml.number_or("Camera.fps", 0, 0, kMost);
   if (rate_hz != 0) c.rate_hz = rate_hz;
-  c.baseline_m = yaml.number_or("Camera.bf", c.baseline_m * c.fx_px, 1e-6, kMost) / c.fx_px;
-  settings.depth_per_meter = yaml.number_or("DepthMapFactor", settings.depth_per_meter, 0, 1e9);
+  // ORB-SLAM2 states the baseline in m times fx.
+  const double unit = &keys == &kOrbSlam2 ? c.fx_px : 1;
+  c.baseline_m = yaml.number_or(keys.baseline, c.baseline_m * unit, 1e-6, kMost) / unit;
+  settings.has_depth_per_meter = yaml.find(keys.depth_scale).has_value();
+  settings.depth_per_meter = yaml.number_or(keys.depth_scale, settings.depth_per_meter, 0, 1e9);
   if (settings.depth_per_meter == 0) settings.depth_per_meter = 1;
   settings.exchange_red_blue = yaml.integer_or("Camera.RGB", 0, 0, 1) == 1;
   if (settings.exchange_red_blue)
     settings.notes.push_back(fmt::format(
         "{}: Camera.RGB: 1: the first channel is taken for red where OpenCV reads blue, as "
-        "ORB-SLAM2 does; write 0 if colors matter and the files are ordinary ones",
-        yaml.file()));
+        "{} does; write 0 if colors matter and the files are ordinary ones",
+        yaml.file(), keys.program));
 
   FeatureConfig& f = settings.slam.features;
   f.count = static_cast<int>(yaml.integer_or("ORBextractor.nFeatures", f.count, 10, 20000));
@@ -171,19 +194,30 @@ Settings read_orb_slam(YamlReader yaml, Settings settings) {
   f.fast_threshold_low =
       static_cast<int>(yaml.integer_or("ORBextractor.minThFAST", f.fast_threshold_low, 1, 255));
   // Close points are those within this many baselines.
-  if (const auto close = yaml.find("ThDepth"))
+  if (const auto close = yaml.find(keys.close_depth))
     settings.slam.keyframe.close_depth_m =
         std::clamp(close->as_double(1e-3, kMost) * c.baseline_m, 0.1, 1000.0);
 
-  const std::string passed_over = unread_keys(yaml);
+  const std::string passed_over = unread_keys(yaml, keys);
   if (!passed_over.empty())
     settings.notes.push_back(fmt::format("{}: passed over: {}", yaml.file(), passed_over));
   return settings;
 }
 
-/// A calibration as written by ROS' camera_calibration; lens distortion as plumb_bob.
+/// Reads the distortion of ROS' camera_info: plumb_bob or rational_polynomial.
+void read_ros_distortion(YamlReader& list, const std::string& model, Camera& camera) {
+  const std::vector<double> d = list.as_numbers();
+  const std::size_t most = model == "plumb_bob" ? 5 : 8;
+  if (d.size() > most || d.size() == 6 || d.size() == 7)
+    list.fail(fmt::format("{} coefficients; {} has {}", d.size(), model, most));
+  camera.distortion = distortion_of(d);
+}
+
+/// A calibration as written by ROS' camera_calibration. Our own sections may stand beside it.
 Settings read_camera_info(YamlReader yaml, Settings settings) {
   settings.has_camera = true;
+  if (const auto ours = yaml.find("camera"))
+    ours->fail("states a camera, as camera_matrix does: which one is meant?");
   Camera& c = settings.camera;
   c.width_px = static_cast<int>(yaml.integer("image_width", 1, 100000));
   c.height_px = static_cast<int>(yaml.integer("image_height", 1, 100000));
@@ -201,22 +235,22 @@ Settings read_camera_info(YamlReader yaml, Settings settings) {
   c.fy_px = k[4];
   c.cx_px = k[2];
   c.cy_px = k[5];
-  if (const auto model = yaml.find("distortion_model"); model && model->as_string() != "plumb_bob")
-    model->fail(fmt::format("'{}' is not plumb_bob", model->as_string()));
+  std::string model = "plumb_bob";
+  if (const auto named = yaml.find("distortion_model")) {
+    model = named->as_string();
+    if (model != "plumb_bob" && model != "rational_polynomial")
+      named->fail(fmt::format("'{}' is neither plumb_bob nor rational_polynomial", model));
+  }
   check_camera(c, data);
   if (auto distortion = yaml.find("distortion_coefficients")) {
-    const YamlReader list = numbers(*distortion);
-    std::vector<double> d = list.as_numbers();
-    if (d.size() > 5) list.fail(fmt::format("{} coefficients; plumb_bob has 5", d.size()));
-    d.resize(5, 0.0);
-    c.distortion = {.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4]};
+    YamlReader list = numbers(*distortion);
+    read_ros_distortion(list, model, c);
     check_camera(c, list);
   }
   // Used by stereo rigs and people.
   for (const char* key : {"camera_name", "rectification_matrix", "projection_matrix"})
     yaml.find(key);
-  yaml.finish();
-  return settings;
+  return read_own(std::move(yaml), std::move(settings));
 }
 
 /// Converts OpenCV's YAML dialect, line by line: "key:value" becomes "key: value", and a top-level
@@ -242,15 +276,14 @@ std::string without_dialect(const std::string& text) {
 
 std::string format_settings(const Settings& settings) {
   const Camera& c = settings.camera;
-  const Distortion& d = c.distortion;
   return fmt::format(
              "camera:\n  width_px: {}\n  height_px: {}\n  fx_px: {}\n  fy_px: {}\n  cx_px: {}\n"
-             "  cy_px: {}\n  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}\n"
+             "  cy_px: {}\n  distortion: {{{}}}\n"
              "  rate_hz: {}\n  baseline_m: {}\n  disparity_sigma_px: {}\n"
              "images:\n  depth_per_meter: {}\n  exchange_red_blue: {}\n",
-             c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, d.k1, d.k2, d.p1, d.p2,
-             d.k3, c.rate_hz, c.baseline_m, c.disparity_sigma_px, settings.depth_per_meter,
-             settings.exchange_red_blue) +
+             c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px,
+             text_of(c.distortion, ": "), c.rate_hz, c.baseline_m, c.disparity_sigma_px,
+             settings.depth_per_meter, settings.exchange_red_blue) +
          format_slam_config(settings.slam);
 }
 
@@ -278,16 +311,18 @@ Settings parse_settings(std::string text, const std::string& name, const SlamCon
     text = without_dialect(text);
   }
   YamlReader yaml = YamlReader::parse(text, name);
-  bool orb_slam = false, camera_info = false;
+  bool orb_slam = false, orb_slam3 = false, camera_info = false;
   for (const auto& [key, node] : YamlReader(yaml).entries()) {
     orb_slam = orb_slam || key.starts_with("Camera.");
+    orb_slam3 = orb_slam3 || key.starts_with("Camera1.");
     camera_info = camera_info || key == "camera_matrix";
   }
   Settings settings;
   settings.slam = base;
   if (camera_info) return read_camera_info(std::move(yaml), std::move(settings));
-  return orb_slam ? read_orb_slam(std::move(yaml), std::move(settings))
-                  : read_own(std::move(yaml), std::move(settings));
+  if (orb_slam || orb_slam3)
+    return read_orb_slam(std::move(yaml), orb_slam3 ? kOrbSlam3 : kOrbSlam2, std::move(settings));
+  return read_own(std::move(yaml), std::move(settings));
 }
 
 Settings load_settings(const std::filesystem::path& file, const SlamConfig& base) {

@@ -15,17 +15,19 @@ namespace mh {
 /// Content of a settings file: the camera, how its images are stored, and SLAM's parameters.
 struct Settings {
   Camera camera;
-  bool has_camera = false;        ///< a file without one serves sources that provide their own
-                                  ///< camera
-  double depth_per_meter = 5000;  ///< value of a depth pixel at one meter
+  bool has_camera = false;           ///< a file without one serves sources that provide their own
+                                     ///< camera
+  double depth_per_meter = 5000;     ///< value of a depth pixel at one meter
+  bool has_depth_per_meter = false;  ///< the file states it
   bool exchange_red_blue = false;
   SlamConfig slam;
   std::vector<std::string> notes;  ///< what was ignored or needs mentioning, one line each
 };
 
 /// Reads our own settings (sections camera, images and those of SlamConfig, all optional; a
-/// camera needs its focal lengths and center), a settings file of ORB-SLAM2 (`Camera.fx: ...`), or
-/// a ROS camera_info (`camera_matrix: ...`); the format is recognized by its keys.
+/// camera needs its focal lengths and center), a settings file of ORB-SLAM2 (`Camera.fx: ...`) or
+/// ORB-SLAM3 (`Camera1.fx: ...`), or a ROS camera_info (`camera_matrix: ...`), beside which our
+/// other sections may stand; the format is recognized by its keys.
 /// @param base  SLAM's parameters where the file does not set them
 /// @throws InputError "file:line: place: value".
 Settings load_settings(const std::filesystem::path& file, const SlamConfig& base = {});

@@ -48,14 +48,13 @@ std::string class_names() {
 }  // namespace
 
 ros::CameraInfo camera_info_message(const Camera& camera) {
-  const Distortion& d = camera.distortion;
   const double fx = camera.fx_px, fy = camera.fy_px, cx = camera.cx_px, cy = camera.cy_px;
   ros::CameraInfo info;
   info.header.frame_id = ros::kOpticalFrame;
   info.height = static_cast<std::uint32_t>(camera.height_px);
   info.width = static_cast<std::uint32_t>(camera.width_px);
-  info.distortion_model = "plumb_bob";
-  info.d = {d.k1, d.k2, d.p1, d.p2, d.k3};
+  info.distortion_model = distortion_model(camera.distortion);
+  info.d = coefficients_of(camera.distortion);
   info.k = {fx, 0, cx, 0, fy, cy, 0, 0, 1};
   info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.p = {fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0};

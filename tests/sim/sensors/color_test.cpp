@@ -114,7 +114,9 @@ Camera pepper_top() {
 TEST(Lens, UndistortingIsTheInverseOfDistorting) {
   Camera strong = pepper_top();
   strong.distortion = {-0.3, 0.1, 0.002, -0.001, -0.01};
-  for (const Camera& camera : {pepper_top(), strong})
+  Camera rational = pepper_top();
+  rational.distortion = {0.5286, -2.6450, 0.00082, -0.00022, 1.5006, 0.4073, -2.4695, 1.4282};
+  for (const Camera& camera : {pepper_top(), strong, rational})
     for (int y = 0; y < 480; y += 60)
       for (int x = 0; x < 640; x += 60) {
         const Eigen::Vector2d back = distort_px(camera, undistort_px(camera, {x, y}));

@@ -87,9 +87,10 @@ class Layout {
     put<std::uint64_t>(settings.size());
     out_ += settings;
     put<std::int32_t>(s.camera.width_px, s.camera.height_px);
-    const auto& [k1, k2, p1, p2, k3] = s.camera.distortion;
+    const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = s.camera.distortion;
     put<double>(s.camera.fx_px, s.camera.fy_px, s.camera.cx_px, s.camera.cy_px, k1, k2, p1, p2, k3,
                 s.camera.rate_hz, s.camera.baseline_m, s.camera.disparity_sigma_px);
+    if (s.camera.distortion.is_rational()) put<double>(k4, k5, k6);
     put<std::uint64_t>(keyframes.size());
     for (const Keyframe& k : keyframes) keyframe(k);
     put<std::uint64_t>(landmarks.size());
@@ -212,12 +213,12 @@ class Layout {
 };
 
 /// A whole file around a content.
-std::string framed(const std::string& content) {
+std::string framed(const std::string& content, std::uint32_t version = 6) {
   std::string bytes("MHMAP\n\0\0", 8);
   const auto append = [&](auto value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   };
-  append(std::uint32_t{6});
+  append(version);
   append(std::uint64_t{vocabulary()->digest()});
   append(std::uint64_t{content.size()});
   bytes += content;
@@ -343,6 +344,15 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
   }
 }
 
+// Maps of cameras without k4 to k6 keep their version and their bytes.
+TEST(MapFile, HoldsTheEightCoefficientsOfACamera) {
+  SlamState state = midway();
+  state.camera.distortion = {.k1 = 0.5, .k2 = -0.1, .k4 = 0.4, .k5 = -0.05, .k6 = 0.01};
+  const std::string bytes = encode_slam(state);
+  EXPECT_TRUE(bytes == framed(Layout(state).bytes(), 7));
+  EXPECT_EQ(decode_slam(bytes, "rational", vocabulary()).camera, state.camera);
+}
+
 TEST(MapFile, ARunThatIsSavedAndLoadedGoesOnWithTheSameBits) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("mh_map_" + std::to_string(getpid()) + ".mhmap");
@@ -389,7 +399,7 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
   other[8] = 9;
-  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 9, but this program reads 6");
+  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 9, but this program reads 6 and 7");
   EXPECT_NE(refusal_of(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));

@@ -234,7 +234,7 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
         << complaint(bad);
   }
   EXPECT_NE(complaint(std::string(kTum1) + "Camera.type: \"KannalaBrandt8\"\n")
-                .find("'KannalaBrandt8' is not PinHole"),
+                .find("'KannalaBrandt8' is neither PinHole nor Rectified"),
             std::string::npos);
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.type: \"PinHole\"\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
@@ -255,6 +255,101 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
   EXPECT_EQ(parse_settings(bad, "s.yaml").depth_per_meter, 1);
 }
 
+constexpr const char* kTum1OfOrbSlam3 = R"(%YAML:1.0
+File.version: "1.0"
+Camera.type: "PinHole"
+Camera1.fx: 517.306408
+Camera1.fy: 516.469215
+Camera1.cx: 318.643040
+Camera1.cy: 255.313989
+Camera1.k1: 0.262383
+Camera1.k2: -0.953104
+Camera1.p1: -0.005358
+Camera1.p2: 0.002628
+Camera1.k3: 1.163314
+Camera.width: 640
+Camera.height: 480
+Camera.newWidth: 600
+Camera.fps: 30
+Camera.RGB: 0
+Stereo.ThDepth: 40.0
+Stereo.b: 0.07732
+RGBD.DepthMapFactor: 1000.0
+ORBextractor.nFeatures: 1500
+System.SaveAtlasToFile: "atlas"
+Viewer.PointSize: 2.0
+)";
+
+TEST(Settings, TakesOrbSlam3sFilesAsTheyAre) {
+  const Settings s = parse_settings(kTum1OfOrbSlam3, "TUM1.yaml");
+  EXPECT_EQ(s.camera.fx_px, 517.306408);
+  EXPECT_EQ(s.camera.cy_px, 255.313989);
+  EXPECT_EQ(s.camera.distortion, (Distortion{0.262383, -0.953104, -0.005358, 0.002628, 1.163314}));
+  EXPECT_EQ(s.camera.baseline_m, 0.07732) << "in m, not times the focal length";
+  EXPECT_NEAR(s.slam.keyframe.close_depth_m, 40 * 0.07732, 1e-12);
+  EXPECT_EQ(s.depth_per_meter, 1000);
+  EXPECT_TRUE(s.has_depth_per_meter);
+  EXPECT_EQ(s.slam.features.count, 1500);
+  ASSERT_EQ(s.notes.size(), 1U);
+  EXPECT_EQ(s.notes[0], "TUM1.yaml: passed over: Camera.newWidth, System.SaveAtlasToFile");
+}
+
+TEST(Settings, OrbSlam3sFilesAreCheckedToo) {
+  for (const auto& [key, slip] : {std::pair("Camera1.k1", "Camera1.K1"),
+                                  {"Camera1.fx", "Camera.fx"},
+                                  {"Stereo.b", "Stereo.bf"},
+                                  {"RGBD.DepthMapFactor", "RGBD.DepthFactor"},
+                                  {"Stereo.ThDepth", "ThDepth"}}) {
+    std::string bad = kTum1OfOrbSlam3;
+    bad.replace(bad.find(key), std::string(key).size(), slip);
+    EXPECT_NE(complaint(bad).find(std::string(slip) + ": is not a key of ORB-SLAM3's settings"),
+              std::string::npos)
+        << complaint(bad);
+  }
+  std::string rectified = kTum1OfOrbSlam3;
+  rectified.replace(rectified.find("PinHole"), 7, "Rectified");
+  EXPECT_TRUE(parse_settings(rectified, "s.yaml").camera.distortion.none());
+  rectified.replace(rectified.find("Rectified"), 9, "KannalaBrandt8");
+  EXPECT_NE(complaint(rectified).find("'KannalaBrandt8' is neither"), std::string::npos);
+}
+
+TEST(Settings, OursMayStandBesideRosKeys) {
+  const std::string ros =
+      "image_width: 640\nimage_height: 480\ncamera_matrix:\n  data: [525, 0, 320, 0, 526, 240, 0, "
+      "0, "
+      "1]\ndistortion_model: rational_polynomial\ndistortion_coefficients:\n  data: [0.5, -0.1, "
+      "0.001, 0.002, 0.03, 0.4, -0.05, 0.01]\n";
+  const Settings s =
+      parse_settings(ros + "images: {depth_per_meter: 4000}\nfeatures: {count: 500}\n", "s.yaml");
+  EXPECT_EQ(s.camera.fy_px, 526);
+  EXPECT_EQ(s.camera.distortion, (Distortion{0.5, -0.1, 0.001, 0.002, 0.03, 0.4, -0.05, 0.01}));
+  EXPECT_EQ(s.depth_per_meter, 4000);
+  EXPECT_EQ(s.slam.features.count, 500);
+  EXPECT_FALSE(parse_settings(ros, "s.yaml").has_depth_per_meter);
+  EXPECT_NE(complaint(ros + kSettingsCamera).find("which one is meant?"), std::string::npos);
+  std::string bad = ros;
+  bad.replace(bad.find("rational_polynomial"), 19, "plumb_bob");
+  EXPECT_NE(complaint(bad).find("8 coefficients; plumb_bob has 5"), std::string::npos)
+      << complaint(bad);
+  bad = ros;
+  bad.replace(bad.find(", 0.01]"), 7, "]");
+  EXPECT_NE(complaint(bad).find("7 coefficients"), std::string::npos) << complaint(bad);
+}
+
+TEST(Settings, EightCoefficientsReadBackBitForBit) {
+  Settings s;
+  s.camera.distortion = {0.5, -0.1, 0.001, 0.002, 0.03, 0.4, -0.05, 1.0 / 3};
+  const Settings read = parse_settings(format_settings(s), "s.yaml");
+  EXPECT_EQ(read.camera, s.camera);
+  s.camera.distortion = {.k1 = 0.1};
+  EXPECT_EQ(format_settings(s).find("k4"), std::string::npos);
+  const std::string folded = complaint(
+      "camera: {fx_px: 525, fy_px: 525, cx_px: 319.5, cy_px: 239.5,\n  "
+      "distortion: {k4: 40}}\n");
+  EXPECT_NE(folded.find("k4 40, k5 0, k6 0: a distortion that cannot be undone"), std::string::npos)
+      << folded;
+}
+
 TEST(Settings, RosCalibrationsAreReadStrictly) {
   const std::string good =
       "image_width: 640\nimage_height: 480\ncamera_name: kinect\ncamera_matrix:\n  rows: 3\n"
@@ -266,7 +361,7 @@ TEST(Settings, RosCalibrationsAreReadStrictly) {
   bad.replace(bad.find("coefficients"), 12, "coefficents");
   EXPECT_NE(complaint(bad).find("s.yaml:9: unknown key 'distortion_coefficents'"),
             std::string::npos);
-  EXPECT_NE(complaint(good + "features: {count: 500}\n").find("unknown key 'features'"),
+  EXPECT_NE(complaint(good + "featurs: {count: 500}\n").find("unknown key 'featurs'"),
             std::string::npos);
   bad = good;
   bad.replace(bad.find("525, 0, 320"), 11, "525, 9, 320");
