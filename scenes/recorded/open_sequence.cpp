@@ -21,6 +21,7 @@
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/interpolate.hpp"
+#include "slam/core/legible.hpp"
 #include "slam/core/read_record.hpp"
 #include "slam/core/trajectory_io.hpp"
 
@@ -95,10 +96,11 @@ std::string join_sequence(const std::string& layout, const fs::path& path) {
 }
 
 std::string without_place(const std::string& message, const std::string& source) {
-  const fs::path place = without_trailing_slash(split_sequence(source).second);
+  const fs::path path = without_trailing_slash(split_sequence(source).second);
+  const std::string place = legible(path.string());  // as in messages
   if (place.empty()) return message;
   for (const char* end : {"/", ": "})
-    if (const std::string mark = place.string() + end; message.starts_with(mark))
+    if (const std::string mark = place + end; message.starts_with(mark))
       return message.substr(mark.size());
   return message;
 }
@@ -140,6 +142,7 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
     if (const Trajectory* truth = opened.sequence->truth())
       if (const std::string note = truth_of_another_time(*opened.sequence, *truth); !note.empty())
         opened.notes.push_back(fmt::format("{}: {}", path.string(), note));
+    for (std::string& note : opened.notes) note = legible(std::move(note));  // they quote files
     return opened;
   };
   if (!config.whole) return open();

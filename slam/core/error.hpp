@@ -4,17 +4,20 @@
 #include <stdexcept>
 #include <string>
 
+#include "slam/core/legible.hpp"
+
 namespace mh {
 
 /// Bad input: a file, a setting or an argument that the user can fix. The message names file, place
-/// and value. The command line prints it as one line on stderr and exits with code 2.
+/// and value. The command line prints it as one line on stderr and exits with code 2. It is made
+/// legible(): it quotes files, and goes into JSON.
 struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit InputError(const std::string& message) : std::runtime_error(legible(message)) {}
 };
 
 /// The machine failed (disk full, time limit, memory): exit code 3.
 struct MachineError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit MachineError(const std::string& message) : std::runtime_error(legible(message)) {}
 };
 
 }  // namespace mh

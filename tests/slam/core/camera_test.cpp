@@ -83,5 +83,38 @@ TEST(Camera, ProjectsAsWorkedByHandAndBack) {
     EXPECT_EQ(camera.in_image(u, v), inside) << u << " " << v;
 }
 
+TEST(Distortion, FiveCoefficientsAreBrownConradysBitForBit) {
+  const Distortion d{.k1 = -0.3, .k2 = 0.1, .p1 = 0.002, .p2 = -0.001, .k3 = -0.01};
+  for (double x = -0.6; x < 0.6; x += 0.07)
+    for (double y = -0.5; y < 0.5; y += 0.09) {
+      const double r2 = x * x + y * y;
+      const double radial = 1 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
+      const Eigen::Vector2d bent = d.distorted(x, y);
+      EXPECT_EQ(bent.x(), x * radial + 2 * d.p1 * x * y + d.p2 * (r2 + 2 * x * x));
+      EXPECT_EQ(bent.y(), y * radial + d.p1 * (r2 + 2 * y * y) + 2 * d.p2 * x * y);
+    }
+}
+
+TEST(Distortion, EightCoefficientsAreARationalOne) {
+  const Distortion d{0.5, -2.7, 0.002, -0.0002, 1.5, 0.38, -2.5, 1.46};
+  EXPECT_TRUE(d.is_rational());
+  EXPECT_NEAR(d.radial(0.25),
+              (1 + 0.5 / 4 - 2.7 / 16 + 1.5 / 64) / (1 + 0.38 / 4 - 2.5 / 16 + 1.46 / 64), 1e-15);
+  const Eigen::Vector2d bent = d.distorted(0.3, -0.2), back = d.undistorted(bent.x(), bent.y());
+  EXPECT_NEAR(back.x(), 0.3, 1e-9);
+  EXPECT_NEAR(back.y(), -0.2, 1e-9);
+  EXPECT_EQ(distortion_of(coefficients_of(d)), d);
+  EXPECT_EQ(coefficients_of(distortion_of({0.1, 0, 0, 0})), (std::vector<double>{0.1, 0, 0, 0, 0}));
+  EXPECT_FALSE(Distortion{.k6 = 0.1}.none());
+  EXPECT_EQ(text_of({.k1 = 0.1}), "k1 0.1, k2 0, p1 0, p2 0, k3 0");
+}
+
+// A file's name in Latin-1 goes into JSON by the message.
+TEST(InputError, MessagesAreLegible) {
+  EXPECT_STREQ(InputError("rgb/b\xfcro.png: cannot be read").what(),
+               "rgb/b?ro.png: cannot be read");
+  EXPECT_STREQ(MachineError("\xff").what(), "?");
+}
+
 }  // namespace
 }  // namespace mh
