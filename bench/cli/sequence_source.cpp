@@ -126,6 +126,7 @@ Source open_source(const SourceOptions& options) {
                          .topics = options.topics};
   config.read_camera = camera_reader(&settings);
   config.has_camera = settings_have_camera;
+  config.depth_per_meter = stated_depth_per_meter;
   OpenedRecording opened = open_sequence(source, config);
   try {
     require_undistortable(opened.sequence->camera());

@@ -25,6 +25,12 @@ bool settings_have_camera(const std::filesystem::path& file) {
   return load_settings(file).has_camera;
 }
 
+std::optional<double> stated_depth_per_meter(const std::filesystem::path& file) {
+  const Settings settings = load_settings(file);
+  if (!settings.has_depth_per_meter) return std::nullopt;
+  return settings.depth_per_meter;
+}
+
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
                               bool labels, Settings* read) {
   return open_sequence(sequence, {.calibration = environment.settings.value_or(""),
@@ -33,7 +39,8 @@ OpenedRecording open_recorded(const Environment& environment, const std::string&
                                   .topics = environment.topics,
                                   .whole = true,
                                   .read_camera = camera_reader(read),
-                                  .has_camera = settings_have_camera});
+                                  .has_camera = settings_have_camera,
+                                  .depth_per_meter = stated_depth_per_meter});
 }
 
 RecordedCamera load_recorded_camera(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "bench/plan/environment.hpp"
 #include "scenes/recorded/open_sequence.hpp"
@@ -20,6 +21,10 @@ std::function<RecordedCamera(const std::filesystem::path&)> camera_reader(Settin
 
 /// Whether a settings file has a camera. @throws InputError if it is not a settings file.
 bool settings_have_camera(const std::filesystem::path& file);
+
+/// The value of a depth pixel at one meter, if a settings file states it. @throws InputError if it
+/// is not a settings file.
+std::optional<double> stated_depth_per_meter(const std::filesystem::path& file);
 
 /// Opens one of an environment's recordings, by its name, and digests all of it.
 /// @param labels  whether its frames have labels

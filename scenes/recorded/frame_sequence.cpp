@@ -3,16 +3,20 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <opencv2/core/mat.hpp>
 
 #include "scenes/image_file.hpp"
 #include "scenes/recorded/class_map.hpp"
+#include "scenes/recorded/nearest_stamp.hpp"
 #include "scenes/recorded/valid_poses.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"
 
 namespace mh {
@@ -54,9 +58,9 @@ class FramesInMemory : public Sequence {
   std::vector<RgbdFrame> frames_;
 };
 
-ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camera,
-                             std::vector<std::string>* notes) {
-  ListedFrames listed{camera, load_tum_folder(folder, notes), {}, {}, {}};
+ListedFrames list_tum_folder(std::vector<RecordedFrame> frames, const fs::path& folder,
+                             const RecordedCamera& camera, std::vector<std::string>* notes) {
+  ListedFrames listed{camera, std::move(frames), {}, {}, {}};
   for (const char* name : {"groundtruth.txt", "groundtruth.csv"})
     if (!listed.truth && is_file(folder / name))
       listed.truth = read_trajectory(folder / name);
@@ -66,17 +70,50 @@ ListedFrames list_tum_folder(const fs::path& folder, const RecordedCamera& camer
 }
 
 bool is_tum_folder(const fs::path& folder) {
-  return is_file(folder / "rgb.txt") || is_file(folder / "associations.txt");
+  return is_file(folder / "rgb.txt") || is_file(associations_in(folder));
+}
+
+/// ETH3D's calibration.txt: fx fy cx cy, pixel centers at integers, no distortion. The size is that
+/// of the first image that can be read.
+/// @throws InputError naming the file.
+RecordedCamera eth3d_camera(const fs::path& file, const std::vector<RecordedFrame>& frames) {
+  std::istringstream words(read_text(file));
+  std::vector<double> k;
+  for (double number = 0; words >> number;) k.push_back(number);
+  if (k.size() != 4 || !words.eof())
+    throw InputError(fmt::format("{}: is not 'fx fy cx cy'", file.string()));
+  RecordedCamera recorded;
+  Camera& camera = recorded.camera;
+  camera.fx_px = k[0], camera.fy_px = k[1], camera.cx_px = k[2], camera.cy_px = k[3];
+  std::vector<Stamp> stamps_ns;
+  for (const RecordedFrame& frame : frames) stamps_ns.push_back(frame.stamp_ns);
+  camera.rate_hz = rate_of_hz(stamps_ns);
+  for (const RecordedFrame& frame : frames) {
+    try {
+      const cv::Mat image = read_image(frame.color);
+      camera.width_px = image.cols, camera.height_px = image.rows;
+      break;
+    } catch (const InputError&) {  // is told where the frame is skipped
+    }
+  }
+  try {
+    validate(camera);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  return recorded;
 }
 
 /// @throws InputError if no calibration is specified and none is in the folder.
-fs::path calibration_of(const fs::path& folder, const RecordingConfig& config) {
-  if (!config.calibration.empty()) return config.calibration;
+RecordedCamera camera_of(const fs::path& folder, const std::vector<RecordedFrame>& frames,
+                         const RecordingConfig& config) {
+  if (!config.calibration.empty()) return config.read_camera(config.calibration);
   for (const char* name : {"camera.yaml", "camera_info.yaml"})
-    if (is_file(folder / name)) return folder / name;
+    if (is_file(folder / name)) return config.read_camera(folder / name);
+  if (is_file(folder / "calibration.txt")) return eth3d_camera(folder / "calibration.txt", frames);
   throw InputError(
-      fmt::format("{}: holds neither camera.yaml nor camera_info.yaml; name a settings file by "
-                  "--settings, in a suite by `settings:`",
+      fmt::format("{}: holds neither camera.yaml nor camera_info.yaml nor ETH3D's "
+                  "calibration.txt; name a settings file by --settings, in a suite by `settings:`",
                   folder.string()));
 }
 
@@ -86,8 +123,9 @@ OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) 
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt", folder.string()));
   std::vector<std::string> notes;
-  ListedFrames listed =
-      list_tum_folder(folder, config.read_camera(calibration_of(folder, config)), &notes);
+  std::vector<RecordedFrame> frames = load_tum_folder(folder, &notes);
+  const RecordedCamera camera = camera_of(folder, frames, config);
+  ListedFrames listed = list_tum_folder(std::move(frames), folder, camera, &notes);
   return open_listed(std::move(listed), config, std::move(notes));
 }
 
@@ -95,10 +133,21 @@ OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) 
 
 const SequenceReader kTumReader{"tum", "FOLDER", is_tum_folder, open_tum, nullptr};
 
+void note_depth_scale(double depth_per_meter, const RecordingConfig& config,
+                      std::vector<std::string>& notes) {
+  if (config.calibration.empty() || !config.depth_per_meter) return;
+  const std::optional<double> stated = config.depth_per_meter(config.calibration);
+  if (stated && *stated != depth_per_meter)
+    notes.push_back(
+        fmt::format("{}: its depth per meter, {:g}, gives way to {:g}, the recording's own",
+                    config.calibration.string(), *stated, depth_per_meter));
+}
+
 OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
                             std::vector<std::string> notes) {
   OpenedRecording opened;
   opened.notes = std::move(notes);
+  note_depth_scale(listed.camera.depth_per_meter, config, opened.notes);
   // Read even where labels are left out: what is read depends on the recording alone.
   if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
   for (const RecordedFrame& frame : listed.frames) {
@@ -127,7 +176,8 @@ OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
 std::unique_ptr<Sequence> open_tum_folder(const std::filesystem::path& folder,
                                           const RecordedCamera& camera,
                                           std::vector<std::string>* notes) {
-  return std::make_unique<ListedSequence>(list_tum_folder(folder, camera, notes));
+  return std::make_unique<ListedSequence>(
+      list_tum_folder(load_tum_folder(folder, notes), folder, camera, notes));
 }
 
 std::unique_ptr<Sequence> frames_in_memory(const Camera& camera, std::vector<RgbdFrame> frames) {

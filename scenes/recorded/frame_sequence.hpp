@@ -24,6 +24,10 @@ struct ListedFrames {
   std::optional<DepthCamera> depth_camera;  ///< absent: depth is registered to color in the files
 };
 
+/// Notes a calibration file that states another scale of depth than the one that is used.
+void note_depth_scale(double depth_per_meter, const RecordingConfig& config,
+                      std::vector<std::string>& notes);
+
 /// The last step of opening files of images: loads the class map, leaves labels out if they are not
 /// wanted, and notes a class map without use or of another table.
 OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
@@ -36,8 +40,8 @@ std::unique_ptr<Sequence> open_tum_folder(const std::filesystem::path& folder,
                                           const RecordedCamera& camera,
                                           std::vector<std::string>* notes = nullptr);
 
-/// TUM's layout. The calibration is the specified one, otherwise camera.yaml or camera_info.yaml in
-/// the folder.
+/// TUM's layout. The calibration is the specified one, otherwise camera.yaml, camera_info.yaml
+/// or ETH3D's calibration.txt in the folder.
 extern const SequenceReader kTumReader;
 
 /// A sequence of frames in memory.

@@ -8,13 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "scenes/recorded/associations.hpp"
 #include "scenes/recorded/frame_sequence.hpp"
-#include "scenes/recorded/tum_list.hpp"
 #include "scenes/recorded/valid_poses.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
-#include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -59,16 +58,11 @@ Trajectory read_truth(const fs::path& file, std::vector<std::string>& notes) {
   return truth;
 }
 
-std::vector<RecordedFrame> read_frames(const fs::path& folder) {
+std::vector<RecordedFrame> read_frames(const fs::path& folder, std::vector<std::string>& notes) {
   const fs::path list = folder / "associations.txt";
-  const std::string text = read_text(list);
-  const auto depth = parse_tum_list(text, list.string());
-  const auto color = parse_tum_list(text, list.string(), 2);
-  if (color.empty()) throw InputError(fmt::format("{}: lists no image", list.string()));
-  std::vector<RecordedFrame> frames;
-  for (std::size_t i = 0; i < color.size(); ++i)
-    frames.push_back({stamp_of_number(color[i].stamp_ns), folder / color[i].file,
-                      folder / depth[i].file, fs::path()});
+  std::vector<RecordedFrame> frames = read_associations(list, FirstImage::kDepth);
+  for (RecordedFrame& frame : frames) frame.stamp_ns = stamp_of_number(frame.stamp_ns);
+  sort_frames(frames, list, &notes);
   return frames;
 }
 
@@ -94,7 +88,7 @@ OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& con
                                  counted(truth.size(), ".gt.freiburg file")));
   std::vector<std::string> notes;
   ListedFrames listed{.camera = {.camera = icl_nuim_camera()},
-                      .frames = read_frames(folder),
+                      .frames = read_frames(folder, notes),
                       .classes = {},
                       .truth = read_truth(folder / truth.front(), notes),
                       .depth_camera = {}};

@@ -2,6 +2,7 @@
 #include "scenes/recorded/nearest_stamp.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iterator>
 
@@ -11,6 +12,16 @@ namespace {
 using Entry = std::pair<Stamp, std::size_t>;
 
 }  // namespace
+
+double rate_of_hz(const std::vector<Stamp>& stamps_ns) {
+  std::vector<Stamp> gaps_ns;
+  for (std::size_t i = 1; i < stamps_ns.size(); ++i)
+    if (stamps_ns[i] > stamps_ns[i - 1]) gaps_ns.push_back(stamps_ns[i] - stamps_ns[i - 1]);
+  if (gaps_ns.empty()) return 30;
+  const auto middle = gaps_ns.begin() + static_cast<std::ptrdiff_t>(gaps_ns.size() / 2);
+  std::ranges::nth_element(gaps_ns, middle);
+  return std::max(0.01, std::round(1e11 / static_cast<double>(*middle)) / 100);
+}
 
 StampIndex::StampIndex(const std::vector<Stamp>& stamps_ns) {
   for (std::size_t i = 0; i < stamps_ns.size(); ++i) sorted_.emplace_back(stamps_ns[i], i);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,6 +33,8 @@ struct RecordingConfig {
   /// Whether a calibration file defines a camera. If so, it replaces the one that the recording
   /// stores, in layouts that store one.
   std::function<bool(const std::filesystem::path&)> has_camera = {};
+  /// The value of a depth pixel at one meter, if a calibration file states it.
+  std::function<std::optional<double>(const std::filesystem::path&)> depth_per_meter = {};
 };
 
 /// An opened recording.

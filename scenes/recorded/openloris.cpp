@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/recorded/associations.hpp"
 #include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/recorded/nearest_stamp.hpp"
 #include "scenes/recorded/numbered_images.hpp"
@@ -62,11 +63,10 @@ RecordedCamera read_sensors(const fs::path& file) {
   }
   if (auto distortion = color.find("distortion_coefficients")) {
     const YamlReader data = distortion->at("data");
-    std::vector<double> d = data.as_numbers();
-    if (d.size() != 4 && d.size() != 5)
-      data.fail(fmt::format("{}, 4 or 5 are needed", counted(d.size(), "number")));
-    d.resize(5, 0.0);
-    camera.distortion = {.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4]};
+    const std::vector<double> d = data.as_numbers();
+    if (d.size() != 4 && d.size() != 5 && d.size() != 8)
+      data.fail(fmt::format("{}, 4, 5 or 8 are needed", counted(d.size(), "number")));
+    camera.distortion = distortion_of(d);
   }
   try {
     validate(camera);
@@ -157,6 +157,7 @@ std::vector<RecordedFrame> read_frames(const fs::path& folder, std::vector<std::
     throw InputError(
         fmt::format("{}: no color image has a depth image within 0.02 s", folder.string()));
   without_depth.note(folder, color.size(), notes);
+  sort_frames(frames, folder / "color.txt", &notes);
   return frames;
 }
 

@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "scenes/recorded/class_map.hpp"
+#include "scenes/recorded/frame_sequence.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "scenes/scannet/label_table.hpp"
@@ -129,6 +130,7 @@ class ScannetSequence : public Sequence {
   }
 
   bool has_labels() const { return labels_ != nullptr; }
+  double depth_per_meter() const { return recording_->info().depth_per_meter; }
   void leave_out_labels() { labels_.reset(); }
   std::vector<fs::path> images() const { return recording_->images(); }
   std::vector<fs::path> files() const {
@@ -242,6 +244,7 @@ OpenedRecording open_recorded(const fs::path& path, const RecordingConfig& confi
   opened.files = sequence->files();
   opened.images = sequence->images();
   opened.has_labels = sequence->has_labels();
+  note_depth_scale(sequence->depth_per_meter(), config, opened.notes);
   if (!config.labels) sequence->leave_out_labels();
   opened.sequence = std::move(sequence);
   return opened;

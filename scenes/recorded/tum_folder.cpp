@@ -12,6 +12,7 @@
 
 #include "scenes/image_file.hpp"
 #include "scenes/images/write_image.hpp"
+#include "scenes/recorded/associations.hpp"
 #include "scenes/recorded/nearest_stamp.hpp"
 #include "scenes/recorded/tum_list.hpp"
 #include "slam/core/counted.hpp"
@@ -28,10 +29,19 @@ namespace fs = std::filesystem;
 using Listed = TumListEntry;
 
 /// Reads a list whose files are next to it.
-std::vector<Listed> read_list(const fs::path& list, int skip = 0) {
-  std::vector<Listed> entries = parse_tum_list(read_text(list), list.string(), skip);
+std::vector<Listed> read_list(const fs::path& list) {
+  std::vector<Listed> entries = parse_tum_list(read_text(list), list.string());
   for (Listed& entry : entries) entry.file = list.parent_path() / entry.file;
   return entries;
+}
+
+/// Frames of the listed color images, without depth so far.
+std::vector<RecordedFrame> listed_color(const fs::path& list) {
+  std::vector<RecordedFrame> frames;
+  for (const Listed& entry : read_list(list))
+    frames.push_back({entry.stamp_ns, entry.file, {}, {}});
+  if (frames.empty()) throw InputError(fmt::format("{}: lists no image", list.string()));
+  return frames;
 }
 
 /// Entries by stamp, for lookup by time.
@@ -118,24 +128,33 @@ Grid2d<Rgb8> as_it_is(const cv::Mat& bgr) {
 
 }  // namespace
 
+fs::path associations_in(const fs::path& folder) {
+  for (const char* name : {"associations.txt", "associated.txt"})
+    if (is_there(folder / name)) return folder / name;
+  return {};
+}
+
 std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
                                            std::vector<std::string>* notes) {
-  const fs::path both = folder / "associations.txt";
-  const bool associated = !is_there(folder / "rgb.txt") && is_there(both);
+  const fs::path both = associations_in(folder);
+  const bool associated =
+      !both.empty() && !(is_there(folder / "rgb.txt") && is_there(folder / "depth.txt"));
   const fs::path list = associated ? both : folder / "rgb.txt";
-  const std::vector<Listed> color = read_list(list);
-  if (color.empty()) throw InputError(fmt::format("{}: lists no image", list.string()));
+  std::vector<RecordedFrame> all = associated ? read_associations(both) : listed_color(list);
   const std::vector<Listed> depth =
-      associated ? read_list(both, 2) : read_list(folder / "depth.txt");
+      associated ? std::vector<Listed>{} : read_list(folder / "depth.txt");
   std::vector<Listed> labels;
   if (is_there(folder / "label.txt")) labels = read_list(folder / "label.txt");
   const ByStamp depth_at(depth), labels_at(labels);
   std::vector<RecordedFrame> frames;
-  for (std::size_t i = 0; i < color.size(); ++i) {
-    const Listed* d = associated ? &depth[i] : depth_at.nearest(color[i].stamp_ns);
-    if (d == nullptr) continue;
-    const Listed* l = labels_at.nearest(color[i].stamp_ns);
-    frames.push_back({color[i].stamp_ns, color[i].file, d->file, l ? l->file : fs::path()});
+  for (RecordedFrame& frame : all) {
+    if (!associated) {
+      const Listed* d = depth_at.nearest(frame.stamp_ns);
+      if (d == nullptr) continue;
+      frame.depth = d->file;
+    }
+    if (const Listed* l = labels_at.nearest(frame.stamp_ns)) frame.classes = l->file;
+    frames.push_back(frame);
   }
   if (frames.empty())
     throw InputError(
@@ -145,11 +164,12 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
   if (notes != nullptr && !labels.empty() && unlabeled > 0)
     notes->push_back(fmt::format("{}: {} of {} frames have no label image within 0.02 s",
                                  (folder / "label.txt").string(), unlabeled, frames.size()));
-  if (notes != nullptr && frames.size() < color.size())
+  if (notes != nullptr && frames.size() < all.size())
     notes->push_back(
         fmt::format("{}: {} of {} color images have no depth image within 0.02 s "
                     "and are left out",
-                    folder.string(), color.size() - frames.size(), color.size()));
+                    folder.string(), all.size() - frames.size(), all.size()));
+  sort_frames(frames, list, notes);
   return frames;
 }
 

@@ -33,11 +33,16 @@ struct RecordedFrame {
   std::filesystem::path color, depth, classes;  ///< classes: empty if the recording has none
 };
 
-/// Reads a folder in TUM's layout: rgb.txt and depth.txt, or if missing associations.txt, and
-/// label.txt if present. Each color image is paired with the nearest depth image within 0.02 s, as
-/// in TUM's own association, or with the one listed next to it; color images without one are
-/// omitted.
-/// @param notes  receives a line with the number of omitted ones; may be null
+/// The list of pairs in a folder of TUM's or ETH3D's layout, associations.txt or associated.txt;
+/// empty if it holds neither.
+std::filesystem::path associations_in(const std::filesystem::path& folder);
+
+/// Reads a folder in TUM's layout: rgb.txt and depth.txt, or if one is missing associations.txt or
+/// associated.txt, and label.txt if present. Each color image is paired with the nearest depth
+/// image within 0.02 s, as in TUM's own association, or with the one listed next to it; color
+/// images without one are omitted. Frames are in the order of their stamps.
+/// @param notes  receives a line with the number of omitted ones, and one if they were sorted; may
+/// be null
 /// @throws InputError naming file and line.
 std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder,
                                            std::vector<std::string>* notes = nullptr);

@@ -203,15 +203,24 @@ TEST_F(TumFolder, WhatHasNoUseIsTold) {
   EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
 }
 
-TEST_F(TumFolder, KeepsTheOrderOfStampsThatGoBack) {
+TEST_F(TumFolder, ListsInNoOrderAreSortedByTheirStamps) {
   fs::create_directories(folder_);
   std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.3 b.png\n0.2 c.png\n0.2 d.png\n";
   std::ofstream(folder_ / "depth.txt") << "0.3 3.png\n0.2 2.png\n0.1 1.png\n";
-  const auto frames = load_tum_folder(folder_);
+  std::vector<std::string> notes;
+  const auto frames = load_tum_folder(folder_, &notes);
   ASSERT_EQ(frames.size(), 4u);
-  EXPECT_EQ(frames[2].stamp_ns, 200'000'000);
-  EXPECT_EQ(frames[1].depth, folder_ / "3.png");
-  EXPECT_EQ(frames[3].color, folder_ / "d.png");
+  EXPECT_EQ(frames[1].color, folder_ / "c.png");
+  EXPECT_EQ(frames[1].depth, folder_ / "2.png");
+  EXPECT_EQ(frames[2].color, folder_ / "d.png") << "of one stamp: as listed";
+  EXPECT_EQ(frames[3].depth, folder_ / "3.png");
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("rgb.txt: its images are not in the order of their stamps"),
+            std::string::npos);
+  std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.2 c.png\n0.2 d.png\n0.3 b.png\n";
+  notes.clear();
+  load_tum_folder(folder_, &notes);
+  EXPECT_TRUE(notes.empty());
 }
 
 TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
@@ -229,6 +238,7 @@ TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
   std::ofstream(folder_ / "rgb.txt") << colors;
   std::ofstream(folder_ / "depth.txt") << depths;
   std::vector<std::string> wanted, found;
+  std::ranges::sort(color_ns);
   for (const Stamp stamp_ns : color_ns) {
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < depth_ns.size(); ++i)
@@ -267,6 +277,107 @@ TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
   EXPECT_EQ(load_tum_folder(folder_)[0].depth, folder_ / "b.png");
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png\n";
   EXPECT_THROW(load_tum_folder(folder_), InputError);
+}
+
+// associate.py depth.txt rgb.txt writes depth first.
+TEST_F(TumFolder, TheImagesTellWhichOfAPairIsDepth) {
+  TumWriter writer(folder_, camera_);
+  for (const Stamp stamp_ns : {100'000'000, 200'000'000}) writer.add(frame(stamp_ns));
+  writer.finish();
+  fs::remove(folder_ / "rgb.txt");
+  const std::string color = " rgb/0.100000000.png", depth = " depth/0.100000000.png";
+  for (const std::string& line :
+       {"0.1" + color + " 0.11" + depth, "0.11" + depth + " 0.1" + color}) {
+    // The first pair cannot be read, or only half of it.
+    for (const std::string& before : {std::string(), std::string("0.05 x.png 0.05 y.png\n")}) {
+      std::ofstream(folder_ / "associations.txt") << before << line << "\n";
+      const RecordedFrame read = load_tum_folder(folder_).back();
+      EXPECT_EQ(read.stamp_ns, 100'000'000) << "that of color";
+      EXPECT_EQ(read.depth, folder_ / "depth/0.100000000.png");
+      EXPECT_EQ(read_frame(read, {camera_, 5000}).color, frame(0).color);
+    }
+  }
+}
+
+TEST_F(TumFolder, AssociationsOfThreeListsAreRefusedByTheirWords) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "associations.txt")
+      << "# pose depth color\n0.1 -0.68 2.69 1.73 0 0.86 -0.5 0 0.1 depth/1.png 0.1 rgb/1.png\n";
+  try {
+    load_tum_folder(folder_);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("associations.txt:2: '-0.68' is no file: a line is "
+                        "'stamp file stamp file', and this one has 12 words"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(TumFolder, OfEth3dBringsItsCalibration) {
+  TumWriter writer(folder_, camera_);
+  for (const Stamp stamp_ns : {100'000'000, 140'000'000}) writer.add(frame(stamp_ns));
+  writer.finish();
+  for (const char* name : {"camera.yaml", "camera_info.yaml", "associations.txt"})
+    fs::remove(folder_ / name);
+  const auto open = [&] { return open_sequence(folder_.string(), {}); };
+  std::ofstream(folder_ / "calibration.txt") << "7.5 7.25 3.5 2.5\n";
+  const OpenedRecording opened = open();
+  const Camera& camera = opened.sequence->camera();
+  EXPECT_EQ(camera.width_px, 8);
+  EXPECT_EQ(camera.height_px, 6);
+  EXPECT_EQ(camera.fx_px, 7.5);
+  EXPECT_EQ(camera.fy_px, 7.25);
+  EXPECT_EQ(camera.cx_px, 3.5);
+  EXPECT_EQ(camera.cy_px, 2.5);
+  EXPECT_EQ(camera.rate_hz, 25);
+  EXPECT_TRUE(camera.distortion.none());
+  EXPECT_EQ(opened.sequence->frame(1, RandomStream()).depth_m, frame(0).depth_m);
+  // The list of pairs alone is enough.
+  fs::remove(folder_ / "rgb.txt");
+  std::ofstream(folder_ / "associated.txt")
+      << "0.1 rgb/0.100000000.png 0.1 depth/0.100000000.png\n";
+  EXPECT_EQ(open().sequence->size(), 1U);
+  for (const char* bad : {"7.5 7.25 3.5\n", "7.5 7.25 3.5 2.5 0.1\n", "7.5 7.25 3.5 x\n"}) {
+    std::ofstream(folder_ / "calibration.txt") << bad;
+    EXPECT_THROW(open(), InputError) << bad;
+  }
+}
+
+TEST_F(TumFolder, AScaleOfDepthThatGivesWayIsTold) {
+  TumWriter writer(folder_ / "rgbd_bonn_x", camera_);
+  writer.add(frame(100'000'000));
+  writer.finish();
+  fs::remove(folder_ / "rgbd_bonn_x" / "camera.yaml");
+  fs::remove(folder_ / "rgbd_bonn_x" / "camera_info.yaml");
+  RecordingConfig config{.calibration = "mine.yaml", .classes = {}};
+  config.read_camera = [&](const fs::path&) { return RecordedCamera{camera_, 4000}; };
+  config.depth_per_meter = [](const fs::path&) { return std::optional(4000.0); };
+  const auto has_note = [&](const std::string& layout) {
+    const auto opened = open_sequence(layout + (folder_ / "rgbd_bonn_x").string(), config);
+    return std::ranges::any_of(opened.notes, [](const std::string& note) {
+      return note == "mine.yaml: its depth per meter, 4000, gives way to 5000, the recording's own";
+    });
+  };
+  EXPECT_TRUE(has_note("bonn:"));
+  EXPECT_FALSE(has_note("tum:")) << "there it counts";
+}
+
+TEST_F(TumFolder, ANameInLatin1CostsItsFrame) {
+  TumWriter writer(folder_, camera_);
+  for (const Stamp stamp_ns : {100'000'000, 200'000'000}) writer.add(frame(stamp_ns));
+  writer.finish();
+  std::ofstream(folder_ / "rgb.txt") << "0.1 rgb/b\xfcro.png\n0.2 rgb/0.200000000.png\n";
+  const auto frames = load_tum_folder(folder_);
+  ASSERT_EQ(frames.size(), 2U);
+  try {
+    read_frame(frames[0], {camera_, 5000});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("b?ro.png: cannot be read"), std::string::npos);
+  }
+  read_frame(frames[1], {camera_, 5000});
 }
 
 TEST_F(TumFolder, ReadsOrbSlamsOwnCalibration) {
