@@ -43,6 +43,14 @@ T number(const Fields& fields, std::string_view name) {
   return ByteReader(bytes).number<T>();
 }
 
+/// Seconds, then nanoseconds.
+std::int64_t received_ns(const Fields& fields) {
+  if (!fields.contains("time")) return 0;
+  const auto time = number<std::uint64_t>(fields, "time");
+  return ros::kSecond_ns * static_cast<std::int64_t>(time & UINT32_MAX) +
+         static_cast<std::int64_t>(time >> 32);
+}
+
 Op op_of(const Fields& fields) {
   return static_cast<Op>(number<std::uint8_t>(fields, "op"));
 }
@@ -116,7 +124,12 @@ class BagFile : public MessageFile {
         const Fields fields = fields_of(record->header);
         const Op op = op_of(fields);
         if (op == Op::kMessage)
-          read_message(fields, data, {records.chunk, at - data.size(), data.size()}, place);
+          read_message(fields, data,
+                       {.chunk = records.chunk,
+                        .at = at - data.size(),
+                        .size = data.size(),
+                        .received_ns = received_ns(fields)},
+                       place);
         else if (op == Op::kConnection)
           read_connection(fields, data);
         else if (op == Op::kChunk && !in_chunk)

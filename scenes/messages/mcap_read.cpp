@@ -80,8 +80,10 @@ class McapFile : public MessageFile {
       }
       try {
         if (record->opcode == Opcode::kMessage)
-          read_message(record->content, {records.chunk, record->content_at, record->content.size()},
-                       place);
+          read_message(
+              record->content,
+              {.chunk = records.chunk, .at = record->content_at, .size = record->content.size()},
+              place);
         else if (record->opcode == Opcode::kChunk && !in_chunk)
           read_chunk(record->content, place);
         else
@@ -133,6 +135,8 @@ class McapFile : public MessageFile {
     const auto channel = channels_by_id_.find(id);
     if (channel == channels_by_id_.end())
       return leave_out("messages left out", file_at, "a message is of no channel");
+    from.number<std::uint32_t>();  // its number in the sequence
+    place.received_ns = from.number<std::int64_t>();
     place.at += kHead;
     place.size -= kHead;
     count_message();

@@ -31,6 +31,8 @@ struct MessagePlace {
   static constexpr std::uint32_t kFile = UINT32_MAX;
   std::uint32_t chunk = kFile;  ///< kFile: `at` counts from the file's beginning
   std::uint64_t at = 0, size = 0;
+  std::int64_t received_ns = 0;  ///< when the recorder received it; 0 if the file does not say
+  std::size_t part = 0;          ///< which file, of a recording of several: the visitor's to set
 };
 
 /// A file of messages, MCAP or a ROS 1 bag, which stays mapped while it is used. Opening reads it

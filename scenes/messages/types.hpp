@@ -46,6 +46,13 @@ struct String {
   static void fields(auto& m, auto& f) { f("data", m.data); }
 };
 
+struct Float32 {
+  static constexpr const char* kType = "std_msgs/Float32";
+  static constexpr const char* kMd5 = "73fcbf46b49191e672908e50842a83d4";
+  float data = 0;
+  static void fields(auto& m, auto& f) { f("data", m.data); }
+};
+
 struct Image {
   static constexpr const char* kType = "sensor_msgs/Image";
   static constexpr const char* kMd5 = "060021388200f6f0f447d0fcd9c64743";
@@ -201,11 +208,26 @@ struct TwistWithCovariance {
 
 struct Transform {
   static constexpr const char* kType = "geometry_msgs/Transform";
+  static constexpr const char* kMd5 = "ac9eff44abf714214112b05d54a3cf9b";
   Vector3 translation;
   Quaternion rotation;
   static void fields(auto& m, auto& f) {
     f("translation", m.translation);
     f("rotation", m.rotation);
+  }
+};
+
+/// From one stream of a RealSense to another; in ROS 1 a header stands before it.
+struct Extrinsics {
+  static constexpr const char* kType = "realsense2_camera_msgs/Extrinsics";
+  static constexpr const char* kTypeInRos1 = "realsense2_camera/Extrinsics";
+  static constexpr const char* kMd5 = "f30674f1051f678d172dec40a1dbf2aa";  // without a header
+  static constexpr std::size_t kBytes = 12 * sizeof(double);
+  std::array<double, 9> rotation{};  ///< by columns
+  std::array<double, 3> translation{};
+  static void fields(auto& m, auto& f) {
+    f("rotation", m.rotation);
+    f("translation", m.translation);
   }
 };
 

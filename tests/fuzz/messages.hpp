@@ -13,7 +13,8 @@ namespace mh {
 /// Opens a file of messages as a recording and reads each of its frames.
 inline void read_recording(OpenMessages open, std::string_view bytes) {
   try_input([&] {
-    const OpenedRecording opened = open_messages(open, hold(std::string(bytes)), "fuzz", {});
+    const OpenedRecording opened =
+        open_messages(open, {{"fuzz", hold(std::string(bytes))}}, "fuzz", {});
     for (std::size_t i = 0; i < opened.sequence->size(); ++i)
       try_input([&] { opened.sequence->frame(i, RandomStream(0)); });
   });

@@ -14,7 +14,10 @@
 namespace mh {
 namespace {
 
-constexpr std::array kColorEncodings = {"rgb8", "bgr8", "rgba8", "bgra8", "8UC3", "8UC4"};
+constexpr std::array kColorEncodings = {
+    "rgb8",   "bgr8",  "rgba8",       "bgra8",       "8UC3",        "8UC4",
+    "rgb16",  "bgr16", "bayer_rggb8", "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8",
+    "yuv422", "uyvy",  "yuv422_yuy2", "yuyv",        "nv12",        "nv21"};
 constexpr std::array kGrayEncodings = {"mono8", "8UC1"};
 constexpr std::array kDepthEncodings = {"32FC1", "16UC1", "mono16"};
 
@@ -121,13 +124,16 @@ class Chooser {
                     file_, what, listed(found), what, found.front()->name));
   }
 
-  /// The calibration beside an image: /x/camera_info of /x/image_raw or /x/image_raw/compressed.
+  /// The calibration beside an image: /x/camera_info of /x/image_raw or /x/image_raw/compressed; as
+  /// RealSense's recorder names it, /x/info/camera_info of /x/image/data.
   const Calibration* calibration_of(const ImageTopic& image) const {
     std::string folder = parent_of(image.name);
-    for (int up = 0; up < 2; ++up, folder = parent_of(folder)) {
-      const auto found = topics_.calibrations.find(folder + "/camera_info");
-      if (found != topics_.calibrations.end()) return &found->second;
-    }
+    for (int up = 0; up < 3; ++up, folder = parent_of(folder))
+      for (const char* name : {"/camera_info", "/info/camera_info"}) {
+        if (up == 2 && name == std::string_view("/camera_info")) continue;
+        const auto found = topics_.calibrations.find(folder + name);
+        if (found != topics_.calibrations.end()) return &found->second;
+      }
     return topics_.calibrations.size() == 1 ? &topics_.calibrations.begin()->second : nullptr;
   }
 

@@ -2,10 +2,8 @@
 #include "scenes/recorded/ros/sequence.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,8 +11,10 @@
 #include "scenes/messages/message_file.hpp"
 #include "scenes/recorded/class_map.hpp"
 #include "scenes/recorded/nearest_stamp.hpp"
+#include "scenes/recorded/registered_depth.hpp"
+#include "scenes/recorded/ros/cameras.hpp"
 #include "scenes/recorded/ros/image.hpp"
-#include "scenes/recorded/ros/names.hpp"
+#include "scenes/recorded/ros/parts.hpp"
 #include "scenes/recorded/ros/topics.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
@@ -44,8 +44,10 @@ ImageSource source_of(const ImageTopic& topic) {
 
 class RosSequence : public Sequence {
  public:
-  std::unique_ptr<MessageFile> file;
+  std::vector<std::unique_ptr<MessageFile>> files;
   Camera of_color;
+  std::optional<DepthCamera> of_depth;  ///< absent: depth is registered to color
+  double per_meter = kRosDepthPerMeter;
   ImageSource color, depth, labels;
   std::vector<StoredFrame> frames;
   std::optional<ClassMap> classes;
@@ -60,10 +62,14 @@ class RosSequence : public Sequence {
     const StoredFrame& stored = frames[i];
     RgbdFrame frame;
     frame.stamp_ns = stored.color.stamp_ns;
-    frame.color = image(color, stored.color, color_in);
-    frame.depth_m = image(depth, stored.depth, depth_in);
+    frame.color = image(color, stored.color, of_color, color_in);
+    const auto meters = [&](std::string_view message, ros::Wire wire, bool compressed) {
+      return depth_in(message, wire, compressed, per_meter);
+    };
+    frame.depth_m = image(depth, stored.depth, of_depth ? of_depth->camera : of_color, meters);
+    if (of_depth) frame.depth_m = registered_depth(frame.depth_m, *of_depth, of_color);
     if (stored.labels) {
-      const auto ids = image(labels, *stored.labels, ids_in);
+      const auto ids = image(labels, *stored.labels, of_color, ids_in);
       try {
         frame.semantics = one_hot(ids, classes ? &*classes : nullptr);
       } catch (const InputError& error) {
@@ -77,148 +83,43 @@ class RosSequence : public Sequence {
     return {.frames = frames.size(),
             .read = [this](std::size_t i) -> std::optional<Grid2d<std::uint16_t>> {
               if (!frames[i].labels) return std::nullopt;
-              return image(labels, *frames[i].labels, ids_in);
+              return image(labels, *frames[i].labels, of_color, ids_in);
             },
             .place =
                 [this](std::size_t i) {
-                  return fmt::format("{}: topic {} at {} ns", file->name(), labels.name,
-                                     frames[i].labels->stamp_ns);
+                  return fmt::format("{}: topic {} at {} ns", name_of(*frames[i].labels),
+                                     labels.name, frames[i].labels->stamp_ns);
                 }};
   }
 
  private:
   [[noreturn]] void fail(const ImageSource& source, const StoredImage& stored,
                          const char* why) const {
-    throw InputError(
-        fmt::format("{}: topic {} at {} ns: {}", file->name(), source.name, stored.stamp_ns, why));
+    throw InputError(fmt::format("{}: topic {} at {} ns: {}", name_of(stored), source.name,
+                                 stored.stamp_ns, why));
   }
 
-  template <class T>
-  using Read = Grid2d<T> (*)(std::string_view, ros::Wire, bool);
+  const std::string& name_of(const StoredImage& stored) const {
+    return files[stored.place.part]->name();
+  }
 
-  template <class T>
-  Grid2d<T> image(const ImageSource& source, const StoredImage& stored, Read<T> read) const {
-    const HeldBytes message = file->read(stored.place);
+  /// @param read  (message, wire, compressed) -> a grid
+  template <class ReadImage>
+  std::invoke_result_t<const ReadImage&, std::string_view, ros::Wire, bool> image(
+      const ImageSource& source, const StoredImage& stored, const Camera& camera,
+      const ReadImage& read) const {
+    const HeldBytes message = files[stored.place.part]->read(stored.place);
     try {
-      Grid2d<T> grid = read(message.view, source.wire, source.compressed);
-      if (grid.width() != of_color.width_px || grid.height() != of_color.height_px)
+      auto grid = read(message.view, source.wire, source.compressed);
+      if (grid.width() != camera.width_px || grid.height() != camera.height_px)
         throw InputError(fmt::format("is {} x {}, the camera has {} x {}", grid.width(),
-                                     grid.height(), of_color.width_px, of_color.height_px));
+                                     grid.height(), camera.width_px, camera.height_px));
       return grid;
     } catch (const InputError& error) {
       fail(source, stored, error.what());
     }
   }
 };
-
-/// Frames per second, from the median time between images, to 0.01 Hz; 30 for a single image.
-double rate_of(const std::vector<StoredImage>& images) {
-  std::vector<Stamp> gaps_ns;
-  for (std::size_t i = 1; i < images.size(); ++i)
-    if (images[i].stamp_ns > images[i - 1].stamp_ns)
-      gaps_ns.push_back(images[i].stamp_ns - images[i - 1].stamp_ns);
-  if (gaps_ns.empty()) return 30;
-  const auto middle = gaps_ns.begin() + static_cast<std::ptrdiff_t>(gaps_ns.size() / 2);
-  std::ranges::nth_element(gaps_ns, middle);
-  return std::max(0.01, std::round(1e11 / static_cast<double>(*middle)) / 100);
-}
-
-/// @throws InputError if the calibration is none that a pinhole with plumb_bob's distortion has.
-void set_distortion(Camera& camera, const ros::CameraInfo& info) {
-  if (std::ranges::all_of(info.d, [](double k) { return k == 0; })) return;
-  const bool rational = info.distortion_model == "rational_polynomial";
-  if (!rational && info.distortion_model != "plumb_bob" && !info.distortion_model.empty())
-    throw InputError(fmt::format("distortion model '{}' is not supported", info.distortion_model));
-  for (std::size_t i = 5; i < info.d.size(); ++i)
-    if (info.d[i] != 0)
-      throw InputError("its distortion has more than the five coefficients of plumb_bob");
-  const auto k = [&](std::size_t i) { return i < info.d.size() ? info.d[i] : 0.0; };
-  camera.distortion = {k(0), k(1), k(2), k(3), k(4)};
-}
-
-bool is_rectified(const std::string& topic) {
-  return topic.substr(topic.rfind('/') + 1).find("_rect") != std::string::npos;
-}
-
-Camera camera_of(const ChosenTopics& chosen, const RosTopics& topics) {
-  const ImageTopic& color = *chosen.color;
-  const ros::CameraInfo& info = chosen.info->info;
-  Camera camera;
-  const std::array<double, 3> first = is_rectified(color.name)
-                                          ? std::array{info.p[0], info.p[5], info.p[2]}
-                                          : std::array{info.k[0], info.k[4], info.k[2]};
-  camera.fx_px = first[0];
-  camera.fy_px = first[1];
-  camera.cx_px = first[2];
-  camera.cy_px = is_rectified(color.name) ? info.p[6] : info.k[5];
-  const bool has_size = info.width > 0 && info.height > 0;
-  camera.width_px =
-      has_size ? static_cast<int>(std::min<std::uint32_t>(info.width, 65535)) : color.width_px;
-  camera.height_px =
-      has_size ? static_cast<int>(std::min<std::uint32_t>(info.height, 65535)) : color.height_px;
-  if (!color.compressed &&
-      (color.width_px != camera.width_px || color.height_px != camera.height_px))
-    throw InputError(fmt::format("is for {} x {} pixels, but the images have {} x {}",
-                                 camera.width_px, camera.height_px, color.width_px,
-                                 color.height_px));
-  if (!is_rectified(color.name)) set_distortion(camera, info);
-  camera.rate_hz = rate_of(color.images);
-  const auto projector = topics.calibrations.find(ros::kProjectorInfoTopic);
-  if (projector != topics.calibrations.end() && projector->second.info.p[3] < 0 &&
-      projector->second.info.p[0] > 0)
-    camera.baseline_m = -projector->second.info.p[3] / projector->second.info.p[0];
-  validate(camera);
-  return camera;
-}
-
-Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
-                  const RecordingConfig& config, const std::string& file,
-                  std::vector<std::string>& notes) {
-  if (!config.calibration.empty() && config.has_camera(config.calibration))
-    return config.read_camera(config.calibration).camera;
-  if (chosen.info == nullptr)
-    throw InputError(
-        fmt::format("{}: holds no sensor_msgs/CameraInfo for {}; name its topic "
-                    "(info=TOPIC) or a settings file by --settings, in a suite by "
-                    "`settings:`",
-                    file, chosen.color->name));
-  if (chosen.info->other_at_ns)
-    notes.push_back(
-        fmt::format("{}: the calibration of {} is another from {} ns on: the first is "
-                    "used for all frames",
-                    file, chosen.info->topic, *chosen.info->other_at_ns));
-  try {
-    return camera_of(chosen, topics);
-  } catch (const InputError& error) {
-    throw InputError(
-        fmt::format("{}: the calibration of {}: {}; a settings file replaces it "
-                    "(--settings, in a suite `settings:`)",
-                    file, chosen.color->name, error.what()));
-  }
-}
-
-/// @throws InputError if depth cannot be registered to color.
-void check_registered(const ChosenTopics& chosen, const std::string& file,
-                      std::vector<std::string>& notes) {
-  const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
-  if (!color.compressed && !depth.compressed &&
-      (color.width_px != depth.width_px || color.height_px != depth.height_px))
-    throw InputError(
-        fmt::format("{}: depth of {} is {} x {}, color of {} is {} x {}: a topic with "
-                    "depth registered to color is needed",
-                    file, depth.name, depth.width_px, depth.height_px, color.name, color.width_px,
-                    color.height_px));
-  constexpr double kSame_px = 1;
-  if (chosen.info == nullptr || chosen.depth_info == nullptr) return;
-  for (const std::size_t i : {0U, 2U, 4U, 5U})
-    if (std::abs(chosen.info->info.k[i] - chosen.depth_info->info.k[i]) > kSame_px) {
-      notes.push_back(
-          fmt::format("{}: depth of {} has another calibration than color of {}: it is used as if "
-                      "it were registered",
-                      file, depth.name, color.name));
-      return;
-    }
-}
 
 /// The stamps of a topic's images, for lookup.
 StampIndex index_of(const ImageTopic& topic) {
@@ -262,16 +163,6 @@ std::vector<StoredFrame> paired(const ChosenTopics& chosen, const std::string& f
   return frames;
 }
 
-/// The file itself, or the only one of that kind in a folder.
-fs::path file_at(const fs::path& path, const char* pattern) {
-  if (!is_folder(path)) return path;
-  const std::vector<std::string> names = list_folder(path, pattern);
-  if (names.size() == 1) return path / names.front();
-  if (names.empty()) throw InputError(fmt::format("{}: holds no file {}", path.string(), pattern));
-  throw InputError(fmt::format("{}: holds {} files {}: name one of them, {} for example",
-                               path.string(), names.size(), pattern, names.front()));
-}
-
 /// Whether a path is such a file, or a folder of such.
 bool looks_like(const fs::path& path, const char* extension) {
   if (is_folder(path)) return !list_folder(path, std::string("*") + extension).empty();
@@ -285,41 +176,93 @@ bool is_mcap(const fs::path& path) {
   return looks_like(path, ".mcap");
 }
 
-OpenedRecording open_file(const fs::path& file, const RecordingConfig& config, OpenMessages open) {
-  return open_messages(open, map_file(file, MapPages::kAsTouched), file.string(), config);
+OpenedRecording open_path(const fs::path& path, const RecordingConfig& config, const char* pattern,
+                          OpenMessages open) {
+  std::vector<std::string> notes;
+  std::vector<MessageBytes> parts;
+  for (const fs::path& file : parts_at(path, pattern, notes))
+    parts.push_back({file.string(), map_file(file, MapPages::kAsTouched)});
+  OpenedRecording opened =
+      open_messages(open, parts, parts.size() == 1 ? parts.front().name : path.string(), config);
+  opened.notes.insert(opened.notes.begin(), notes.begin(), notes.end());
+  return opened;
 }
 
 OpenedRecording open_bag_recording(const fs::path& path, const RecordingConfig& config) {
-  return open_file(file_at(path, "*.bag"), config, open_bag);
+  return open_path(path, config, "*.bag", open_bag);
 }
 OpenedRecording open_mcap_recording(const fs::path& path, const RecordingConfig& config) {
-  return open_file(file_at(path, "*.mcap"), config, open_mcap);
+  return open_path(path, config, "*.mcap", open_mcap);
+}
+
+/// The files of a recording, and what they hold.
+struct Read {
+  std::vector<std::unique_ptr<MessageFile>> files;
+  RosTopics topics;
+  std::vector<MessageChannel> channels;  ///< of all files, each once
+  std::size_t messages = 0;
+};
+
+/// A part that is no such file is left out, unless it is the only one.
+void read_part(OpenMessages open, const MessageBytes& part, Read& read,
+               std::vector<std::string>& notes) {
+  const std::size_t number = read.files.size();
+  auto file =
+      open(part.content, part.name,
+           [&](const MessageChannel& channel, std::string_view message, const MessagePlace& place) {
+             MessagePlace of_all = place;
+             of_all.part = number;
+             read.topics.add(channel, message, of_all);
+           });
+  for (const std::string& note : file->notes()) notes.push_back(note);
+  for (const MessageChannel& channel : file->channels())
+    if (std::ranges::find(read.channels, channel) == read.channels.end())
+      read.channels.push_back(channel);
+  read.messages += file->message_count();
+  read.files.push_back(std::move(file));
+}
+
+Read read_parts(OpenMessages open, const std::vector<MessageBytes>& parts,
+                std::vector<std::string>& notes) {
+  Read read;
+  std::string first_fault;
+  for (const MessageBytes& part : parts) {
+    try {
+      read_part(open, part, read, notes);
+    } catch (const InputError& error) {
+      if (first_fault.empty()) first_fault = error.what();
+      notes.push_back(fmt::format("{}: this part is left out", error.what()));
+    }
+  }
+  if (read.files.empty()) throw InputError(first_fault);
+  return read;
 }
 
 }  // namespace
 
-OpenedRecording open_messages(OpenMessages open, HeldBytes content, const std::string& name,
-                              const RecordingConfig& config) {
+OpenedRecording open_messages(OpenMessages open, const std::vector<MessageBytes>& parts,
+                              const std::string& name, const RecordingConfig& config) {
   const TopicNames names = parse_topic_names(config.topics);
-  RosTopics topics;
-  auto sequence = std::make_unique<RosSequence>();
-  sequence->file = open(std::move(content), name,
-                        [&](const MessageChannel& channel, std::string_view message,
-                            const MessagePlace& place) { topics.add(channel, message, place); });
   OpenedRecording opened;
-  opened.notes = sequence->file->notes();
-  opened.images = {name};
+  Read read = read_parts(open, parts, opened.notes);
+  RosTopics& topics = read.topics;
+  auto sequence = std::make_unique<RosSequence>();
+  sequence->files = std::move(read.files);
+  for (const MessageBytes& part : parts) opened.images.emplace_back(part.name);
   if (topics.unreadable > 0)
     opened.notes.push_back(fmt::format("{}: {} cannot be read, the first: {}", name,
                                        counted(topics.unreadable, "message"),
                                        topics.first_unreadable));
-  if (sequence->file->message_count() == 0)
+  if (read.messages == 0)
     throw InputError(fmt::format(
         "{}: holds no messages{}", name,
         opened.notes.empty() ? "" : ": " + opened.notes.front().substr(name.size() + 2)));
-  const ChosenTopics chosen = choose_topics(topics, names, sequence->file->channels(), name);
-  check_registered(chosen, name, opened.notes);
-  sequence->of_color = calibrated(chosen, topics, config, name, opened.notes);
+  const ChosenTopics chosen = choose_topics(topics, names, read.channels, name);
+  repair_stamps(topics, chosen, opened.notes, name);
+  RosCameras cameras = ros_cameras(chosen, topics, config, name, opened.notes);
+  sequence->of_color = cameras.color;
+  sequence->of_depth = cameras.depth;
+  sequence->per_meter = cameras.depth_per_meter;
   sequence->color = source_of(*chosen.color);
   sequence->depth = source_of(*chosen.depth);
   sequence->frames = paired(chosen, name, opened.notes);

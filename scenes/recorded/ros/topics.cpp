@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/recorded/ros/topics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include "scenes/messages/robot_types.hpp"
 #include "scenes/recorded/ros/names.hpp"
@@ -31,8 +33,52 @@ SE3 rigid(const ros::Pose& pose) {
 SE3 rigid(const ros::Transform& t) {
   return rigid(t.rotation, ros::pose_of(t));
 }
+SE3 rigid(const ros::Extrinsics& e) {
+  const Eigen::Matrix3d rotation = Eigen::Map<const Eigen::Matrix3d>(e.rotation.data());
+  const Eigen::Vector3d translation = Eigen::Map<const Eigen::Vector3d>(e.translation.data());
+  const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
+  if (!(off.norm() < 1e-3 && rotation.determinant() > 0) || !translation.allFinite())
+    throw InputError("holds no rigid transform");
+  return {Eigen::Quaterniond(rotation), translation};
+}
+
+/// Whether several messages share one stamp.
+bool stands_still(const auto& stamped) {
+  return stamped.size() > 1 && std::ranges::all_of(stamped, [&](const auto& one) {
+           return one.stamp_ns == stamped.front().stamp_ns;
+         });
+}
+
+/// A topic's poses, or an edge's, with the times of receipt where the stamps stand still.
+/// @returns whether they did
+bool repair(auto& topic) {
+  if (!stands_still(topic.poses)) return false;
+  for (std::size_t i = 0; i < topic.poses.size(); ++i)
+    topic.poses[i].stamp_ns = topic.received_ns[i];
+  return true;
+}
 
 }  // namespace
+
+void repair_stamps(RosTopics& topics, const ChosenTopics& chosen, std::vector<std::string>& notes,
+                   const std::string& file) {
+  const auto note = [&](const std::string& topic) {
+    notes.push_back(
+        fmt::format("{}: the headers of {} all have the same stamp: the times of receipt are used",
+                    file, topic));
+  };
+  if (stands_still(chosen.color->images) || stands_still(chosen.depth->images)) {
+    note(stands_still(chosen.color->images) ? chosen.color->name : chosen.depth->name);
+    for (const ImageTopic* topic : {chosen.color, chosen.depth, chosen.labels})
+      if (topic != nullptr)
+        for (StoredImage& image : topics.images.at(topic->name).images)
+          image.stamp_ns = image.place.received_ns;
+  }
+  for (auto& [name, topic] : topics.poses)
+    if (repair(topic)) note(name);
+  for (auto& [frame, edge] : topics.tf)
+    if (!edge.is_static) repair(edge);
+}
 
 void RosTopics::add(const MessageChannel& channel, std::string_view message,
                     const MessagePlace& place) {
@@ -55,6 +101,7 @@ void RosTopics::add_known(const MessageChannel& channel, std::string_view messag
     topic.parent = frame_name(header.frame_id);
     topic.child = frame_name(child);
     topic.poses.push_back({header.stamp.ns, pose});
+    topic.received_ns.push_back(place.received_ns);
   };
   if (type == ros::Image::kType || type == ros::CompressedImage::kType) {
     add_image(channel, message, place);
@@ -72,7 +119,25 @@ void RosTopics::add_known(const MessageChannel& channel, std::string_view messag
   } else if (type == ros::TfMessage::kType || type == "tf/tfMessage") {
     const bool is_static = channel.topic.ends_with("tf_static");
     for (const ros::TransformStamped& t : ros::parsed<ros::TfMessage>(message, wire).transforms)
-      add_transform(t, is_static);
+      add_transform(t, is_static, place.received_ns);
+  } else if (type == ros::Transform::kType) {
+    transforms.try_emplace(channel.topic, rigid(ros::parsed<ros::Transform>(message, wire)));
+  } else if (type == ros::Extrinsics::kType || type == ros::Extrinsics::kTypeInRos1) {
+    if (wire == ros::Wire::kRos1 && message.size() > ros::Extrinsics::kBytes)
+      message.remove_prefix(message.size() - ros::Extrinsics::kBytes);
+    transforms.try_emplace(channel.topic, rigid(ros::parsed<ros::Extrinsics>(message, wire)));
+  } else if (type == ros::Float32::kType) {
+    add_depth_units(channel.topic, ros::parsed<ros::Float32>(message, wire).data);
+  }
+}
+
+void RosTopics::add_depth_units(const std::string& topic, float meters) {
+  for (const std::string_view end : {"/option/Depth_Units/value", "/option/Depth Units/value"}) {
+    if (!topic.ends_with(end)) continue;
+    if (!(meters > 1e-9F && meters < 1e3F))
+      throw InputError(fmt::format("holds {}, which is no depth unit in meters", meters));
+    std::vector<float>& units = depth_units[topic.substr(0, topic.size() - end.size()) + "/"];
+    if (std::ranges::find(units, meters) == units.end()) units.push_back(meters);
   }
 }
 
@@ -122,12 +187,13 @@ void RosTopics::add_image(const MessageChannel& channel, std::string_view messag
   topic.images.push_back({header.stamp.ns, place});
 }
 
-void RosTopics::add_transform(const ros::TransformStamped& t, bool is_static) {
+void RosTopics::add_transform(const ros::TransformStamped& t, bool is_static, Stamp received_ns) {
   TfEdge& edge = tf[frame_name(t.child_frame_id)];
   const std::string parent = frame_name(t.header.frame_id);
-  if (edge.parent != parent) edge = {parent, is_static, {}};  // it hangs elsewhere from now on
+  if (edge.parent != parent) edge = {parent, is_static, {}, {}};  // it hangs elsewhere from now on
   edge.is_static = is_static;
   edge.poses.push_back({t.header.stamp.ns, rigid(t.transform)});
+  edge.received_ns.push_back(received_ns);
 }
 
 }  // namespace mh

@@ -42,13 +42,15 @@ struct Calibration {
 struct PoseTopic {
   std::string parent, child;  ///< frames; child is empty where the type has none
   std::vector<TimedPose> poses;
+  std::vector<Stamp> received_ns;  ///< when each came
 };
 
 /// A frame of tf, in the frame that it hangs on.
 struct TfEdge {
   std::string parent;
   bool is_static = false;
-  std::vector<TimedPose> poses;  ///< parent_from_child, in the file's order
+  std::vector<TimedPose> poses;    ///< parent_from_child, in the file's order
+  std::vector<Stamp> received_ns;  ///< when each came
 };
 
 /// What a file of messages holds for SLAM.
@@ -57,8 +59,13 @@ struct RosTopics {
   std::map<std::string, Calibration> calibrations;
   std::map<std::string, PoseTopic> poses;
   std::map<std::string, TfEdge> tf;  ///< by the child's name
-  std::size_t unreadable = 0;        ///< messages of these types that could not be parsed
-  std::string first_unreadable;      ///< what was wrong with the first
+  /// By topic: between two cameras, as RealSense's recorder and driver state it.
+  std::map<std::string, SE3> transforms;
+  /// Meters per unit of depth, by what the names of its topics begin with (RealSense); each value
+  /// once, in the file's order.
+  std::map<std::string, std::vector<float>> depth_units;
+  std::size_t unreadable = 0;    ///< messages of these types that could not be parsed
+  std::string first_unreadable;  ///< what was wrong with the first
 
   /// Takes a message in. Types that are of no use here are ignored.
   void add(const MessageChannel& channel, std::string_view message, const MessagePlace& place);
@@ -69,7 +76,8 @@ struct RosTopics {
   void add_image(const MessageChannel& channel, std::string_view message,
                  const MessagePlace& place);
   void add_calibration(const std::string& topic, ros::CameraInfo info);
-  void add_transform(const ros::TransformStamped& t, bool is_static);
+  void add_transform(const ros::TransformStamped& t, bool is_static, Stamp received_ns);
+  void add_depth_units(const std::string& topic, float meters);
 };
 
 /// The topics that a recording is made of.
@@ -84,6 +92,16 @@ struct ChosenTopics {
 /// @throws InputError naming the file and its topics if there is none of a kind, or several.
 ChosenTopics choose_topics(const RosTopics& topics, const TopicNames& names,
                            const std::vector<MessageChannel>& channels, const std::string& file);
+
+/// Drivers forget stamps: where those of all messages of color, depth or poses are the same, the
+/// time of receipt takes their place, in color and depth together.
+/// @param notes  receives which
+void repair_stamps(RosTopics& topics, const ChosenTopics& chosen, std::vector<std::string>& notes,
+                   const std::string& file);
+
+/// to_from_from by transforms of tf that do not change; nullopt if none connect the frames.
+std::optional<SE3> fixed_transform(const RosTopics& topics, const std::string& to,
+                                   const std::string& from);
 
 /// The true trajectory of the camera's optical frame, from a topic of poses (that of `names`, ours,
 /// or one that calls itself ground truth) or from tf between "world" or "map" and that frame.

@@ -153,7 +153,35 @@ std::optional<Trajectory> find_truth(const RosTopics& topics, const TopicNames& 
   return truth;
 }
 
+/// Whether all that tf says of an edge is the same.
+bool never_moves(const TfEdge& edge) {
+  return std::ranges::all_of(edge.poses, [&](const TimedPose& pose) {
+    const SE3 &a = pose.world_from_camera, &b = edge.poses.front().world_from_camera;
+    return a.rotation() == b.rotation() && a.translation() == b.translation();
+  });
+}
+
+/// The frames above one, itself included, as far as nothing moves, and their poses: above_from_it.
+std::vector<std::pair<std::string, SE3>> fixed_way_up(const RosTopics& topics,
+                                                      const std::string& frame) {
+  std::vector<std::pair<std::string, SE3>> above{{frame, SE3()}};
+  for (const auto& [child, edge] : way_up(topics, frame)) {
+    if (!never_moves(*edge)) break;
+    above.emplace_back(edge->parent, edge->poses.front().world_from_camera * above.back().second);
+  }
+  return above;
+}
+
 }  // namespace
+
+std::optional<SE3> fixed_transform(const RosTopics& topics, const std::string& to,
+                                   const std::string& from) {
+  const auto above_to = fixed_way_up(topics, to);
+  for (const auto& [frame, above_from_from] : fixed_way_up(topics, from))
+    for (const auto& [other, above_from_to] : above_to)
+      if (frame == other) return (above_from_to.inverse() * above_from_from).normalized();
+  return std::nullopt;
+}
 
 std::optional<Trajectory> true_trajectory(const RosTopics& topics, const TopicNames& names,
                                           const ImageTopic& color, std::vector<std::string>& notes,

@@ -2,9 +2,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,6 +18,7 @@
 #include "scenes/messages/message_log.hpp"
 #include "scenes/messages/robot_types.hpp"
 #include "scenes/recorded/frame_sequence.hpp"
+#include "scenes/recorded/ros/image.hpp"
 #include "scenes/recorded/ros/names.hpp"
 #include "scenes/recorded/ros/recorder.hpp"
 #include "scenes/recorded/ros/sequence.hpp"
@@ -380,10 +385,10 @@ TEST_P(RosRecording, WhatIsMissingIsNamedWithWhatIsThere) {
             std::string::npos)
       << error;
   Foreign mosaic(wire());
-  mosaic.color("/image", "bayer_rggb8");
+  mosaic.color("/image", "bayer_rggb16");
   mosaic.depth("/depth");
   mosaic.write(writer());
-  EXPECT_NE(error_of([&] { open(); }).find("/image (bayer_rggb8)"), std::string::npos);
+  EXPECT_NE(error_of([&] { open(); }).find("/image (bayer_rggb16)"), std::string::npos);
   Foreign uncalibrated(wire());
   uncalibrated.color("/image");
   uncalibrated.depth("/depth");
@@ -503,6 +508,394 @@ TEST_P(RosRecording, AFrameThatCannotBeReadIsTheOnlyOne) {
       << error;
 }
 
+TEST_P(RosRecording, EightCoefficientsGoBothWays) {
+  Camera camera = small_camera();
+  camera.distortion = {0.5, -0.1, 0.001, 0.002, 0.03, 0.4, -0.05, 0.01};
+  RosRecorder recorder(writer(), camera, {});
+  recorder.add(0, frame(0));
+  recorder.finish();
+  EXPECT_EQ(open().sequence->camera(), camera);
+  TumWriter tum(folder_ / "tum", camera);
+  tum.add(0, frame(0));
+  tum.finish();
+  EXPECT_EQ(load_recorded_camera(folder_ / "tum" / "camera.yaml").camera.distortion,
+            camera.distortion);
+  EXPECT_EQ(load_recorded_camera(folder_ / "tum" / "camera_info.yaml").camera.distortion,
+            camera.distortion);
+}
+
+// Joined in twos after 2 columns and 1 row were cut off: pixel u holds the sensor's 2 u + 2.5.
+TEST_P(RosRecording, ACalibrationOfTheWholeSensorServesItsPart) {
+  Foreign robot(wire());
+  robot.color("/image");
+  robot.depth("/depth");
+  ros::CameraInfo info;
+  info.header = robot.header(0);
+  info.width = 9, info.height = 7;
+  info.k = {4, 0, 3.5, 0, 6, 1.5, 0, 0, 1};
+  info.binning_x = info.binning_y = 2;
+  info.roi = {2, 1, 2, 4, false};  // x, y, height, width
+  robot.add("/camera_info", 0, info);
+  robot.write(writer());
+  const Camera camera = open().sequence->camera();
+  EXPECT_EQ(camera.width_px, 2);
+  EXPECT_EQ(camera.height_px, 1);
+  EXPECT_EQ(camera.fx_px, 2);
+  EXPECT_EQ(camera.fy_px, 3);
+  EXPECT_EQ(camera.cx_px, 0.5);
+  EXPECT_EQ(camera.cy_px, 0);
+}
+
+TEST_P(RosRecording, LensesThatAreNoneOfTheTwoAreRefusedByName) {
+  for (const auto& [model, coefficients, said] :
+       {std::tuple("equidistant", 4, "distortion model 'equidistant' is not supported"),
+        {"Inverse Brown Conrady", 5, "distortion model 'Inverse Brown Conrady'"},
+        {"plumb_bob", 8, "more than the 5 coefficients of plumb_bob"},
+        {"rational_polynomial", 12, "more than the 8 coefficients of rational_polynomial"},
+        {"Brown Conrady", 5, ""},
+        {"equidistant", 0, ""}}) {
+    Foreign robot(wire());
+    robot.color("/image");
+    robot.depth("/depth");
+    ros::CameraInfo info;
+    info.header = robot.header(0);
+    info.width = 2, info.height = 1;
+    info.k = {2, 0, 0.5, 0, 2, 0, 0, 0, 1};
+    info.distortion_model = model;
+    info.d.assign(static_cast<std::size_t>(coefficients), 0.01);
+    robot.add("/camera_info", 0, info);
+    robot.write(writer());
+    const std::string error = error_of([&] { open(); });
+    EXPECT_TRUE(*said == 0 ? error.empty() : error.find(said) != std::string::npos)
+        << model << ": " << error;
+  }
+}
+
+RecordingConfig with_depth_per_meter(double stated) {
+  RecordingConfig config;
+  config.calibration = "mine.yaml";
+  config.has_camera = [](const fs::path&) { return false; };
+  config.depth_per_meter = [=](const fs::path&) { return std::optional(stated); };
+  return config;
+}
+
+TEST_P(RosRecording, TheUnitOfDepthIsTheOneStated) {
+  const auto depth_m = [](const OpenedRecording& opened) {
+    return opened.sequence->frame(0, RandomStream(0)).depth_m(0, 0);
+  };
+  for (const char* unit : {"Depth_Units", "Depth Units"}) {
+    Foreign robot(wire());
+    robot.color("/device_0/sensor_1/Color_0/image/data");
+    robot.depth("/device_0/sensor_0/Depth_0/image/data");
+    robot.info("/device_0/sensor_1/Color_0/info/camera_info");
+    robot.add(std::string("/device_0/sensor_0/option/") + unit + "/value", 0,
+              ros::Float32{0.00025F});
+    robot.write(writer());
+    EXPECT_EQ(depth_m(open()), 0.25F) << unit;
+    EXPECT_TRUE(open().notes.empty());
+    const OpenedRecording mine = open(with_depth_per_meter(2000));
+    EXPECT_EQ(depth_m(mine), 0.5F);
+    ASSERT_EQ(mine.notes.size(), 1U);
+    EXPECT_EQ(mine.notes[0],
+              "mine.yaml: its depth per meter, 2000, is used for "
+              "/device_0/sensor_0/Depth_0/image/data, not 4000");
+    EXPECT_TRUE(open(with_depth_per_meter(4000)).notes.empty());
+  }
+  Foreign plain(wire());
+  plain.camera();
+  plain.add("/device_0/sensor_7/option/Depth_Units/value", 0, ros::Float32{0.5F});
+  plain.write(writer());
+  EXPECT_EQ(depth_m(open()), 1.0F) << "of another camera";
+  record();
+  const OpenedRecording ours = open(with_depth_per_meter(5000));
+  EXPECT_EQ(depth_m(ours), depth_m(open())) << "in meters already";
+  ASSERT_EQ(ours.notes.size(), 1U);
+  EXPECT_NE(ours.notes[0].find("its depth per meter, 5000, has no use"), std::string::npos);
+}
+
+TEST_P(RosRecording, StampsThatStandStillGiveWayToTheTimesOfReceipt) {
+  for (const bool of_depth : {false, true}) {
+    Foreign robot(wire());
+    robot.info("/camera_info");
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      ros::Header none = robot.header(i);
+      none.stamp = {};
+      robot.add("/image", i + 1,
+                ros::Image{of_depth ? robot.header(i + 1) : none, 1, 2, "bgr8", 0, 6, "abcdef"});
+      robot.add("/depth", i + 1,
+                ros::Image{of_depth ? none : robot.header(i + 1), 1, 2, "16UC1", 0, 4, "abcd"});
+      robot.add("/ground_truth", i + 1, ros::PoseStamped{none, {}});
+    }
+    robot.write(writer());
+    const OpenedRecording opened = open();
+    ASSERT_EQ(opened.sequence->size(), kFrames);
+    ASSERT_EQ(opened.sequence->truth()->size(), kFrames);
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      EXPECT_EQ(opened.sequence->stamp_ns(i), stamp_ns(i + 1));
+      EXPECT_EQ(opened.sequence->truth()->at(i).stamp_ns, stamp_ns(i + 1));
+    }
+    ASSERT_GE(opened.notes.size(), 2U);
+    EXPECT_NE(
+        opened.notes[0].find(std::string("the headers of ") + (of_depth ? "/depth" : "/image") +
+                             " all have the same stamp: the times of receipt are used"),
+        std::string::npos)
+        << opened.notes[0];
+    EXPECT_NE(opened.notes[1].find("/ground_truth all have"), std::string::npos);
+  }
+}
+
+// Two parts; only the first has the calibration.
+class RosParts : public RosRecording {
+ protected:
+  void write_part(const std::string& name, std::size_t first, std::size_t end) const {
+    Foreign robot(wire());
+    if (first == 0) robot.info("/camera_info");
+    for (std::size_t i = first; i < end; ++i) {
+      const std::string color(6, static_cast<char>('a' + i));
+      robot.add("/image", i, ros::Image{robot.header(i), 1, 2, "bgr8", 0, 6, color});
+      robot.add("/depth", i, ros::Image{robot.header(i), 1, 2, "16UC1", 0, 4, "abcd"});
+    }
+    fs::create_directories(folder_ / "run");
+    robot.write(is_bag() ? write_bag(at(name)) : write_mcap(at(name)));
+  }
+  fs::path at(const std::string& name) const { return folder_ / "run" / (name + "." + GetParam()); }
+  OpenedRecording open_parts() const { return open_sequence((folder_ / "run").string(), {}); }
+};
+
+TEST_P(RosParts, AreOneRecordingInTheOrderOfTheirNumbers) {
+  for (const std::size_t part : {0U, 1U, 2U, 10U})
+    write_part("2026-01-02-03-04-" + std::to_string(10 + part) + "_" + std::to_string(part),
+               2 * part, 2 * part + 2);
+  const OpenedRecording opened = open_parts();
+  ASSERT_EQ(opened.sequence->size(), 8U);
+  EXPECT_EQ(opened.images.size(), 4U);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const std::size_t number = i < 6 ? i : i + 14;
+    EXPECT_EQ(opened.sequence->stamp_ns(i), stamp_ns(number));
+    EXPECT_EQ(opened.sequence->frame(i, RandomStream(0)).color(0, 0).r, 'a' + number);
+  }
+  ASSERT_EQ(opened.notes.size(), 2U);
+  EXPECT_NE(opened.notes[0].find("7 of 11 parts are missing"), std::string::npos)
+      << opened.notes[0];
+  EXPECT_NE(opened.notes[1].find("4 files are read as one recording"), std::string::npos);
+}
+
+TEST_P(RosParts, MetadataTellsTheirOrder) {
+  write_part("b", 0, 2);
+  write_part("a", 2, 3);
+  EXPECT_NE(error_of([&] { open_parts(); }).find("holds 2 files"), std::string::npos);
+  const std::string ending = std::string(".") + GetParam();
+  std::ofstream(folder_ / "run" / "metadata.yaml")
+      << "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n    - b" << ending
+      << "\n    - a" << ending << "\n";
+  EXPECT_EQ(open_parts().sequence->size(), 3U);
+}
+
+TEST_P(RosParts, OneThatIsNoneIsLeftOut) {
+  write_part("run_0", 0, 2);
+  std::ofstream(at("run_1")) << "";
+  write_part("run_2", 2, 3);
+  const OpenedRecording opened = open_parts();
+  EXPECT_EQ(opened.sequence->size(), 3U);
+  ASSERT_EQ(opened.notes.size(), 2U);
+  EXPECT_NE(opened.notes[1].find("this part is left out"), std::string::npos) << opened.notes[1];
+}
+
+TEST_P(RosParts, RecordingsThatPeopleNumberedAreNone) {
+  write_part("kitchen_1", 0, 2);
+  write_part("kitchen_2", 0, 2);
+  EXPECT_NE(error_of([&] { open_parts(); }).find("name one of them"), std::string::npos);
+  write_part("kitchen_0", 0, 2);
+  write_part("hall_0", 0, 2);
+  EXPECT_NE(error_of([&] { open_parts(); }).find("name one of them"), std::string::npos);
+}
+
+/// An image of one color as an encoding stores it.
+class Colors : public RosRecording {
+ protected:
+  Grid2d<Rgb8> read(const char* encoding, int width, int height, std::uint32_t step,
+                    const std::string& bytes, bool big = false) const {
+    const ros::Image image{
+        {},       static_cast<std::uint32_t>(height),      static_cast<std::uint32_t>(width),
+        encoding, big ? std::uint8_t{1} : std::uint8_t{0}, step,
+        bytes};
+    return color_in(ros::serialized(image, wire()), wire(), false);
+  }
+};
+
+TEST_P(Colors, OfMosaicsAreThoseOfTheScene) {
+  constexpr std::uint32_t kStep = 12;  // rows are longer than the image
+  const Rgb8 scene{200, 120, 40};
+  for (const std::string pattern : {"rggb", "bggr", "gbrg", "grbg"}) {
+    std::string bytes(6 * kStep, '\x7');
+    for (std::size_t y = 0; y < 6; ++y)
+      for (std::size_t x = 0; x < 8; ++x) {
+        const char filter = pattern[2 * (y % 2) + x % 2];
+        bytes[y * kStep + x] = static_cast<char>(filter == 'r'   ? scene.r
+                                                 : filter == 'g' ? scene.g
+                                                                 : scene.b);
+      }
+    const std::string encoding = "bayer_" + pattern + "8";
+    const Grid2d<Rgb8> color = read(encoding.c_str(), 8, 6, kStep, bytes);
+    EXPECT_EQ(color, (Grid2d<Rgb8>(8, 6, scene))) << pattern;
+  }
+  EXPECT_NE(
+      error_of([&] { read("bayer_rggb8", 2, 2, 2, "abcd"); }).find("which no bayer_rggb8 has"),
+      std::string::npos);
+  EXPECT_NE(error_of([&] { read("bayer_rggb8", 4, 4, 4, "abcd"); }).find("holds 4 bytes"),
+            std::string::npos);
+}
+
+// BT.601: Y 82, U 90, V 240 is pure red; Y 41, U 240, V 110 pure blue.
+TEST_P(Colors, OfYuvAreThoseOfTheirStandard) {
+  const auto near = [](const Rgb8& color, int r, int g, int b) {
+    return std::abs(color.r - r) <= 3 && std::abs(color.g - g) <= 3 && std::abs(color.b - b) <= 3;
+  };
+  const char y_red = 82, u_red = 90, v_red = static_cast<char>(240);
+  const std::string uyvy{u_red, y_red, v_red, y_red}, yuyv{y_red, u_red, y_red, v_red};
+  for (const char* name : {"yuv422", "uyvy"})
+    EXPECT_TRUE(near(read(name, 2, 1, 4, uyvy)(1, 0), 255, 0, 0)) << name;
+  for (const char* name : {"yuv422_yuy2", "yuyv"})
+    EXPECT_TRUE(near(read(name, 2, 1, 4, yuyv)(1, 0), 255, 0, 0)) << name;
+  const std::string y4(4, y_red);
+  EXPECT_TRUE(near(read("nv12", 2, 2, 2, y4 + u_red + v_red)(1, 1), 255, 0, 0));
+  EXPECT_TRUE(near(read("nv21", 2, 2, 2, y4 + v_red + u_red)(1, 1), 255, 0, 0));
+  EXPECT_NE(error_of([&] { read("yuv422", 3, 1, 6, "abcdef"); }).find("3 x 1 pixels, which no"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { read("nv12", 2, 2, 2, "abcd"); }).find("holds 4 bytes"),
+            std::string::npos);
+}
+
+TEST_P(Colors, Of16BitsKeepTheirHigherByte) {
+  const std::string little("\1\x10\2\x20\3\x30", 6), big("\x10\1\x20\2\x30\3", 6);
+  EXPECT_EQ(read("rgb16", 1, 1, 6, little)(0, 0), (Rgb8{16, 32, 48}));
+  EXPECT_EQ(read("bgr16", 1, 1, 6, little)(0, 0), (Rgb8{48, 32, 16}));
+  EXPECT_EQ(read("rgb16", 1, 1, 6, big, true)(0, 0), (Rgb8{16, 32, 48}));
+}
+
+TEST_P(Colors, OfAMosaicInAPngAreThoseOfTheScene) {
+  Grid2d<std::uint8_t> mosaic(8, 6);
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 8; ++x)
+      mosaic(x, y) = std::array<std::uint8_t, 4>{200, 120, 120,
+                                                 40}[static_cast<std::size_t>(2 * (y % 2) + x % 2)];
+  const std::string png = encode_png(mosaic);
+  const auto read_as = [&](const char* format) {
+    return color_in(ros::serialized(ros::CompressedImage{{}, format, png}, wire()), wire(), true);
+  };
+  EXPECT_EQ(read_as("bayer_rggb8; png compressed bayer_rggb8")(3, 3), (Rgb8{200, 120, 40}));
+  EXPECT_EQ(read_as("mono8; png compressed mono8")(3, 3), (Rgb8{40, 40, 40}));
+}
+
+/// Color of 8 x 6 pixels; a depth camera of 4 x 3, 0.5 m to its right, sees a plane at 2 m.
+class Unregistered : public RosRecording {
+ protected:
+  static ros::CameraInfo info(const ros::Header& header, std::uint32_t width, double f, double cx,
+                              double cy) {
+    ros::CameraInfo info;
+    info.header = header;
+    info.width = width;
+    info.height = width * 3 / 4;
+    info.k = {f, 0, cx, 0, f, cy, 0, 0, 1};
+    return info;
+  }
+  /// @param color, depth  topics; their calibrations lie beside them
+  void add_cameras(Foreign& robot, const std::string& color, const std::string& color_info,
+                   const std::string& depth, const std::string& depth_info) const {
+    const std::string pixels(8 * 6 * 3, 'c');
+    std::string units;
+    for (int i = 0; i < 12; ++i) units += std::string("\xd0\7", 2);  // 2000 mm
+    ros::Header of_depth = robot.header(0);
+    of_depth.frame_id = "depth_optical";
+    robot.add(color, 0, ros::Image{robot.header(0), 6, 8, "rgb8", 0, 24, pixels});
+    robot.add(depth, 0, ros::Image{of_depth, 3, 4, "16UC1", 0, 8, units});
+    robot.add(color_info, 0, info(robot.header(0), 8, 8, 3.5, 2.5));
+    robot.add(depth_info, 0, info(of_depth, 4, 4, 1.5, 1));
+  }
+  /// A point at x = z (u - 1.5) / 4 + 0.5 m is seen at 8 x / z + 3.5 = 2 u + 2.5, 2 v + 2.5 - 2:
+  /// each depth pixel covers two columns and rows, from 2 u + 2 on.
+  void expect_registered(const OpenedRecording& opened) const {
+    const Grid2d<float> depth_m = opened.sequence->frame(0, RandomStream(0)).depth_m;
+    for (int y = 0; y < 6; ++y)
+      for (int x = 0; x < 8; ++x) EXPECT_EQ(depth_m(x, y), x < 2 ? 0 : 2.0F) << x << ' ' << y;
+    EXPECT_TRUE(std::ranges::any_of(opened.notes, [](const std::string& note) {
+      return note.find("is registered to color of") != std::string::npos &&
+             note.find("4 x 3 pixels at 0.5 m from it") != std::string::npos;
+    }));
+  }
+};
+
+TEST_P(Unregistered, DepthIsRegisteredByTf) {
+  Foreign robot(wire());
+  add_cameras(robot, "/rgb/image_raw", "/rgb/camera_info", "/depth/image_raw",
+              "/depth/camera_info");
+  robot.tf(0, "link", "cam_optical", shift(1, 2, 3), "/tf_static");
+  robot.tf(0, "base", "link", shift(7, 0, 0), "/tf_static");
+  robot.tf(0, "link", "depth_optical", shift(1.5, 2, 3), "/tf_static");
+  robot.write(writer());
+  expect_registered(open());
+}
+
+TEST_P(Unregistered, DepthIsRegisteredByWhatRealSensesRecorderStates) {
+  Foreign robot(wire());
+  add_cameras(
+      robot, "/device_0/sensor_1/Color_0/image/data", "/device_0/sensor_1/Color_0/info/camera_info",
+      "/device_0/sensor_0/Depth_0/image/data", "/device_0/sensor_0/Depth_0/info/camera_info");
+  // From the reference to the stream: the reference lies 1 m to the right of depth.
+  robot.add("/device_0/sensor_0/Depth_0/tf/0", 0, ros::Transform{{1, 0, 0}, {}});
+  robot.add("/device_0/sensor_1/Color_0/tf/0", 0, ros::Transform{{1.5, 0, 0}, {}});
+  robot.write(writer());
+  expect_registered(open());
+}
+
+TEST_P(Unregistered, DepthIsRegisteredByTheDriversExtrinsics) {
+  Foreign robot(wire());
+  add_cameras(robot, "/camera/color/image_raw", "/camera/color/camera_info",
+              "/camera/depth/image_rect_raw", "/camera/depth/camera_info");
+  robot.add("/camera/extrinsics/depth_to_color", 0,
+            ros::Extrinsics{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5, 0, 0}});
+  robot.write(writer());
+  expect_registered(open());
+}
+
+TEST_P(Unregistered, WithoutATransformItIsRefused) {
+  Foreign robot(wire());
+  add_cameras(robot, "/rgb/image_raw", "/rgb/camera_info", "/depth/image_raw",
+              "/depth/camera_info");
+  robot.tf(0, "odom", "cam_optical", shift(1, 2, 3));
+  robot.tf(1, "odom", "cam_optical", shift(2, 2, 3));  // moves
+  robot.tf(0, "odom", "depth_optical", shift(1.5, 2, 3));
+  robot.write(writer());
+  EXPECT_NE(error_of([&] { open(); })
+                .find("depth of /depth/image_raw is 4 x 3, color of /rgb/image_raw is 8 x 6, and "
+                      "neither tf nor extrinsics tells how to register it"),
+            std::string::npos)
+      << error_of([&] { open(); });
+}
+
+// https://github.com/IntelRealSense/realsense-ros/issues/363
+TEST_P(Unregistered, DepthInTheFrameOfColorIsAlignedWhateverItsCalibration) {
+  Foreign robot(wire());
+  robot.camera();
+  ros::CameraInfo info;
+  info.header = robot.header(0);
+  info.width = 2, info.height = 1;
+  info.k = {9, 0, 0.5, 0, 9, 0, 0, 0, 1};
+  robot.add("/aligned/camera_info", 0, info);
+  robot.depth("/aligned/image");
+  robot.add("/extrinsics/depth_to_color", 0,
+            ros::Extrinsics{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5, 0, 0}});
+  robot.write(writer());
+  const OpenedRecording opened = open(with_topics("depth=/aligned/image"));
+  EXPECT_EQ(opened.sequence->frame(0, RandomStream(0)).depth_m(0, 0), 1.0F);
+  ASSERT_EQ(opened.notes.size(), 1U);
+  EXPECT_NE(opened.notes[0].find("another calibration than color of /image: it is used as if"),
+            std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, RosParts, testing::Values("bag", "mcap"));
+INSTANTIATE_TEST_SUITE_P(Both, Colors, testing::Values("bag", "mcap"));
+INSTANTIATE_TEST_SUITE_P(Both, Unregistered, testing::Values("bag", "mcap"));
 INSTANTIATE_TEST_SUITE_P(Both, RosRecording, testing::Values("bag", "mcap"));
 
 TEST(TopicNames, AreKeysAndTopics) {
