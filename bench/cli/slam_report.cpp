@@ -14,6 +14,7 @@
 #include "bench/systems/timed.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/legible.hpp"
 #include "slam/core/temporary_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/pipeline/export.hpp"
@@ -52,7 +53,7 @@ const std::vector<QueryScore>* held_out_of(const RunResult& run) {
 
 Json summary_json(const SlamReport& report) {
   const RunResult& run = report.run;
-  Json json = {{"source", report.source},
+  Json json = {{"source", legible(report.source)},
                {"seed", run.spec.seed},
                {"frames", run.mapping.offered},
                {"tracked", report.log.tracked},

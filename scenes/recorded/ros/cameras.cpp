@@ -79,7 +79,7 @@ Camera camera_of(const ImageTopic& images, const ros::CameraInfo& info) {
   const bool has_size = info.width > 0 && info.height > 0;
   camera.width_px = has_size ? x.size() : images.width_px;
   camera.height_px = has_size ? y.size() : images.height_px;
-  if (!images.compressed &&
+  if (images.width_px > 0 &&
       (images.width_px != camera.width_px || images.height_px != camera.height_px))
     throw InputError(fmt::format("is for {} x {} pixels, but the images have {} x {}",
                                  camera.width_px, camera.height_px, images.width_px,
@@ -140,7 +140,7 @@ std::optional<std::pair<std::string, SE3>> recorded_tf(const RosTopics& topics,
 }
 
 bool have_sizes_of_their_own(const ImageTopic& color, const ImageTopic& depth) {
-  return !color.compressed && !depth.compressed &&
+  return color.width_px > 0 && depth.width_px > 0 &&
          (color.width_px != depth.width_px || color.height_px != depth.height_px);
 }
 
@@ -169,8 +169,6 @@ bool differ(const ChosenTopics& chosen) {
   if (have_sizes_of_their_own(color, depth)) return true;
   if (chosen.info == nullptr || chosen.depth_info == nullptr) return false;
   const ros::CameraInfo &a = chosen.info->info, &b = chosen.depth_info->info;
-  const bool have_size = a.width > 0 && b.width > 0 && a.height > 0 && b.height > 0;
-  if (have_size && (a.width != b.width || a.height != b.height)) return true;
   return std::ranges::any_of(std::array{0U, 2U, 4U, 5U},
                              [&](std::size_t i) { return std::abs(a.k[i] - b.k[i]) > kSame_px; });
 }
@@ -185,8 +183,7 @@ bool is_identity(const SE3& transform) {
 /// where it has to be taken as if it were, with a note.
 /// @throws InputError if the sizes differ and nothing tells how to register it.
 std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTopics& topics,
-                                        const Camera& color_camera, const std::string& file,
-                                        std::vector<std::string>& notes) {
+                                        const std::string& file, std::vector<std::string>& notes) {
   const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
   const bool other_frame = color.frame != depth.frame;
   const std::optional<SE3> transform = color_from_depth(chosen, topics);
@@ -209,14 +206,12 @@ std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTop
         transform->translation().norm()));
     return registering;
   }
-  const int width_px = color.compressed ? color_camera.width_px : color.width_px,
-            height_px = color.compressed ? color_camera.height_px : color.height_px;
-  if (!depth.compressed && (depth.width_px != width_px || depth.height_px != height_px))
+  if (have_sizes_of_their_own(color, depth))
     throw InputError(fmt::format(
         "{}: depth of {} is {} x {}, color of {} is {} x {}, and {} tells how to register it: a "
         "topic with depth registered to color is needed",
-        file, depth.name, depth.width_px, depth.height_px, color.name, width_px, height_px,
-        has_own ? "neither tf nor extrinsics" : "no CameraInfo of depth"));
+        file, depth.name, depth.width_px, depth.height_px, color.name, color.width_px,
+        color.height_px, has_own ? "neither tf nor extrinsics" : "no CameraInfo of depth"));
   notes.push_back(fmt::format(
       "{}: depth of {} has another {} than color of {}: it is used as if it were registered", file,
       depth.name, differ(chosen) ? "calibration" : "frame", color.name));
@@ -269,7 +264,7 @@ RosCameras ros_cameras(const ChosenTopics& chosen, const RosTopics& topics,
                        std::vector<std::string>& notes) {
   RosCameras cameras;
   cameras.color = calibrated(chosen, topics, config, file, notes);
-  cameras.depth = depth_camera(chosen, topics, cameras.color, file, notes);
+  cameras.depth = depth_camera(chosen, topics, file, notes);
   cameras.depth_per_meter = depth_per_meter(*chosen.depth, topics, config, file, notes);
   return cameras;
 }

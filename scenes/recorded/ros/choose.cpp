@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "scenes/recorded/ros/image.hpp"
 #include "scenes/recorded/ros/names.hpp"
 #include "scenes/recorded/ros/topics.hpp"
 #include "slam/core/error.hpp"
@@ -30,7 +31,7 @@ bool is_ours(const ImageTopic& topic) {
   return topic.name.ends_with("/labels/image") || topic.name.ends_with("/instances/image");
 }
 bool is_compressed_depth(const ImageTopic& topic) {
-  return topic.compressed && topic.encoding.find("compressedDepth") != std::string::npos;
+  return topic.compressed && mh::is_compressed_depth(topic.encoding);
 }
 bool is_depth(const ImageTopic& topic) {
   return !is_ours(topic) && (is_compressed_depth(topic) ||

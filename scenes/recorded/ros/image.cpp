@@ -148,10 +148,11 @@ struct DepthHead {
   std::uint32_t kind = 0;
   float a = 0, b = 0;
 };
+static_assert(sizeof(DepthHead) == kDepthHead);
 
 Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire, double per_meter) {
   const auto image = ros::parsed<ros::CompressedImage>(message, wire);
-  const bool has_head = image.format.find("compressedDepth") != std::string::npos;
+  const bool has_head = is_compressed_depth(image.format);
   if (image.format.find("rvl") != std::string::npos) refuse(image.format, "depth");
   std::string_view png = image.data;
   DepthHead head;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "scenes/messages/wire.hpp"
@@ -14,6 +16,13 @@ namespace mh {
 /// bgr16, mosaics (bayer_rggb8 and so on, bilinear), yuv422 (UYVY), yuv422_yuy2 (YUYV), nv12, nv21,
 /// or JPEG and PNG. @throws InputError "encoding ..." or "is ..." if it cannot be read.
 Grid2d<Rgb8> color_in(std::string_view message, ros::Wire wire, bool compressed);
+
+/// Whether a format of CompressedImage is that of image_transport's compressedDepth, which puts a
+/// head before the PNG.
+inline bool is_compressed_depth(const std::string& format) {
+  return format.find("compressedDepth") != std::string::npos;
+}
+inline constexpr std::size_t kDepthHead = 12;  ///< bytes
 
 /// Of depth in whole numbers, where nothing else is stated: millimeters (REP 118).
 inline constexpr double kRosDepthPerMeter = 1000;

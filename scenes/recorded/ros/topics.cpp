@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "scenes/image_file.hpp"
 #include "scenes/messages/robot_types.hpp"
+#include "scenes/recorded/ros/image.hpp"
 #include "scenes/recorded/ros/names.hpp"
 #include "slam/core/error.hpp"
 
@@ -40,6 +42,11 @@ SE3 rigid(const ros::Extrinsics& e) {
   if (!(off.norm() < 1e-3 && rotation.determinant() > 0) || !translation.allFinite())
     throw InputError("holds no rigid transform");
   return {Eigen::Quaterniond(rotation), translation};
+}
+
+void set_size(ImageTopic& topic, std::uint32_t width, std::uint32_t height) {
+  topic.width_px = static_cast<int>(std::min<std::uint32_t>(width, INT32_MAX));
+  topic.height_px = static_cast<int>(std::min<std::uint32_t>(height, INT32_MAX));
 }
 
 /// Whether several messages share one stamp.
@@ -164,15 +171,20 @@ void RosTopics::add_image(const MessageChannel& channel, std::string_view messag
     if (channel.type == ros::CompressedImage::kType) {
       auto m = ros::parsed<ros::CompressedImage>(message, *channel.wire);
       header = std::move(m.header);
-      if (is_new) topic.compressed = true, topic.encoding = m.format;
+      if (is_new) {
+        topic.compressed = true;
+        topic.encoding = m.format;
+        std::string_view image = m.data;
+        if (is_compressed_depth(m.format)) image.remove_prefix(std::min(image.size(), kDepthHead));
+        if (const auto size = announced_size(image)) set_size(topic, size->width, size->height);
+      }
     } else {
       auto m = ros::parsed<ros::Image>(message, *channel.wire);
       if (m.width == 0 || m.height == 0) throw InputError("has no pixels");
       header = std::move(m.header);
       if (is_new) {
         topic.encoding = m.encoding;
-        topic.width_px = static_cast<int>(std::min<std::uint32_t>(m.width, INT32_MAX));
-        topic.height_px = static_cast<int>(std::min<std::uint32_t>(m.height, INT32_MAX));
+        set_size(topic, m.width, m.height);
       }
     }
   } catch (const InputError&) {

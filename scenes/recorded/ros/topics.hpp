@@ -25,7 +25,7 @@ struct ImageTopic {
   std::string name;
   bool compressed = false;          ///< sensor_msgs/CompressedImage
   std::string encoding;             ///< "rgb8"; of a compressed one its format, "jpeg"
-  int width_px = 0, height_px = 0;  ///< 0 of a compressed one
+  int width_px = 0, height_px = 0;  ///< 0 of a compressed one whose head does not tell
   std::string frame;
   ros::Wire wire = ros::Wire::kRos1;
   std::vector<StoredImage> images;

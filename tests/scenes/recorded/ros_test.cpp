@@ -873,6 +873,20 @@ TEST_P(Unregistered, WithoutATransformItIsRefused) {
       << error_of([&] { open(); });
 }
 
+TEST_P(Unregistered, DepthOfHalfTheSizeInTheFrameOfColorIsEnlarged) {
+  Foreign robot(wire());
+  ros::Header of_color = robot.header(0);
+  robot.add("/rgb/image/compressed", 0,
+            ros::CompressedImage{of_color, "jpeg", encode_jpeg(Grid2d<Rgb8>(8, 6), 90)});
+  std::string units;
+  for (int i = 0; i < 12; ++i) units += std::string("\xd0\7", 2);
+  robot.add("/depth/image", 0, ros::Image{of_color, 3, 4, "16UC1", 0, 8, units});
+  robot.add("/rgb/camera_info", 0, info(of_color, 8, 8, 3.5, 2.5));
+  robot.add("/depth/camera_info", 0, info(of_color, 4, 4, 1.5, 1));
+  robot.write(writer());
+  EXPECT_EQ(open().sequence->frame(0, RandomStream(0)).depth_m, Grid2d<float>(8, 6, 2.0F));
+}
+
 // https://github.com/IntelRealSense/realsense-ros/issues/363
 TEST_P(Unregistered, DepthInTheFrameOfColorIsAlignedWhateverItsCalibration) {
   Foreign robot(wire());
