@@ -27,6 +27,7 @@ struct EvaluateArguments {
   std::vector<std::string> deltas = {"1f", "1s"};
   bool all_pairs = false;
   double max_difference_s = 0.01;
+  std::string offset = "0";
   double rate_hz = 10;
   bool json = false;
 };
@@ -108,11 +109,38 @@ void print_row(const std::string& what, const ErrorStatistics& s) {
   fmt::print("{:>9}\n", s.count);
 }
 
+constexpr Stamp kEarliest_ns = -10'000'000'000'000'000, kLatest_ns = 9'200'000'000'000'000'000;
+
+/// Seconds, with a sign or without, exactly. @throws InputError naming the text
+Stamp parse_offset(const std::string& text) {
+  const bool negative = text.starts_with('-');
+  try {
+    const Stamp offset_ns = parse_stamp(text.substr(negative ? 1 : 0));
+    return negative ? -offset_ns : offset_ns;
+  } catch (const InputError&) {
+    throw InputError(
+        fmt::format("--offset: '{}' is no time in seconds from -9.2e9 to 9.2e9", text));
+  }
+}
+
 /// Loads both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of
 /// the other.
 std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
-  if (options.format == "tum")
-    return {read_trajectory(options.truth), read_trajectory(options.estimate)};
+  const Stamp offset_ns = parse_offset(options.offset);
+  if (options.format == "tum") {
+    std::vector<std::string> notes;
+    std::pair<Trajectory, Trajectory> both{read_trajectory(options.truth, &notes),
+                                           read_trajectory(options.estimate, &notes)};
+    for (const std::string& note : notes) fmt::print(stderr, "evaluate: warning: {}\n", note);
+    for (TimedPose& pose : both.second) {
+      // Within these, differences of stamps are within a Stamp's range.
+      if (offset_ns > kLatest_ns - pose.stamp_ns || offset_ns < kEarliest_ns - pose.stamp_ns)
+        throw InputError("--offset: leads to stamps that are not from -1e7 to 9.2e9 s");
+      pose.stamp_ns += offset_ns;
+    }
+    return both;
+  }
+  if (offset_ns != 0) throw InputError("--offset: KITTI's poses have no stamps to add it to");
   const auto period_ns = static_cast<Stamp>(std::llround(1e9 / options.rate_hz));
   std::pair<Trajectory, Trajectory> both{read_kitti(options.truth, period_ns),
                                          read_kitti(options.estimate, period_ns)};
@@ -121,6 +149,12 @@ std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
                                  options.estimate, counted(both.second.size(), "pose"),
                                  options.truth, both.first.size()));
   return both;
+}
+
+/// "1305031100.001 to 1305031109.961 s".
+std::string span(const Trajectory& trajectory) {
+  return fmt::format("{:.3f} to {:.3f} s", 1e-9 * static_cast<double>(trajectory.front().stamp_ns),
+                     1e-9 * static_cast<double>(trajectory.back().stamp_ns));
 }
 
 void run(const EvaluateArguments& options) {
@@ -133,8 +167,10 @@ void run(const EvaluateArguments& options) {
   const auto [truth, estimate] = load(options);
   const Evaluation e = evaluate(truth, estimate, how);
   if (e.pairs == 0)
-    throw InputError(fmt::format("{}: no pose is within {:g} s of one in {}", options.estimate,
-                                 options.max_difference_s, options.truth));
+    throw InputError(fmt::format(
+        "{}: no pose is within {:g} s of one in {}: its stamps are from {}, "
+        "those of the truth from {} (--offset adds to its stamps)",
+        options.estimate, options.max_difference_s, options.truth, span(estimate), span(truth)));
   if (options.json) {
     fmt::print("{}\n", to_json(e, options.align).dump(2));
     return;
@@ -166,7 +202,7 @@ void add_evaluate(CLI::App& app) {
       ->check(one_of_words({"se3", "sim3", "origin", "none"}));
   command
       ->add_option("--format", options->format,
-                   "Of both files; where tum is expected, EuRoC's CSV is recognized")
+                   "Of both files; where tum is expected, CSV is recognized")
       ->check(one_of_words({"tum", "kitti"}));
   command
       ->add_option("--delta", options->deltas,
@@ -178,6 +214,10 @@ void add_evaluate(CLI::App& app) {
       ->add_option("--max-difference", options->max_difference_s,
                    "Stamps (s) that are taken for one moment")
       ->check(number_between(0.0, 1e6));
+  command
+      ->add_option("--offset", options->offset,
+                   "Added to the estimate's stamps, s; may be negative")
+      ->default_str("0");
   command->add_option("--rate", options->rate_hz, "Poses per second of KITTI files")
       ->check(number_between(1e-3, 1e6));
   command->add_flag("--json", options->json, "Prints JSON");

@@ -151,7 +151,10 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
     any_depth = any_depth || std::ranges::any_of(frame.depth_m, [](float z) { return z > 0; });
   };
   if (!options.poses.empty()) {
-    const Trajectory known = poses_of_frames(*source.frames, read_trajectory(options.poses));
+    std::vector<std::string> notes;
+    const Trajectory known =
+        poses_of_frames(*source.frames, read_trajectory(options.poses, &notes));
+    for (const std::string& note : notes) fmt::print(stderr, "map: warning: {}\n", note);
     keyframes.posed.poses = keep_posed(options, source, known, keep);
   } else {
     const auto vocabulary =

@@ -172,7 +172,7 @@ void run(SlamArguments options) {
   }
   std::optional<Trajectory> named_truth;
   if (!options.truth.empty()) {
-    named_truth = read_trajectory(options.truth);
+    named_truth = read_trajectory(options.truth, &source.settings.notes);
     if (const std::string note = truth_of_another_time(*source.frames, *named_truth); !note.empty())
       source.settings.notes.push_back(fmt::format("{}: {}", options.truth, note));
   }

@@ -73,10 +73,12 @@ std::filesystem::path folder_of(const std::string& source) {
 /// Prints how well the words retrieve images with known poses.
 void print_score(const Vocabulary& vocabulary, const VocabularyArguments& options) {
   const RecordedCamera camera = load_recorded_camera(options.settings);
-  const auto views = load_placed_views(folder_of(options.frames), camera, options.score);
+  std::vector<std::string> notes;
+  const auto views = load_placed_views(folder_of(options.frames), camera, options.score, notes);
   std::vector<PlacedView> queries;
   if (!options.queries.empty())
-    queries = load_placed_views(folder_of(options.queries), camera, options.score);
+    queries = load_placed_views(folder_of(options.queries), camera, options.score, notes);
+  for (const std::string& note : notes) fmt::print(stderr, "vocabulary: {}\n", note);
   const VocabularyScore score =
       score_vocabulary(vocabulary, views, queries, camera.camera, options.score);
   fmt::print("  frames  {}, {}, {:.0f} different words in each\n", counted(score.views, "view"),

@@ -173,7 +173,7 @@ void run_laps(const Options& options) {
                options.cache);
     return;
   }
-  const Trajectory truth = read_tum(options.folder + "/groundtruth.txt");
+  const Trajectory truth = read_trajectory(options.folder + "/groundtruth.txt");
   SlamState state =
       make_slam(camera.camera, SlamConfig{},
                 std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary)));

@@ -118,7 +118,7 @@ void run(const Options& options) {
   const std::string truth = options.folder + "/groundtruth.txt";
   if (std::ifstream(truth))
     fmt::print("ATE RMSE {:.4f} m\n",
-               evaluate(read_tum(truth), trajectory(state)).ape_translation_m.rmse);
+               evaluate(read_trajectory(truth), trajectory(state)).ape_translation_m.rmse);
   if (!options.estimate.empty()) write_tum(options.estimate, trajectory(state));
 }
 

@@ -78,9 +78,10 @@ double overlap(const PlacedView& a, const PlacedView& b, const Camera& camera) {
 
 std::vector<PlacedView> load_placed_views(const std::filesystem::path& folder,
                                           const RecordedCamera& camera,
-                                          const VocabularyScoreConfig& config) {
-  const Trajectory truth = read_tum(folder / "groundtruth.txt");
-  const std::vector<RecordedFrame> recorded = load_tum_folder(folder);
+                                          const VocabularyScoreConfig& config,
+                                          std::vector<std::string>& notes) {
+  const Trajectory truth = read_trajectory(folder / "groundtruth.txt", &notes);
+  const std::vector<RecordedFrame> recorded = load_tum_folder(folder, &notes);
   std::vector<PlacedView> views;
   for (std::size_t i = 0; i < recorded.size(); i += static_cast<std::size_t>(config.every)) {
     const TimedPose* const pose = nearest(truth, recorded[i].stamp_ns);

@@ -46,10 +46,11 @@ struct VocabularyScore {
 };
 
 /// Reads a folder in TUM's layout with its groundtruth.txt; images without a pose within 0.02 s are
-/// left out. @throws InputError naming file and line.
+/// left out. @param notes  receives what else was left out @throws InputError naming file and line.
 std::vector<PlacedView> load_placed_views(const std::filesystem::path& folder,
                                           const RecordedCamera& camera,
-                                          const VocabularyScoreConfig& config);
+                                          const VocabularyScoreConfig& config,
+                                          std::vector<std::string>& notes);
 
 /// Ranks the views by l1_similarity() to each query, ties by their order. Without queries, each
 /// view is a query for the others. @throws InputError if no query has a true neighbor.

@@ -291,7 +291,7 @@ class ConversationSystem : public OutsideSystem {
     }
     if (lines.empty()) return {};
     try {
-      return parse_tum(text, "trajectory");
+      return parse_trajectory(text, "trajectory");
     } catch (const InputError& error) {
       fail(fmt::format("gave a bad trajectory: {}", error.what()));
     }

@@ -96,7 +96,7 @@ Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& folder,
   if (!fs::exists(trajectory)) child.fail("ended well but wrote no trajectory");
   try {
     if (tracked_nothing(trajectory)) return {};
-    return with_frame_stamps(read_tum(trajectory), stamps, child);
+    return with_frame_stamps(read_trajectory(trajectory), stamps, child);
   } catch (const InputError& error) {
     child.fail(fmt::format("wrote a bad trajectory: {}", error.what()));
   }

@@ -73,14 +73,11 @@ OpenedRecording open_bonn(const fs::path& folder, const RecordingConfig& config)
                       .truth = {},
                       .depth_camera = {}};
   if (const fs::path file = folder / "groundtruth.txt"; is_file(file)) {
-    Trajectory truth = read_valid_poses(file, notes);
-    for (TimedPose& pose : truth)
-      pose.world_from_camera =
-          exchanged_axes() * pose.world_from_camera * exchanged_axes() * markers_from_camera();
-    if (truth.empty())
-      notes.push_back(fmt::format("{}: holds no pose: there is no truth", file.string()));
-    else
-      listed.truth = std::move(truth);
+    listed.truth = read_truth(file, notes);
+    if (listed.truth)
+      for (TimedPose& pose : *listed.truth)
+        pose.world_from_camera =
+            exchanged_axes() * pose.world_from_camera * exchanged_axes() * markers_from_camera();
   } else {
     note_no_file(file, notes);
   }

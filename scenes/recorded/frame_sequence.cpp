@@ -17,7 +17,6 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
-#include "slam/core/trajectory_io.hpp"
 
 namespace mh {
 namespace {
@@ -59,13 +58,13 @@ class FramesInMemory : public Sequence {
 };
 
 ListedFrames list_tum_folder(std::vector<RecordedFrame> frames, const fs::path& folder,
-                             const RecordedCamera& camera, std::vector<std::string>* notes) {
+                             const RecordedCamera& camera, std::vector<std::string>& notes) {
   ListedFrames listed{camera, std::move(frames), {}, {}, {}};
   for (const char* name : {"groundtruth.txt", "groundtruth.csv"})
     if (!listed.truth && is_file(folder / name))
-      listed.truth = read_trajectory(folder / name);
-    else if (!listed.truth && notes != nullptr)
-      note_no_file(folder / name, *notes);
+      listed.truth = read_truth(folder / name, notes);
+    else if (!listed.truth)
+      note_no_file(folder / name, notes);
   return listed;
 }
 
@@ -125,7 +124,7 @@ OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) 
   std::vector<std::string> notes;
   std::vector<RecordedFrame> frames = load_tum_folder(folder, &notes);
   const RecordedCamera camera = camera_of(folder, frames, config);
-  ListedFrames listed = list_tum_folder(std::move(frames), folder, camera, &notes);
+  ListedFrames listed = list_tum_folder(std::move(frames), folder, camera, notes);
   return open_listed(std::move(listed), config, std::move(notes));
 }
 
@@ -176,8 +175,9 @@ OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
 std::unique_ptr<Sequence> open_tum_folder(const std::filesystem::path& folder,
                                           const RecordedCamera& camera,
                                           std::vector<std::string>* notes) {
-  return std::make_unique<ListedSequence>(
-      list_tum_folder(load_tum_folder(folder, notes), folder, camera, notes));
+  std::vector<std::string> ignored;
+  return std::make_unique<ListedSequence>(list_tum_folder(
+      load_tum_folder(folder, notes), folder, camera, notes == nullptr ? ignored : *notes));
 }
 
 std::unique_ptr<Sequence> frames_in_memory(const Camera& camera, std::vector<RgbdFrame> frames) {

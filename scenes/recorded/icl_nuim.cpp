@@ -51,8 +51,8 @@ std::vector<std::string> truth_files(const fs::path& folder) {
   return list_folder(folder, "*.gt.freiburg");
 }
 
-Trajectory read_truth(const fs::path& file, std::vector<std::string>& notes) {
-  Trajectory truth = read_valid_poses(file, notes);
+Trajectory reflected_truth(const fs::path& file, std::vector<std::string>& notes) {
+  Trajectory truth = read_truth(file, notes).value_or(Trajectory());
   for (TimedPose& pose : truth)
     pose = {stamp_of_number(pose.stamp_ns), reflected(pose.world_from_camera)};
   return truth;
@@ -90,7 +90,7 @@ OpenedRecording open_icl_nuim(const fs::path& folder, const RecordingConfig& con
   ListedFrames listed{.camera = {.camera = icl_nuim_camera()},
                       .frames = read_frames(folder, notes),
                       .classes = {},
-                      .truth = read_truth(folder / truth.front(), notes),
+                      .truth = reflected_truth(folder / truth.front(), notes),
                       .depth_camera = {}};
   if (!config.calibration.empty()) {
     const double depth_per_meter = listed.camera.depth_per_meter;

@@ -111,7 +111,7 @@ SE3 base_from_camera(const fs::path& file) {
   return found->second.normalized();
 }
 
-std::optional<Trajectory> read_truth(const fs::path& folder, std::vector<std::string>& notes) {
+std::optional<Trajectory> truth_in(const fs::path& folder, std::vector<std::string>& notes) {
   const fs::path truth = folder / "groundtruth.txt", transforms = folder / "trans_matrix.yaml";
   if (!is_there(truth)) return std::nullopt;
   if (!is_file(truth)) {
@@ -126,12 +126,10 @@ std::optional<Trajectory> read_truth(const fs::path& folder, std::vector<std::st
     return std::nullopt;
   }
   const SE3 base_from_color = base_from_camera(transforms);
-  Trajectory poses = read_valid_poses(truth, notes);
-  for (TimedPose& pose : poses) pose.world_from_camera = pose.world_from_camera * base_from_color;
-  if (poses.empty()) {
-    notes.push_back(fmt::format("{}: holds no pose: there is no truth", truth.string()));
-    return std::nullopt;
-  }
+  std::optional<Trajectory> poses = read_truth(truth, notes);
+  if (poses)
+    for (TimedPose& pose : *poses)
+      pose.world_from_camera = pose.world_from_camera * base_from_color;
   return poses;
 }
 
@@ -174,7 +172,7 @@ OpenedRecording open_openloris(const fs::path& folder, const RecordingConfig& co
   ListedFrames listed{.camera = camera,
                       .frames = read_frames(folder, notes),
                       .classes = {},
-                      .truth = read_truth(folder, notes),
+                      .truth = truth_in(folder, notes),
                       .depth_camera = {}};
   return open_listed(std::move(listed), config, std::move(notes));
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,11 @@
 
 namespace mh {
 
-/// Reads true poses as TUM's text; lines that are no pose, or not after the one before, are left
-/// out. @param notes  receives a line that counts them and names the first
-/// @throws InputError if the file cannot be read.
-Trajectory read_valid_poses(const std::filesystem::path& file, std::vector<std::string>& notes);
+/// Reads the true poses of a recording; nullopt if none is left of them. @param notes  receives
+/// what was left out (trajectory_io.hpp), or that there is no truth
+/// @throws InputError if the file cannot be read or is of no poses.
+std::optional<Trajectory> read_truth(const std::filesystem::path& file,
+                                     std::vector<std::string>& notes);
 
 /// Notes that a folder, say, stands where a file of true poses would.
 void note_no_file(const std::filesystem::path& truth, std::vector<std::string>& notes);

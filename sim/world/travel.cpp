@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "scenes/floor.hpp"
 #include "scenes/generate/generate.hpp"
@@ -76,6 +77,13 @@ Motion parse(const std::string& motion) {
   return result;
 }
 
+/// What of a recorded path cannot be replayed. @throws InputError if nothing can
+std::vector<std::string> notes_on_replay(const std::filesystem::path& file) {
+  std::vector<std::string> notes;
+  read_trajectory(file, &notes);
+  return notes;
+}
+
 /// @pre the scene's floor is z = 0
 DrivenPath travel_on_level(const Scene& scene, const Robot& robot, const Motion& motion,
                            const std::vector<MovingObstacle>& others) {
@@ -86,8 +94,11 @@ DrivenPath travel_on_level(const Scene& scene, const Robot& robot, const Motion&
                    others);
     case Motion::Kind::kHandheld:
       return scan_by_hand(scene, robot.camera, {.seed = motion.seed, .frames = motion.frames});
-    case Motion::Kind::kReplay:
-      return replay(scene, robot.camera, read_tum(motion.file), motion.file.string());
+    case Motion::Kind::kReplay: {
+      std::vector<std::string> told_by_note_on;
+      return replay(scene, robot.camera, read_trajectory(motion.file, &told_by_note_on),
+                    motion.file.string());
+    }
     case Motion::Kind::kCommands:
       return drive(scene, robot, load_commands(motion.file), others).path;
     case Motion::Kind::kTour:
@@ -101,7 +112,7 @@ DrivenPath travel_on_level(const Scene& scene, const Robot& robot, const Motion&
 void check_motion(const std::string& motion) {
   const Motion parsed = parse(motion);
   if (parsed.kind == Motion::Kind::kTour) load_tour(parsed.file);
-  if (parsed.kind == Motion::Kind::kReplay) read_tum(parsed.file);
+  if (parsed.kind == Motion::Kind::kReplay) notes_on_replay(parsed.file);
   if (parsed.kind == Motion::Kind::kCommands) load_commands(parsed.file);
 }
 
@@ -116,6 +127,8 @@ std::optional<std::size_t> frames_stated(const std::string& motion) {
 
 std::string note_on(const std::string& motion, const Robot& robot) {
   const Motion parsed = parse(motion);
+  if (parsed.kind == Motion::Kind::kReplay)
+    return fmt::format("{}", fmt::join(notes_on_replay(parsed.file), "; "));
   if (parsed.kind != Motion::Kind::kTour) return "";
   const Tour tour = load_tour(parsed.file);
   constexpr double kDegreesPerRad = 180 / std::numbers::pi;

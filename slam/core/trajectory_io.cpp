@@ -5,336 +5,341 @@
 #include <array>
 #include <cassert>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <functional>
-#include <span>
-#include <string_view>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/legible.hpp"
-#include "slam/core/lower_case.hpp"
 #include "slam/core/number_in.hpp"
+#include "slam/core/pose_columns.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n\v\f";
+using Words = std::vector<std::string_view>;
 
-std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> words;
-  std::size_t begin = line.find_first_not_of(kBlanks);
-  while (begin != std::string_view::npos) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-    words.emplace_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kBlanks, end);
-  }
-  return words;
-}
+/// Why a line gives no pose.
+enum class Fault { kNotFinite, kZero, kRepeated, kNoPose };
 
-/// The values between commas, without blanks around them; a comma at the end adds none.
-std::vector<std::string> split_at_commas(std::string_view line) {
-  std::vector<std::string> words;
-  while (!line.empty()) {
-    const std::size_t comma = std::min(line.find(','), line.size());
-    const std::vector<std::string> word = split(line.substr(0, comma));
-    line.remove_prefix(std::min(comma + 1, line.size()));
-    if (word.empty() && line.find_first_not_of(kBlanks) == std::string_view::npos) break;
-    words.push_back(word.empty() ? "" : word.size() == 1 ? word[0] : word[0] + " " + word[1]);
-  }
-  return words;
-}
+struct FaultWords {
+  const char *one, *more;
+};
+constexpr std::array<FaultWords, 4> kFaultWords = {{{"is not finite", "are not finite"},
+                                                    {"has no rotation", "have no rotation"},
+                                                    {"repeats a stamp", "repeat a stamp"},
+                                                    {"is no pose", "are no poses"}}};
+
+class BadLine : public InputError {
+ public:
+  BadLine(const std::string& what, Fault fault) : InputError(what), fault(fault) {}
+  Fault fault;
+};
 
 /// Position of a line, for messages.
 struct Place {
   const std::string& file;
   int line;
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", file, line, legible(what)));
+  [[noreturn]] void fail(const std::string& what, Fault fault = Fault::kNoPose) const {
+    throw BadLine(fmt::format("{}:{}: {}", file, line, legible(what)), fault);
   }
 };
 
-double parse_number(const std::string& word, const char* field, const Place& place) {
+double parse_number(std::string_view word, const char* field, const Place& place) {
   const auto value = number_in(without_plus(word));
-  if (!value) place.fail(fmt::format("{}: '{}' is not a number", field, word));
-  if (!std::isfinite(*value)) place.fail(fmt::format("{}: '{}' is not finite", field, word));
+  // An empty value between commas is how tables write NaN.
+  if (!value)
+    place.fail(fmt::format("{}: '{}' is not a number", field, word),
+               word.empty() ? Fault::kNotFinite : Fault::kNoPose);
+  if (!std::isfinite(*value))
+    place.fail(fmt::format("{}: '{}' is not finite", field, word), Fault::kNotFinite);
   return *value;
 }
 
-/// Calls `use` with the words of each line that is neither empty nor a comment.
-void for_each_line(const std::string& text, const std::string& name,
-                   const std::function<void(const std::vector<std::string>&, const Place&)>& use,
-                   std::vector<std::string> (*words_of)(std::string_view) = split) {
+/// Calls `use` with each line and its number.
+void for_each_line(std::string_view text,
+                   const std::function<bool(std::string_view line, int number)>& use) {
   int number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    ++number;
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    const std::vector<std::string> words = words_of(line.substr(0, line.find('#')));
-    if (!words.empty()) use(words, Place{name, number});
+    if (!use(text.substr(begin, end - begin), ++number)) return;
     begin = end + 1;
   }
 }
 
-Stamp parse_stamp_at(const std::string& word, const Place& place) {
+/// The line without a comment: what follows a '#', or all where a '%' leads.
+std::string_view without_comment(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  if (first != std::string_view::npos && line[first] == '%') return {};
+  return line.substr(0, line.find('#'));
+}
+
+/// Words, unless there are none but blanks between separators.
+Words words_of_data(std::string_view line, char separator) {
+  Words words = words_of_line(without_comment(line), separator);
+  if (std::ranges::all_of(words, &std::string_view::empty)) words.clear();
+  return words;
+}
+
+/// Whether a line holds names: no word is a number, and the first begins with a letter if it is
+/// not empty.
+bool is_of_names(const Words& words) {
+  const auto is_number = [](std::string_view word) {
+    return number_in(without_plus(word)).has_value();
+  };
+  return std::ranges::none_of(words, is_number) &&
+         (words[0].empty() || std::isalpha(static_cast<unsigned char>(words[0][0])) != 0);
+}
+
+/// How a file writes its poses.
+struct Layout {
+  char separator = ' ';
+  PoseColumns columns;
+  int first_line = std::numeric_limits<int>::max();  ///< of data
+  bool more_may_follow = false;  ///< values behind those of the pose
+};
+
+/// The first line that is neither a comment nor names; what the lines before it say of columns
+/// holds.
+Layout layout_of(const std::string& text, const std::string& name) {
+  Layout layout;
+  Words first;
+  std::vector<std::pair<std::string_view, int>> before;
+  for_each_line(text, [&](std::string_view line, int number) {
+    const std::string_view data = without_comment(line);
+    const char separator = data.find(',') != std::string_view::npos   ? ','
+                           : data.find(';') != std::string_view::npos ? ';'
+                                                                      : ' ';
+    Words words = words_of_data(line, separator);
+    if (words.empty() || is_of_names(words)) {
+      before.emplace_back(line, number);
+      return true;
+    }
+    layout.separator = separator;
+    layout.first_line = number;
+    first = std::move(words);
+    return false;
+  });
+  layout.more_may_follow = layout.separator != ' ';
+  if (layout.more_may_follow) layout.columns.pose = {1, 2, 3, 5, 6, 7, 4};  // EuRoC's
+  for (const auto& [line, number] : before) {
+    try {
+      if (const auto columns =
+              columns_named_by(line, layout.separator, layout.columns, first.size())) {
+        layout.columns = *columns;
+        return layout;
+      }
+    } catch (const InputError& error) {
+      Place{name, number}.fail(error.what());
+    }
+  }
+  return layout;
+}
+
+Words words_of_pose(std::string_view line, const Layout& layout, const Place& place) {
+  Words words = words_of_data(line, layout.separator);
+  const std::size_t count = layout.columns.count;
+  if (!words.empty() && (words.size() < count || (words.size() > count && !layout.more_may_follow)))
+    place.fail(fmt::format("pose: {}, expected {}{}", counted(words.size(), "value"),
+                           layout.more_may_follow ? "at least " : "", count) +
+               (count == 8 ? layout.more_may_follow ? " (timestamp p_x p_y p_z q_w q_x q_y q_z)"
+                                                    : " (stamp tx ty tz qx qy qz qw)"
+                           : ""));
+  return words;
+}
+
+/// What all stamps of a file together tell of their unit.
+struct StampRange {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  std::size_t count = 0;
+  bool whole = true;
+};
+
+StampRange range_of_stamps(const std::string& text, const Layout& layout) {
+  StampRange range;
+  for_each_line(text, [&](std::string_view line, int number) {
+    if (number < layout.first_line) return true;
+    const Words words = words_of_data(line, layout.separator);
+    if (words.size() < layout.columns.count) return true;
+    const std::string_view word = words[layout.columns.stamp];
+    const auto stamp = number_in(without_plus(word));
+    if (!stamp || !std::isfinite(*stamp) || *stamp < 0) return true;
+    range.least = std::min(range.least, *stamp);
+    range.most = std::max(range.most, *stamp);
+    range.whole = range.whole && word.find_first_of(".eE") == std::string_view::npos;
+    ++range.count;
+    return true;
+  });
+  return range;
+}
+
+/// The unit of stamps that no name tells, as a power of ten of a second. Times since 1970 tell it
+/// by their size. Smaller ones are seconds, unless they are whole numbers and either EuRoC's, in
+/// nanoseconds, or hours apart as seconds would be.
+int likely_unit(const StampRange& range, bool commas) {
+  if (range.most >= 1e17) return -9;
+  if (range.most >= 1e14) return -6;
+  if (range.most >= 1e11) return -3;
+  if (!range.whole) return 0;
+  if (!(range.most > range.least)) return commas ? -9 : 0;
+  const double step = (range.most - range.least) / static_cast<double>(range.count - 1);
+  return step >= (commas ? 1e3 : 1e6) ? -9 : 0;
+}
+
+const char* unit_name(int unit) {
+  return unit == 0    ? "seconds"
+         : unit == -3 ? "milliseconds"
+         : unit == -6 ? "microseconds"
+                      : "nanoseconds";
+}
+
+Stamp stamp_in(const Words& words, const PoseColumns& columns, const Place& place) {
+  const std::string_view word = words[columns.stamp];
+  if (const auto value = number_in(word); value && !std::isfinite(*value))
+    place.fail(fmt::format("stamp: '{}' is not finite", word), Fault::kNotFinite);
   try {
-    return parse_stamp(word);
+    const Stamp rest_ns = columns.nanoseconds ? parse_stamp(words[*columns.nanoseconds], -9) : 0;
+    return parse_stamp(word, *columns.unit) + rest_ns;
   } catch (const InputError& error) {
     place.fail(fmt::format("stamp: {}", error.what()));
   }
 }
 
-bool starts_with_letter(const std::string& word) {
-  return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0;
-}
-
-/// The columns of a pose after its stamp, as files of poses are known to have them.
-constexpr std::string_view kScalarFirst = "x y z qw qx qy qz", kScalarLast = "x y z qx qy qz qw";
-
-/// The last letters of seven names of columns, "x y z qw qx qy qz" of "p_x ... q_w ...": without q
-/// where all names begin alike. "" if they are no names of a pose.
-std::string columns_of(std::span<const std::string> names) {
-  const auto stem = [](const std::string& name) { return name.substr(0, name.size() - 1); };
-  if (std::ranges::any_of(
-          names, [](const std::string& name) { return name.back() < 'w' || name.back() > 'z'; }))
-    return "";
-  const auto w = std::ranges::find(names, 'w', [](const std::string& name) { return name.back(); });
-  if (w == names.end()) return "";
-  const auto is_of_w = [&](const std::string& name) { return stem(name) == stem(*w); };
-  const char* mark = std::ranges::all_of(names, is_of_w) ? "" : "q";
-  std::string text;
-  for (const std::string& name : names)
-    text += fmt::format("{}{}{}", text.empty() ? "" : " ", is_of_w(name) ? mark : "", name.back());
-  return text;
-}
-
-bool is_known(std::string_view columns) {
-  return columns == kScalarFirst || columns == kScalarLast || columns == "x y z w x y z" ||
-         columns == "x y z x y z w";
-}
-
-/// What a line of names calls a pose's columns. Names between commas are all of a line, and the
-/// seven after the first count; if four of them begin with q, but they are not understood, all are
-/// returned. Among the words of a comment, names may stand anywhere. "" if there are none.
-std::string named_columns(std::string_view line) {
-  if (line.starts_with('#')) line.remove_prefix(1);
-  const bool commas = line.find(',') != std::string_view::npos;
-  std::vector<std::string> names = commas ? split_at_commas(line) : split(line);
-  for (std::string& name : names) {
-    name.resize(std::min(name.find('['), name.size()));
-    name.resize(name.find_last_not_of(' ') + 1);
-    name = lower_case(std::move(name));
-  }
-  std::erase(names, "");
-  for (std::size_t first = 1; first + 7 <= names.size() && (!commas || first == 1); ++first)
-    if (const std::string columns = columns_of(std::span(names).subspan(first, 7));
-        commas ? !columns.empty() : is_known(columns))
-      return columns;
-  const auto is_of_quaternion = [](const std::string& name) { return name.starts_with('q'); };
-  const bool states =
-      commas && names.size() >= 8 && std::ranges::count_if(names, is_of_quaternion) >= 4;
-  return states ? fmt::format("{}", fmt::join(names, " ")) : "";
-}
-
-/// Where w stands among the seven numbers after a stamp: as the lines of names before the first
-/// pose say, or else as `usual` does. @throws InputError naming the line if its order is unknown
-std::size_t place_of_w(const std::string& text, const std::string& name, std::string_view usual) {
-  const auto place_in = [](std::string_view columns) {
-    return static_cast<std::size_t>(std::ranges::count(columns.substr(0, columns.find('w')), ' '));
-  };
-  int number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    begin = end + 1;
-    ++number;
-    const std::size_t first = line.find_first_not_of(kBlanks);
-    if (first == std::string_view::npos) continue;
-    const std::string columns = named_columns(line.substr(first));
-    if (is_known(columns)) return place_in(columns);
-    if (!columns.empty())
-      Place{name, number}.fail(fmt::format("its columns are named {}: `{}` and `{}` are read",
-                                           columns, kScalarLast, kScalarFirst));
-    if (line[first] != '#') break;
-  }
-  return place_in(usual);
-}
-
-using PoseFields = std::array<const char*, 7>;
-
-/// The seven numbers after the stamp.
-std::array<double, 7> numbers_of(const std::vector<std::string>& words, const PoseFields& fields,
-                                 const Place& place) {
-  std::array<double, 7> values{};
-  for (std::size_t k = 0; k < values.size(); ++k)
-    values[k] = parse_number(words[k + 1], fields[k], place);
-  return values;
-}
-
-/// The rotation among the seven numbers.
-Eigen::Quaterniond rotation_of(const std::array<double, 7>& v, std::size_t w_at) {
-  const std::size_t x_at = w_at == 3 ? 4 : 3;
-  return {v[w_at], v[x_at], v[x_at + 1], v[x_at + 2]};
-}
-
-void require_later(const Trajectory& trajectory, Stamp stamp_ns, const std::string& word,
-                   const Place& place) {
-  if (!trajectory.empty() && stamp_ns <= trajectory.back().stamp_ns)
-    place.fail(fmt::format("stamp: {} does not come after {}", word,
-                           format_stamp(trajectory.back().stamp_ns)));
-}
-
-void add_pose(Trajectory& trajectory, Stamp stamp_ns, const Eigen::Vector3d& position_m,
-              const Eigen::Quaterniond& rotation, const Place& place) {
+TimedPose pose_in(const Words& words, const PoseColumns& columns, const Place& place) {
+  static constexpr std::array<const char*, 7> kFields = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+  const Stamp stamp_ns = stamp_in(words, columns, place);
+  std::array<double, 7> v{};
+  for (std::size_t k = 0; k < v.size(); ++k)
+    v[k] = parse_number(words[columns.pose[k]], kFields[k], place);
+  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+  const Eigen::Vector3d position_m(v[0], v[1], v[2]);
   if (std::abs(rotation.norm() - 1.0) > 0.1)
-    place.fail(fmt::format("quaternion: norm {:g}, expected 1", rotation.norm()));
+    place.fail(fmt::format("quaternion: norm {:g}, expected 1", rotation.norm()),
+               rotation.norm() == 0 ? Fault::kZero : Fault::kNoPose);
   if (const double far_m = position_m.cwiseAbs().maxCoeff(); far_m > kFarthestPose_m)
     place.fail(fmt::format("position: lies {:g} m from the origin", far_m));
-  trajectory.push_back({stamp_ns, SE3(rotation, position_m)});
+  return {stamp_ns, SE3(rotation, position_m)};
+}
+
+/// The poses of a file in the order of their stamps, and what was left out.
+class PoseCollector {
+ public:
+  /// @param strict  nothing may be left out, nor come after a later stamp
+  PoseCollector(const std::string& name, bool strict) : name_(name), strict_(strict) {}
+
+  void add(const TimedPose& pose, std::string_view word, const Place& place) {
+    const bool later = poses_.empty() || pose.stamp_ns > latest_ns_;
+    if (!later && (strict_ || stamps_.contains(pose.stamp_ns)))
+      place.fail(fmt::format("stamp: {} does not come after {}", word, format_stamp(latest_ns_)),
+                 Fault::kRepeated);
+    if (!later) ++early_;
+    latest_ns_ = later ? pose.stamp_ns : latest_ns_;
+    stamps_.insert(stamps_.end(), pose.stamp_ns);
+    poses_.push_back(pose);
+  }
+  void leave_out(const BadLine& line) {
+    if (strict_) throw InputError(line);
+    if (left_out() == 0) first_fault_ = std::string(line.what()).substr(name_.size() + 1);
+    if (line.fault == Fault::kNoPose && count(Fault::kNoPose) == 0) first_no_pose_ = line.what();
+    ++counts_[static_cast<std::size_t>(line.fault)];
+  }
+  /// @throws InputError if more lines are no poses than are: the file is something else
+  Trajectory finish(std::vector<std::string>* notes) {
+    if (count(Fault::kNoPose) > poses_.size()) throw InputError(first_no_pose_);
+    std::ranges::stable_sort(poses_, {}, &TimedPose::stamp_ns);
+    if (left_out() > 0) notes->push_back(note());
+    if (early_ > 0)
+      notes->push_back(fmt::format("{}: {} behind a later one and {} put in order of time", name_,
+                                   counted(early_, "pose stands", "poses stand"),
+                                   early_ == 1 ? "is" : "are"));
+    return std::move(poses_);
+  }
+  /// "; line 5: ..." for a message; empty if nothing was left out
+  std::string first_fault() const { return first_fault_.empty() ? "" : "; line " + first_fault_; }
+
+ private:
+  std::size_t count(Fault fault) const { return counts_[static_cast<std::size_t>(fault)]; }
+  std::size_t left_out() const {
+    std::size_t all = 0;
+    for (const std::size_t each : counts_) all += each;
+    return all;
+  }
+  std::string note() const {
+    std::string kinds;
+    for (std::size_t k = 0; k < counts_.size(); ++k)
+      if (counts_[k] > 0)
+        kinds += (kinds.empty() ? "" : ", ") +
+                 fmt::format("{} {}", counts_[k],
+                             counts_[k] == 1 ? kFaultWords[k].one : kFaultWords[k].more);
+    return fmt::format("{}: {} of {} {} left out: {}; the first in line {}", name_, left_out(),
+                       counted(left_out() + poses_.size(), "pose"), left_out() == 1 ? "is" : "are",
+                       kinds, first_fault_);
+  }
+
+  const std::string& name_;
+  bool strict_;
+  Trajectory poses_;
+  std::set<Stamp> stamps_;
+  Stamp latest_ns_ = 0;
+  std::size_t early_ = 0;  ///< poses behind a later one
+  std::array<std::size_t, kFaultWords.size()> counts_{};
+  std::string first_fault_, first_no_pose_;
+};
+
+/// @param notes  null: nothing is left out
+/// @param may_be_empty  whether a file without poses is one
+Trajectory parse(const std::string& text, const std::string& name, std::vector<std::string>* notes,
+                 bool may_be_empty) {
+  Layout layout = layout_of(text, name);
+  if (!layout.columns.unit) {
+    const StampRange range = range_of_stamps(text, layout);
+    layout.columns.unit = likely_unit(range, layout.more_may_follow);
+    const bool usual = *layout.columns.unit == (layout.more_may_follow && range.whole ? -9 : 0);
+    if (!usual && notes != nullptr)
+      notes->push_back(
+          fmt::format("{}: its stamps are taken for {}", name, unit_name(*layout.columns.unit)));
+  }
+  PoseCollector collector(name, notes == nullptr);
+  for_each_line(text, [&](std::string_view line, int number) {
+    if (number < layout.first_line) return true;
+    const Place place{name, number};
+    try {
+      const Words words = words_of_pose(line, layout, place);
+      if (!words.empty())
+        collector.add(pose_in(words, layout.columns, place), words[layout.columns.stamp], place);
+    } catch (const BadLine& fault) {
+      collector.leave_out(fault);
+    }
+    return true;
+  });
+  Trajectory poses = collector.finish(notes);
+  if (poses.empty() && !may_be_empty)
+    throw InputError(name + ": contains no poses" + collector.first_fault());
+  return poses;
 }
 
 }  // namespace
 
-Stamp parse_stamp(const std::string& text) {
-  const auto fail = [&] {
-    throw InputError(fmt::format("'{}' is no time in seconds from 0 to 9.2e9", text));
-  };
-  // value = digits * 10^exponent seconds.
-  std::string digits;
-  int exponent = 0;
-  std::size_t at = !text.empty() && text[0] == '+' ? 1 : 0;
-  bool point = false;
-  bool any = false;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (c == '.' && !point) {
-      point = true;
-    } else if (c >= '0' && c <= '9') {
-      any = true;
-      if (point) --exponent;
-      if (!digits.empty() || c != '0') digits += c;
-    } else {
-      break;
-    }
-  }
-  if (!any) fail();
-  if (at < text.size()) {
-    if (text[at] != 'e' && text[at] != 'E') fail();
-    int power = 0;
-    const char* begin = text.data() + at + 1;
-    if (begin != text.data() + text.size() && *begin == '+') ++begin;
-    const auto [stop, error] = std::from_chars(begin, text.data() + text.size(), power);
-    if (error != std::errc() || stop != text.data() + text.size() || std::abs(power) > 1000) fail();
-    exponent += power;
-  }
-  if (digits.empty()) return 0;
-  const int shift = exponent + 9;  // digits * 10^shift nanoseconds
-  bool round_up = false;
-  if (shift >= 0) {
-    if (static_cast<int>(digits.size()) + shift > 19) fail();
-    digits.append(static_cast<std::size_t>(shift), '0');
-  } else {
-    const int kept = static_cast<int>(digits.size()) + shift;
-    if (kept < 0) return 0;
-    round_up = digits[static_cast<std::size_t>(kept)] >= '5';
-    if (kept == 0) return round_up;
-    digits.resize(static_cast<std::size_t>(kept));
-  }
-  Stamp stamp = 0;
-  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), stamp);
-  if (error != std::errc() || stamp > 9'200'000'000'000'000'000) fail();
-  return stamp + round_up;
+Trajectory parse_valid_poses(const std::string& text, const std::string& name,
+                             std::vector<std::string>& notes) {
+  return parse(text, name, &notes, true);
 }
 
-std::string format_stamp(Stamp stamp_ns) {
-  return fmt::format("{}{}.{:09}", stamp_ns < 0 ? "-" : "", std::abs(stamp_ns / 1'000'000'000),
-                     std::abs(stamp_ns % 1'000'000'000));
+Trajectory parse_trajectory(const std::string& text, const std::string& name,
+                            std::vector<std::string>* notes) {
+  return parse(text, name, notes, false);
 }
 
-Trajectory parse_valid_tum(const std::string& text, const std::string& name,
-                           const std::function<void(const InputError&)>& fault) {
-  static constexpr PoseFields kFields = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
-  const std::size_t w_at = place_of_w(text, name, kScalarLast);
-  Trajectory trajectory;
-  const auto add_line = [&](const std::vector<std::string>& words, const Place& place) {
-    if (words.size() != 8)
-      place.fail(fmt::format("pose: {}, expected 8 (stamp tx ty tz qx qy qz qw)",
-                             counted(words.size(), "value")));
-    const Stamp stamp_ns = parse_stamp_at(words[0], place);
-    require_later(trajectory, stamp_ns, words[0], place);
-    const std::array<double, 7> v = numbers_of(words, kFields, place);
-    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, rotation_of(v, w_at), place);
-  };
-  for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
-    try {
-      add_line(words, place);
-    } catch (const InputError& error) {
-      fault(error);
-    }
-  });
-  return trajectory;
-}
-
-Trajectory parse_tum(const std::string& text, const std::string& name) {
-  const auto refuse = [](const InputError& error) { throw InputError(error); };
-  Trajectory trajectory = parse_valid_tum(text, name, refuse);
-  if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
-  return trajectory;
-}
-
-Trajectory parse_euroc(const std::string& text, const std::string& name) {
-  static constexpr PoseFields kFields = {"p x", "p y", "p z", "q w", "q x", "q y", "q z"};
-  const std::size_t w_at = place_of_w(text, name, kScalarFirst);
-  Trajectory trajectory;
-  bool is_first = true;
-  const auto read_line = [&](const std::vector<std::string>& words, const Place& place) {
-    const bool may_be_head = std::exchange(is_first, false);
-    Stamp stamp_ns = 0;
-    const char* end = words[0].data() + words[0].size();
-    const auto [stop, error] = std::from_chars(words[0].data(), end, stamp_ns);
-    if (error != std::errc() || stop != end || stamp_ns < 0) {
-      if (may_be_head && starts_with_letter(words[0])) return;
-      place.fail(fmt::format("timestamp: '{}' is not a whole number of nanoseconds", words[0]));
-    }
-    if (words.size() < 8)
-      place.fail(
-          fmt::format("pose: {}, expected at least 8 (timestamp p_x p_y p_z q_w q_x q_y q_z)",
-                      counted(words.size(), "value")));
-    require_later(trajectory, stamp_ns, words[0], place);
-    const std::array<double, 7> v = numbers_of(words, kFields, place);
-    add_pose(trajectory, stamp_ns, {v[0], v[1], v[2]}, rotation_of(v, w_at), place);
-  };
-  for_each_line(text, name, read_line, split_at_commas);
-  if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
-  return trajectory;
-}
-
-Trajectory parse_trajectory(const std::string& text, const std::string& name) {
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    const std::string_view data = line.substr(0, line.find('#'));
-    if (data.find(',') != std::string_view::npos) return parse_euroc(text, name);
-    if (data.find_first_not_of(kBlanks) != std::string_view::npos) break;
-    begin = end + 1;
-  }
-  return parse_tum(text, name);
-}
-
-Trajectory read_trajectory(const std::filesystem::path& file) {
-  return parse_trajectory(read_text(file), file.string());
-}
-
-Trajectory read_tum(const std::filesystem::path& file) {
-  return parse_tum(read_text(file), file.string());
+Trajectory read_trajectory(const std::filesystem::path& file, std::vector<std::string>* notes) {
+  return parse_trajectory(read_text(file), file.string(), notes);
 }
 
 std::string format_tum(const Trajectory& trajectory) {
@@ -355,7 +360,10 @@ void write_tum(const std::filesystem::path& file, const Trajectory& trajectory) 
 Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp period_ns) {
   assert(period_ns > 0);
   Trajectory trajectory;
-  for_each_line(text, name, [&](const std::vector<std::string>& words, const Place& place) {
+  for_each_line(text, [&](std::string_view line, int number) {
+    const Words words = words_of_data(line, ' ');
+    if (words.empty()) return true;
+    const Place place{name, number};
     if (words.size() != 12)
       place.fail(fmt::format("pose: {}, expected 12 (3x4 matrix by rows)",
                              counted(words.size(), "value")));
@@ -370,6 +378,7 @@ Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp p
       place.fail("matrix: its left 3x3 part is not a rotation");
     const auto index = static_cast<Stamp>(trajectory.size());
     trajectory.push_back({index * period_ns, SE3(rotation, matrix.col(3)).normalized()});
+    return true;
   });
   if (trajectory.empty()) throw InputError(fmt::format("{}: contains no poses", name));
   return trajectory;

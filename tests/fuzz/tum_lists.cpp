@@ -7,6 +7,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(mh::bytes_of(data, size));
   mh::try_input([&] { mh::parse_tum_list(text, "rgb.txt"); });
   mh::try_input([&] { mh::parse_tum_list(text, "associations.txt", 2); });
-  mh::try_input([&] { mh::parse_tum(text, "groundtruth.txt"); });
+  mh::try_input([&] { mh::parse_trajectory(text, "groundtruth.txt"); });
   return 0;
 }

@@ -92,7 +92,7 @@ TEST_F(SlamCommand, MapsAFolderAndSaysWhatCameOfIt) {
     EXPECT_GT(e["shared"], 0);
     EXPECT_LE(e["shared"], std::min(landmarks.at(e["a"]), landmarks.at(e["b"]))) << e;
   }
-  EXPECT_EQ(read_tum(folder_ / "a/estimate.tum").size(), 50U);
+  EXPECT_EQ(read_trajectory(folder_ / "a/estimate.tum").size(), 50U);
   EXPECT_EQ(read_kitti(folder_ / "a/estimate.kitti").size(), 50U);
   EXPECT_EQ(load_settings(folder_ / "a/settings.yaml").camera,
             load_settings(folder_ / "room/camera.yaml").camera);

@@ -23,8 +23,8 @@ class EvoReference : public ::testing::Test {
     const auto reference = data / "evo_reference/reference.json";
     if (!std::filesystem::exists(reference)) GTEST_SKIP() << "no " << reference;
     std::ifstream(reference) >> json_;
-    truth_ = read_tum(data / "tum_fr1_rpy/groundtruth.txt");
-    estimate_ = read_tum(data / "evo_reference/estimate.txt");
+    truth_ = read_trajectory(data / "tum_fr1_rpy/groundtruth.txt");
+    estimate_ = read_trajectory(data / "evo_reference/estimate.txt");
     matched_ = match_by_stamp(truth_, estimate_);
   }
 

@@ -195,7 +195,7 @@ TEST_F(LibrarySystems, ThatMisbehaveFailWithOneLine) {
   EXPECT_EQ(error("nan"),
             "gave a pose of [nan, 0, 0, 0, 0, 0, 1]: a number is not finite, in track");
   EXPECT_EQ(error("far"),
-            "gave a pose more than 1e+06 m away: [-10000000, 0, 0, 0, 0, 0, 1], in track");
+            "gave a pose more than 1e+08 m away: [-1000000000, 0, 0, 0, 0, 0, 1], in track");
   EXPECT_EQ(error("norm"), "gave a pose whose quaternion has norm 2, in track");
   EXPECT_EQ(error("count"), "gave inliers of -2: expected a count, in track");
   EXPECT_EQ(error("stage"),

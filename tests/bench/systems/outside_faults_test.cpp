@@ -433,7 +433,7 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
-  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,-1e7,0,0,0,0,1]})"), "a pose more than 1e+06 m away");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,-1e9,0,0,0,0,1]})"), "a pose more than 1e+08 m away");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
   EXPECT_HOLDS(replies(R"({"id":2})"), "neither a pose nor");

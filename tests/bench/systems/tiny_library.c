@@ -36,7 +36,7 @@ static int stand_still(tiny* t, mh_reply* reply) {
   if (told(t, "lost")) return 0;
   reply->map_reset = told(t, "anew");
   reply->has_pose = 1;
-  reply->pose.values[0] = told(t, "nan") ? NAN : told(t, "far") ? -1e7 : t->seen;
+  reply->pose.values[0] = told(t, "nan") ? NAN : told(t, "far") ? -1e9 : t->seen;
   reply->pose.values[6] = told(t, "norm") ? 2 : 1;
   return 0;
 }

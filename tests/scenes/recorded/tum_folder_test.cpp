@@ -74,7 +74,7 @@ TEST_F(TumFolder, ReadsBackWhatItWrote) {
   EXPECT_EQ(read.depth_m, frame(0).depth_m);  // 1.25 m is a whole number of units
   EXPECT_EQ(read.semantics.at(0, 0).most_probable(), 5);
   EXPECT_EQ(read.semantics.at(2, 1).most_probable(), kVoid);
-  EXPECT_EQ(read_tum(folder_ / "groundtruth.txt").size(), 2u);
+  EXPECT_EQ(read_trajectory(folder_ / "groundtruth.txt").size(), 2u);
 }
 
 TEST_F(TumFolder, EveryDepthIsTheQuotientOfTwoDoublesRounded) {

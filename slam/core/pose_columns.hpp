@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mh {
+
+/// Where the values of a pose stand in a line.
+struct PoseColumns {
+  std::size_t stamp = 0;
+  /// A column of nanoseconds to add: ROS writes a stamp as whole seconds and the rest.
+  std::optional<std::size_t> nanoseconds = {};
+  /// The stamp's unit as a power of ten of a second, -9 for nanoseconds; absent: no name tells it.
+  std::optional<int> unit = {};
+  std::array<std::size_t, 7> pose = {1, 2, 3, 4, 5, 6, 7};  ///< of x y z qx qy qz qw
+  std::size_t count = 8;                                    ///< values that a line must have
+};
+
+/// The words of a line: between blanks, or between commas or semicolons, without blanks and quotes
+/// around them; a separator at the end adds none.
+/// @param separator  ' ' for blanks of any kind
+std::vector<std::string_view> words_of_line(std::string_view line, char separator);
+
+/// The columns that a line of names states. As many names as values: each names its column, and
+/// columns of other meaning may stand among them. Otherwise, in a comment, seven names of a pose
+/// state only the order of what follows the stamp.
+/// @param line     with or without a leading # or %
+/// @param usual    what is not named
+/// @param values   number of values in a line of data
+/// @returns nullopt if the line names no pose
+/// @throws InputError (without a place) if it names columns that cannot be understood
+std::optional<PoseColumns> columns_named_by(std::string_view line, char separator,
+                                            const PoseColumns& usual, std::size_t values);
+
+}  // namespace mh
