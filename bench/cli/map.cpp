@@ -4,9 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
+#include <opencv2/core.hpp>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
@@ -14,6 +16,7 @@
 #include "bench/studies/map_messages.hpp"
 #include "robots/navigation/grid.hpp"
 #include "robots/navigation/plan.hpp"
+#include "scenes/image_file.hpp"
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -69,6 +72,13 @@ std::string place(const Vector2d& p) {
   return fmt::format("({:.2f}, {:.2f})", p.x(), p.y());
 }
 
+VoxelMap load_map(const std::string& file) {
+  std::vector<std::string> notes;
+  VoxelMap map = VoxelMap::load_octree(file, notes);
+  for (const std::string& note : notes) fmt::print(stderr, "map: {}\n", note);
+  return map;
+}
+
 /// @throws InputError if the map stands on no floor, or shows nothing between ground and head.
 OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
                       const ObstacleGridConfig& band) {
@@ -82,6 +92,24 @@ OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
   return grid;
 }
 
+/// Gray is the mean of a pixel's colors, as in map_server.
+GrayPicture gray_picture(const std::string& bytes) {
+  cv::Mat image = decode_image(bytes);
+  if (image.depth() != CV_8U && image.depth() != CV_16U)
+    throw InputError("its pixels are neither of 8 nor of 16 bits");
+  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
+  const int channels = image.channels(), colors = std::min(channels, 3);
+  GrayPicture picture{Grid2d<std::uint8_t>(image.cols, image.rows), {}};
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x) {
+      const std::uint8_t* pixel = image.ptr<std::uint8_t>(y) + channels * x;
+      const int sum = std::accumulate(pixel, pixel + colors, 0);
+      picture.levels(x, y) = static_cast<std::uint8_t>((sum + colors / 2) / colors);
+      if (channels == 4) picture.clear.push_back(pixel[3] < 255);
+    }
+  return picture;
+}
+
 /// Checks before the work that a pair of map image files can be written.
 void require_writable_map_image(const std::string& stem,
                                 const std::vector<std::filesystem::path>& read) {
@@ -92,7 +120,7 @@ void require_writable_map_image(const std::string& stem,
 void run(const MapGridArguments& options) {
   const NewFolders made(std::filesystem::path(options.out).parent_path());
   require_writable_map_image(options.out, {options.map});
-  const OccupancyGrid grid = grid_of(VoxelMap::load_ot(options.map), options.map, options.band);
+  const OccupancyGrid grid = grid_of(load_map(options.map), options.map, options.band);
   save_map_server(grid, options.out, options.raw ? GridMode::kRaw : GridMode::kTrinary);
   std::size_t free = 0, occupied = 0;
   for (const std::int8_t cell : grid.cells) {
@@ -113,7 +141,7 @@ void run(const MapCostArguments& options) {
         fmt::format("--inflation: {} m is less than the robot's radius, {} m (--radius)",
                     options.config.inflation_radius_m, options.config.inscribed_radius_m));
   std::vector<std::string> warnings;
-  const OccupancyGrid grid = load_map_server(options.grid, &warnings);
+  const OccupancyGrid grid = load_map_server(options.grid, &warnings, gray_picture);
   const std::vector<std::filesystem::path> read{options.grid, image_of_map(options.grid)};
   require_writable_map_image(options.out, read);
   require_writable_map_image(published, read);
@@ -129,7 +157,7 @@ void run(const MapObjectsArguments& options) {
   const NewFolders made(std::filesystem::path(options.out).parent_path());
   if (!options.out.empty())
     require_replaceable(options.out, "{\n  \"resolution_m\": ", "`modelhouse map`", {options.map});
-  const VoxelMap map = VoxelMap::load_ot(options.map);
+  const VoxelMap map = load_map(options.map);
   const std::vector<MapObject> objects = find_objects(map);
   std::vector<std::size_t> shown;
   if (options.name.empty())
@@ -156,7 +184,7 @@ void run(const MapMessagesArguments& options) {
   if (is_there(options.out) && !holds_map_messages(options.out))
     throw InputError(options.out +
                      ": is there already, and not from `modelhouse map messages`: name another");
-  const VoxelMap map = VoxelMap::load_ot(options.map);
+  const VoxelMap map = load_map(options.map);
   const MapStudy study{grid_of(map, options.map, options.band), find_objects(map)};
   write_map_messages(kind == ".mcap" ? *write_mcap(options.out) : *write_bag(options.out), map,
                      study);
@@ -210,7 +238,7 @@ void run(const MapPlanArguments& options) {
     throw InputError("plan: the goal is either --to or --to-object");
   if (!options.out.empty())
     require_replaceable(options.out, kPathHead, "`modelhouse map plan`", {options.map});
-  const VoxelMap map = VoxelMap::load_ot(options.map);
+  const VoxelMap map = load_map(options.map);
   const OccupancyGrid grid = grid_of(map, options.map, options.band);
   const KnownMap known = known_map(map, grid);
   const FloorGrid& floor = known.grid;
@@ -243,7 +271,10 @@ void add_grid(CLI::App& map) {
   auto options = std::make_shared<MapGridArguments>();
   CLI::App* command =
       map.add_subcommand("grid", "The part of a saved octree that obstructs a robot.");
-  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command
+      ->add_option("map", options->map,
+                   "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
+      ->required();
   command->add_option("--out", options->out, "Path without extension: .pgm and .yaml are written")
       ->required();
   add_band(*command, options->band);
@@ -275,7 +306,10 @@ void add_objects(CLI::App& map) {
   auto options = std::make_shared<MapObjectsArguments>();
   CLI::App* command =
       map.add_subcommand("objects", "The objects of a saved octree, or those of a name.");
-  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command
+      ->add_option("map", options->map,
+                   "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
+      ->required();
   command->add_option("name", options->name, "Class or object: refrigerator, \"chair 2\"")
       ->check(not_empty());
   command->add_option("--out", options->out, "JSON file of all objects")->check(not_empty());
@@ -287,7 +321,10 @@ void add_messages(CLI::App& map) {
   auto options = std::make_shared<MapMessagesArguments>();
   CLI::App* command = map.add_subcommand(
       "messages", "A saved octree for RViz: grid, costs, objects as markers, voxels.");
-  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command
+      ->add_option("map", options->map,
+                   "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
+      ->required();
   command->add_option("--out", options->out, "File: NAME.mcap for ROS 2, NAME.bag for ROS 1")
       ->required();
   add_band(*command, options->band);
@@ -300,7 +337,10 @@ void add_plan(CLI::App& map) {
   CLI::App* command = map.add_subcommand("plan",
                                          "A path over the floor of a saved octree: short, and away "
                                          "from obstacles where there is room.");
-  command->add_option("map", options->map, "map.ot of `map build` or `bench`")->required();
+  command
+      ->add_option("map", options->map,
+                   "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
+      ->required();
   command->add_option("--from", options->from, "Start: x y, m")
       ->expected(2)
       ->check(number_between(-1e6, 1e6))

@@ -52,10 +52,14 @@ void train(VocabularyArguments& options) {
              hex(vocabulary.digest()));
 }
 
-void convert(const VocabularyArguments& options) {
+void convert(VocabularyArguments options) {
   require_writable(options.out, {options.file});
+  resolve(options.file, Shipped::kVocabulary);
   const Vocabulary vocabulary = load_timed(options.file);
-  vocabulary.save(options.out);
+  if (std::filesystem::path(options.out).extension() == ".txt")
+    vocabulary.save_dbow2(options.out);
+  else
+    vocabulary.save(options.out);
   load_timed(options.out);
 }
 
@@ -137,10 +141,15 @@ void add_vocabulary(CLI::App& app) {
   t->callback([options] { train(*options); });
 
   CLI::App* c = command->add_subcommand(
-      "convert", "Writes a vocabulary in DBoW2's text format (ORBvoc.txt) as one of our own.");
-  c->add_option("file", options->file, "Vocabulary file")->required();
-  c->add_option("--out", options->out, "Vocabulary file to write")->required();
-  c->footer("Example:\n  modelhouse vocabulary convert ORBvoc.txt --out ORBvoc.mhvoc");
+      "convert", "Between DBoW2's text format (ORBvoc.txt) and our own, either way.");
+  c->add_option("file", options->file, "Vocabulary file, or the name of the shipped one")
+      ->required();
+  c->add_option("--out", options->out,
+                "Vocabulary file to write: NAME.txt in DBoW2's text format, any other in ours")
+      ->required();
+  c->footer(
+      "Examples:\n  modelhouse vocabulary convert ORBvoc.txt --out ORBvoc.mhvoc\n"
+      "  modelhouse vocabulary convert vocabulary --out out/vocabulary.txt");
   c->callback([options] { convert(*options); });
 
   CLI::App* i = command->add_subcommand("info", "Prints size, weights, origin and digest.");

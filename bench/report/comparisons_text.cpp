@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report/comparisons_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -65,6 +66,14 @@ std::string heading(const Suite& suite, const SystemPair& systems, std::size_t l
                      counted(family_size(comparisons), "comparison"), name(suite.measure), what);
 }
 
+/// What an interval that ends at 0 means, where there is one: it seems nearly significant.
+std::string zero_text(std::span<const Comparison> comparisons) {
+  if (std::ranges::none_of(comparisons, ends_at_zero)) return "";
+  return "  an interval ends at 0 where few differ: resamples without these show no difference; p "
+         "is "
+         "of the signs of these few\n";
+}
+
 }  // namespace
 
 std::string interval(const Comparison& c) {
@@ -81,7 +90,7 @@ std::string comparisons_text(const Suite& suite, const Family& family) {
   const PairNames names(suite, family.systems);
   for (const Comparison& c : family.comparisons)
     text += comparison_line(names, c) + margin_line(suite, names, c);
-  return text;
+  return text + zero_text(family.comparisons);
 }
 
 std::string comparisons_text(const Suite& suite, const SceneFamily& family) {
@@ -96,7 +105,7 @@ std::string comparisons_text(const Suite& suite, const SceneFamily& family) {
                           counted(scenes, "scene"));
     text += comparison_line(names, c) + margin_line(suite, names, c);
   }
-  return text;
+  return text + zero_text(family.comparisons);
 }
 
 }  // namespace mh

@@ -268,6 +268,10 @@ void holm(std::span<Comparison> family) {
   }
 }
 
+bool ends_at_zero(const Comparison& c) {
+  return c.difference != 0 && (c.low == 0 || c.high == 0);
+}
+
 Verdict verdict(const Comparison& c) {
   if (!counts(c) || c.p_holm >= 0.05 || (c.low <= 0 && c.high >= 0)) return Verdict::kUndecided;
   return (c.difference > 0) == c.more_is_better ? Verdict::kFirstBetter : Verdict::kSecondBetter;

@@ -101,6 +101,11 @@ std::size_t family_size(std::span<const Comparison> comparisons);
 /// Applies Holm's correction (Holm, 1979) in place to the comparisons for which counts() holds.
 void holm(std::span<Comparison> comparisons);
 
+/// Whether the interval of a difference ends at 0 exactly. So few observations differ that 2.5 % of
+/// the resamples or more miss them or see them cancel, while p asks how often the signs of these
+/// few would fall like this: two of two that agree give an end at 0 and p = 0.5.
+bool ends_at_zero(const Comparison& comparison);
+
 /// Whether a result may be called *better*, and which system's.
 enum class Verdict { kUndecided, kFirstBetter, kSecondBetter };
 Verdict verdict(const Comparison& comparison);

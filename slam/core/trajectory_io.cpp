@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,8 +15,8 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
-#include "slam/core/legible.hpp"
 #include "slam/core/number_in.hpp"
+#include "slam/core/pose_collector.hpp"
 #include "slam/core/pose_columns.hpp"
 #include "slam/core/text_file.hpp"
 
@@ -26,41 +25,14 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-/// Why a line gives no pose.
-enum class Fault { kNotFinite, kZero, kRepeated, kNoPose };
-
-struct FaultWords {
-  const char *one, *more;
-};
-constexpr std::array<FaultWords, 4> kFaultWords = {{{"is not finite", "are not finite"},
-                                                    {"has no rotation", "have no rotation"},
-                                                    {"repeats a stamp", "repeat a stamp"},
-                                                    {"is no pose", "are no poses"}}};
-
-class BadLine : public InputError {
- public:
-  BadLine(const std::string& what, Fault fault) : InputError(what), fault(fault) {}
-  Fault fault;
-};
-
-/// Position of a line, for messages.
-struct Place {
-  const std::string& file;
-  int line;
-
-  [[noreturn]] void fail(const std::string& what, Fault fault = Fault::kNoPose) const {
-    throw BadLine(fmt::format("{}:{}: {}", file, line, legible(what)), fault);
-  }
-};
-
-double parse_number(std::string_view word, const char* field, const Place& place) {
+double parse_number(std::string_view word, const char* field, const LinePlace& place) {
   const auto value = number_in(without_plus(word));
   // An empty value between commas is how tables write NaN.
   if (!value)
     place.fail(fmt::format("{}: '{}' is not a number", field, word),
-               word.empty() ? Fault::kNotFinite : Fault::kNoPose);
+               word.empty() ? PoseFault::kNotFinite : PoseFault::kNoPose);
   if (!std::isfinite(*value))
-    place.fail(fmt::format("{}: '{}' is not finite", field, word), Fault::kNotFinite);
+    place.fail(fmt::format("{}: '{}' is not finite", field, word), PoseFault::kNotFinite);
   return *value;
 }
 
@@ -104,7 +76,7 @@ struct Layout {
   char separator = ' ';
   PoseColumns columns;
   int first_line = std::numeric_limits<int>::max();  ///< of data
-  bool more_may_follow = false;  ///< values behind those of the pose
+  bool more_may_follow = false;                      ///< values behind those of the pose
 };
 
 /// The first line that is neither a comment nor names; what the lines before it say of columns
@@ -138,13 +110,13 @@ Layout layout_of(const std::string& text, const std::string& name) {
         return layout;
       }
     } catch (const InputError& error) {
-      Place{name, number}.fail(error.what());
+      LinePlace{name, number}.fail(error.what());
     }
   }
   return layout;
 }
 
-Words words_of_pose(std::string_view line, const Layout& layout, const Place& place) {
+Words words_of_pose(std::string_view line, const Layout& layout, const LinePlace& place) {
   Words words = words_of_data(line, layout.separator);
   const std::size_t count = layout.columns.count;
   if (!words.empty() && (words.size() < count || (words.size() > count && !layout.more_may_follow)))
@@ -201,10 +173,10 @@ const char* unit_name(int unit) {
                       : "nanoseconds";
 }
 
-Stamp stamp_in(const Words& words, const PoseColumns& columns, const Place& place) {
+Stamp stamp_in(const Words& words, const PoseColumns& columns, const LinePlace& place) {
   const std::string_view word = words[columns.stamp];
   if (const auto value = number_in(word); value && !std::isfinite(*value))
-    place.fail(fmt::format("stamp: '{}' is not finite", word), Fault::kNotFinite);
+    place.fail(fmt::format("stamp: '{}' is not finite", word), PoseFault::kNotFinite);
   try {
     const Stamp rest_ns = columns.nanoseconds ? parse_stamp(words[*columns.nanoseconds], -9) : 0;
     return parse_stamp(word, *columns.unit) + rest_ns;
@@ -213,7 +185,7 @@ Stamp stamp_in(const Words& words, const PoseColumns& columns, const Place& plac
   }
 }
 
-TimedPose pose_in(const Words& words, const PoseColumns& columns, const Place& place) {
+TimedPose pose_in(const Words& words, const PoseColumns& columns, const LinePlace& place) {
   static constexpr std::array<const char*, 7> kFields = {"tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   const Stamp stamp_ns = stamp_in(words, columns, place);
   std::array<double, 7> v{};
@@ -223,76 +195,11 @@ TimedPose pose_in(const Words& words, const PoseColumns& columns, const Place& p
   const Eigen::Vector3d position_m(v[0], v[1], v[2]);
   if (std::abs(rotation.norm() - 1.0) > 0.1)
     place.fail(fmt::format("quaternion: norm {:g}, expected 1", rotation.norm()),
-               rotation.norm() == 0 ? Fault::kZero : Fault::kNoPose);
+               rotation.norm() == 0 ? PoseFault::kZero : PoseFault::kNoPose);
   if (const double far_m = position_m.cwiseAbs().maxCoeff(); far_m > kFarthestPose_m)
     place.fail(fmt::format("position: lies {:g} m from the origin", far_m));
   return {stamp_ns, SE3(rotation, position_m)};
 }
-
-/// The poses of a file in the order of their stamps, and what was left out.
-class PoseCollector {
- public:
-  /// @param strict  nothing may be left out, nor come after a later stamp
-  PoseCollector(const std::string& name, bool strict) : name_(name), strict_(strict) {}
-
-  void add(const TimedPose& pose, std::string_view word, const Place& place) {
-    const bool later = poses_.empty() || pose.stamp_ns > latest_ns_;
-    if (!later && (strict_ || stamps_.contains(pose.stamp_ns)))
-      place.fail(fmt::format("stamp: {} does not come after {}", word, format_stamp(latest_ns_)),
-                 Fault::kRepeated);
-    if (!later) ++early_;
-    latest_ns_ = later ? pose.stamp_ns : latest_ns_;
-    stamps_.insert(stamps_.end(), pose.stamp_ns);
-    poses_.push_back(pose);
-  }
-  void leave_out(const BadLine& line) {
-    if (strict_) throw InputError(line);
-    if (left_out() == 0) first_fault_ = std::string(line.what()).substr(name_.size() + 1);
-    if (line.fault == Fault::kNoPose && count(Fault::kNoPose) == 0) first_no_pose_ = line.what();
-    ++counts_[static_cast<std::size_t>(line.fault)];
-  }
-  /// @throws InputError if more lines are no poses than are: the file is something else
-  Trajectory finish(std::vector<std::string>* notes) {
-    if (count(Fault::kNoPose) > poses_.size()) throw InputError(first_no_pose_);
-    std::ranges::stable_sort(poses_, {}, &TimedPose::stamp_ns);
-    if (left_out() > 0) notes->push_back(note());
-    if (early_ > 0)
-      notes->push_back(fmt::format("{}: {} behind a later one and {} put in order of time", name_,
-                                   counted(early_, "pose stands", "poses stand"),
-                                   early_ == 1 ? "is" : "are"));
-    return std::move(poses_);
-  }
-  /// "; line 5: ..." for a message; empty if nothing was left out
-  std::string first_fault() const { return first_fault_.empty() ? "" : "; line " + first_fault_; }
-
- private:
-  std::size_t count(Fault fault) const { return counts_[static_cast<std::size_t>(fault)]; }
-  std::size_t left_out() const {
-    std::size_t all = 0;
-    for (const std::size_t each : counts_) all += each;
-    return all;
-  }
-  std::string note() const {
-    std::string kinds;
-    for (std::size_t k = 0; k < counts_.size(); ++k)
-      if (counts_[k] > 0)
-        kinds += (kinds.empty() ? "" : ", ") +
-                 fmt::format("{} {}", counts_[k],
-                             counts_[k] == 1 ? kFaultWords[k].one : kFaultWords[k].more);
-    return fmt::format("{}: {} of {} {} left out: {}; the first in line {}", name_, left_out(),
-                       counted(left_out() + poses_.size(), "pose"), left_out() == 1 ? "is" : "are",
-                       kinds, first_fault_);
-  }
-
-  const std::string& name_;
-  bool strict_;
-  Trajectory poses_;
-  std::set<Stamp> stamps_;
-  Stamp latest_ns_ = 0;
-  std::size_t early_ = 0;  ///< poses behind a later one
-  std::array<std::size_t, kFaultWords.size()> counts_{};
-  std::string first_fault_, first_no_pose_;
-};
 
 /// @param notes  null: nothing is left out
 /// @param may_be_empty  whether a file without poses is one
@@ -310,12 +217,12 @@ Trajectory parse(const std::string& text, const std::string& name, std::vector<s
   PoseCollector collector(name, notes == nullptr);
   for_each_line(text, [&](std::string_view line, int number) {
     if (number < layout.first_line) return true;
-    const Place place{name, number};
+    const LinePlace place{name, number};
     try {
       const Words words = words_of_pose(line, layout, place);
       if (!words.empty())
         collector.add(pose_in(words, layout.columns, place), words[layout.columns.stamp], place);
-    } catch (const BadLine& fault) {
+    } catch (const BadPose& fault) {
       collector.leave_out(fault);
     }
     return true;
@@ -363,7 +270,7 @@ Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp p
   for_each_line(text, [&](std::string_view line, int number) {
     const Words words = words_of_data(line, ' ');
     if (words.empty()) return true;
-    const Place place{name, number};
+    const LinePlace place{name, number};
     if (words.size() != 12)
       place.fail(fmt::format("pose: {}, expected 12 (3x4 matrix by rows)",
                              counted(words.size(), "value")));

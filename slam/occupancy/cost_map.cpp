@@ -41,7 +41,8 @@ CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config) {
   const int w = grid.cells.width(), h = grid.cells.height();
   CostMap map{.costs = Grid2d<std::uint8_t>(w, h, kFreeCost),
               .resolution_m = grid.resolution_m,
-              .origin_m = grid.origin_m};
+              .origin_m = grid.origin_m,
+              .yaw_rad = grid.yaw_rad};
 
   struct Around {
     int x, y;
@@ -84,7 +85,8 @@ CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config) {
 OccupancyGrid as_published(const CostMap& map) {
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(map.costs.width(), map.costs.height()),
                      .resolution_m = map.resolution_m,
-                     .origin_m = map.origin_m};
+                     .origin_m = map.origin_m,
+                     .yaw_rad = map.yaw_rad};
   std::transform(map.costs.begin(), map.costs.end(), grid.cells.begin(), [](std::uint8_t cost) {
     if (cost == kUnknownCost) return kUnknownCell;
     if (cost == kLethalCost) return kOccupiedCell;
@@ -95,7 +97,7 @@ OccupancyGrid as_published(const CostMap& map) {
 }
 
 void save_cost_map(const CostMap& map, const std::filesystem::path& stem) {
-  write_map_image({map.costs, map.resolution_m, map.origin_m}, stem, "raw");
+  write_map_image({map.costs, map.resolution_m, map.origin_m, map.yaw_rad, {}}, stem, "raw");
 }
 
 CostMap load_cost_map(const std::filesystem::path& yaml_file) {
@@ -109,7 +111,8 @@ CostMap load_cost_map(const std::filesystem::path& yaml_file) {
   yaml.finish();
   return {.costs = std::move(image.levels),
           .resolution_m = image.resolution_m,
-          .origin_m = image.origin_m};
+          .origin_m = image.origin_m,
+          .yaw_rad = image.yaw_rad};
 }
 
 }  // namespace mh

@@ -25,6 +25,7 @@ struct CostMap {
   Grid2d<std::uint8_t> costs;
   double resolution_m = 0.05;
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
+  double yaw_rad = 0;
 };
 
 /// The cost at a distance from the nearest obstacle, as Nav2's inflation layer computes it: 254 at

@@ -13,6 +13,7 @@
 
 #include "slam/core/grid2d.hpp"
 #include "slam/core/yaml.hpp"
+#include "slam/occupancy/occupancy_grid.hpp"
 
 namespace mh {
 
@@ -21,6 +22,8 @@ struct MapImage {
   Grid2d<std::uint8_t> levels;
   double resolution_m = 0.05;
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
+  double yaw_rad = 0;       ///< of the rows, about the origin
+  std::vector<bool> clear;  ///< pixels that are not opaque, in the order of levels; empty: none
 };
 
 /// stem.pgm and stem.yaml.
@@ -36,10 +39,12 @@ void write_map_image(const MapImage& map, const std::filesystem::path& stem, con
 /// The image that a map's YAML file names.
 std::filesystem::path image_of_map(const std::filesystem::path& yaml_file);
 
-/// Reads the keys image, resolution and origin, and the image. The caller reads the others.
+/// Reads the keys image, resolution and origin, and the image: a PGM, binary or text, whose levels
+/// are scaled to 0 to 255, or what `decode` knows. The caller reads the other keys.
 /// @param warnings  receives what was ignored; may be null
 /// @throws InputError naming file, line, field and value.
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
-                        std::vector<std::string>* warnings = nullptr);
+                        std::vector<std::string>* warnings = nullptr,
+                        const PictureDecoder& decode = nullptr);
 
 }  // namespace mh

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstring>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 
 #include "slam/core/counted.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/legible.hpp"
 #include "slam/core/lower_case.hpp"
 #include "slam/core/suggest.hpp"
 #include "slam/core/yaml.hpp"
@@ -29,7 +31,7 @@ constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 constexpr std::uint8_t kUnknownRaw = 255;
 
 constexpr std::string_view kOurs = "# Written by modelhouse";
-constexpr double kFurthest_m = 1e6;  // of an origin
+constexpr double kFurthest_m = 1e8;  // of an origin: UTM's coordinates are within
 
 /// A word as YAML writes it: in quotes if it could be read as anything but itself.
 std::string yaml_word(const std::string& word) {
@@ -47,41 +49,113 @@ std::uint8_t gray(std::int8_t cell, GridMode mode) {
 constexpr std::array kKeys = {"image",           "mode",       "resolution", "origin", "negate",
                               "occupied_thresh", "free_thresh"};
 
-/// Reads a binary PGM, upper row first.
-Grid2d<std::uint8_t> read_pgm(const std::filesystem::path& file,
-                              std::vector<std::string>* warnings) {
-  const std::string content = read_file(file);
+/// A PGM's numbers before its pixels, and where these begin.
+struct PgmHeader {
+  bool is_text = false;
+  int width = 0, height = 0, brightest = 0;
+  std::size_t end = 0;
+};
+
+PgmHeader read_pgm_header(const std::string& content, const std::string& file) {
   std::istringstream in(content);
   std::string magic;
-  int numbers[3] = {0, 0, 0};  // width, height, brightest
+  PgmHeader header;
   in >> magic;
-  for (int& number : numbers) {
+  for (int* number : {&header.width, &header.height, &header.brightest}) {
     while ((in >> std::ws).peek() == '#') in.ignore(1 << 20, '\n');
-    in >> number;
+    in >> *number;
   }
-  const auto [width, height, brightest] = numbers;
-  if (!in || magic != "P5" || brightest != 255)
-    throw InputError(fmt::format(
-        "{}: is not a binary 8-bit PGM image (P5, maximum 255), the only kind that is read",
-        file.string()));
-  if (width < 1 || height < 1 || width > 65536 || height > 65536)
+  if (!in || header.brightest < 1 || header.brightest > 65535)
+    throw InputError(file + ": is no PGM image: width, height and a maximum of 1 to 65535 lead it");
+  if (header.width < 1 || header.height < 1 || header.width > 65536 || header.height > 65536)
     throw InputError(
-        fmt::format("{}: {} x {} pixels, not 1 to 65536 each", file.string(), width, height));
-  const int blank = in.get();
-  const std::string_view pixels = std::string_view(content).substr(
-      std::min(content.size(), static_cast<std::size_t>(in.tellg())));
-  const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (pixels.size() < size) throw InputError(fmt::format("{}: is truncated", file.string()));
+        fmt::format("{}: {} x {} pixels, not 1 to 65536 each", file, header.width, header.height));
+  header.is_text = magic == "P2";
+  header.end = in.get() == std::istringstream::traits_type::eof()
+                   ? content.size()
+                   : static_cast<std::size_t>(in.tellg());
+  return header;
+}
+
+/// The pixels of a text PGM; '#' starts a comment.
+std::vector<int> text_pixels(std::string_view text, std::size_t size, const std::string& file) {
+  std::vector<int> pixels;
+  if (text.size() + 1 < 2 * size) throw InputError(file + ": is truncated");
+  pixels.reserve(size);
+  while (pixels.size() < size) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n\v\f");
+    if (begin == std::string_view::npos) throw InputError(file + ": is truncated");
+    text.remove_prefix(begin);
+    if (text.starts_with('#')) {
+      text.remove_prefix(std::min(text.find('\n'), text.size()));
+      continue;
+    }
+    const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n\v\f#"));
+    int value = 0;
+    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || stop != word.data() + word.size())
+      throw InputError(fmt::format("{}: pixel {} is '{}', not a number", file, pixels.size() + 1,
+                                   legible(std::string(word.substr(0, 20)))));
+    pixels.push_back(value);
+    text.remove_prefix(word.size());
+  }
+  return pixels;
+}
+
+std::vector<int> binary_pixels(const std::string& content, const PgmHeader& header,
+                               const std::string& file, std::vector<std::string>* warnings) {
+  std::string_view bytes = std::string_view(content).substr(header.end);
+  const std::size_t size =
+      static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
+  const std::size_t width = header.brightest > 255 ? 2 : 1;
+  if (bytes.size() < width * size) throw InputError(file + ": is truncated");
   // One blank separates header and pixels; a line that ends in CR LF has two.
-  const bool two_blanks = pixels.size() == size + 1 && pixels[0] == '\n' && blank == '\r';
-  const std::size_t left = pixels.size() - size - (two_blanks ? 1 : 0);
+  if (bytes.size() == width * size + 1 && bytes[0] == '\n' && content[header.end - 1] == '\r')
+    bytes.remove_prefix(1);
+  const std::size_t left = bytes.size() - width * size;
   if (left > 0 && warnings != nullptr)
-    warnings->push_back(fmt::format("{}: {} behind its {} x {} pixels {} ignored", file.string(),
-                                    counted(left, "byte"), width, height,
+    warnings->push_back(fmt::format("{}: {} behind its {} x {} pixels {} ignored", file,
+                                    counted(left, "byte"), header.width, header.height,
                                     left == 1 ? "is" : "are"));
-  Grid2d<std::uint8_t> image(width, height);
-  std::memcpy(image.data(), pixels.data() + (two_blanks ? 1 : 0), image.size());
-  return image;
+  std::vector<int> pixels(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
+    pixels[i] = width == 1 ? byte(i) : byte(2 * i) << 8 | byte(2 * i + 1);  // the high one first
+  }
+  return pixels;
+}
+
+/// Reads a PGM, binary or text, its levels scaled to 0 to 255.
+GrayPicture read_pgm(const std::string& content, const std::string& file,
+                     std::vector<std::string>* warnings) {
+  const PgmHeader header = read_pgm_header(content, file);
+  GrayPicture picture{Grid2d<std::uint8_t>(), {}};
+  const std::size_t size =
+      static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
+  const std::vector<int> pixels =
+      header.is_text ? text_pixels(std::string_view(content).substr(header.end), size, file)
+                     : binary_pixels(content, header, file, warnings);
+  picture.levels = Grid2d<std::uint8_t>(header.width, header.height);
+  std::ranges::transform(pixels, picture.levels.begin(), [&](int value) {
+    if (value < 0 || value > header.brightest)
+      throw InputError(
+          fmt::format("{}: a pixel is {}, its maximum {}", file, value, header.brightest));
+    return static_cast<std::uint8_t>((255 * value + header.brightest / 2) / header.brightest);
+  });
+  return picture;
+}
+
+GrayPicture read_picture(const std::filesystem::path& file, std::vector<std::string>* warnings,
+                         const PictureDecoder& decode) {
+  const std::string content = read_file(file);
+  if (content.starts_with("P5") || content.starts_with("P2"))
+    return read_pgm(content, file.string(), warnings);
+  if (!decode) throw InputError(file.string() + ": is no PGM image (P5 or P2)");
+  try {
+    return decode(content);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
 }
 
 std::filesystem::path image_named(YamlReader& yaml, const std::filesystem::path& yaml_file) {
@@ -96,7 +170,7 @@ std::filesystem::path image_of_map(const std::filesystem::path& yaml_file) {
 }
 
 std::optional<Eigen::Vector2i> OccupancyGrid::cell_of(const Eigen::Vector2d& place_m) const {
-  const Eigen::Vector2d p = (place_m - origin_m) / resolution_m;
+  const Eigen::Vector2d p = Eigen::Rotation2Dd(-yaw_rad) * (place_m - origin_m) / resolution_m;
   if (!(p.array() >= 0).all() || p.x() >= cells.width() || p.y() >= cells.height())
     return std::nullopt;
   return p.array().floor().cast<int>().matrix();
@@ -106,7 +180,7 @@ void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& ste
   Grid2d<std::uint8_t> image(grid.cells.width(), grid.cells.height());
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) image(x, y) = gray(grid.cells(x, y), mode);
-  write_map_image({image, grid.resolution_m, grid.origin_m}, stem,
+  write_map_image({image, grid.resolution_m, grid.origin_m, grid.yaw_rad, {}}, stem,
                   mode == GridMode::kRaw ? "raw" : "trinary");
 }
 
@@ -140,35 +214,42 @@ void write_map_image(const MapImage& map, const std::filesystem::path& stem, con
   for (int y = height - 1; y >= 0; --y)
     for (const std::uint8_t level : map.levels.row(y)) image.push_back(static_cast<char>(level));
   write_atomically(pgm, image);
-  write_atomically(
-      yaml, fmt::format("{}\nimage: {}\nmode: {}\nresolution: {}\n"
-                        "origin: [{}, {}, 0]\nnegate: 0\noccupied_thresh: {}\n"
-                        "free_thresh: {}\n",
-                        kOurs, yaml_word(pgm.filename().string()), mode, map.resolution_m,
-                        map.origin_m.x(), map.origin_m.y(), kOccupiedThreshold, kFreeThreshold));
+  write_atomically(yaml, fmt::format("{}\nimage: {}\nmode: {}\nresolution: {}\n"
+                                     "origin: [{}, {}, {}]\nnegate: 0\noccupied_thresh: {}\n"
+                                     "free_thresh: {}\n",
+                                     kOurs, yaml_word(pgm.filename().string()), mode,
+                                     map.resolution_m, map.origin_m.x(), map.origin_m.y(),
+                                     map.yaw_rad, kOccupiedThreshold, kFreeThreshold));
 }
 
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
-                        std::vector<std::string>* warnings) {
+                        std::vector<std::string>* warnings, const PictureDecoder& decode) {
   const std::filesystem::path file = image_named(yaml, yaml_file);
   MapImage map;
   map.resolution_m = yaml.number("resolution", 1e-4, 100.0);
   const std::vector<double> origin = yaml.at("origin").as_numbers(3);
-  if (origin[2] != 0)
-    yaml.at("origin").fail(fmt::format("a map turned by {} rad is not supported", origin[2]));
   map.origin_m = {origin[0], origin[1]};
+  map.yaw_rad = origin[2];
+  if (std::abs(map.yaw_rad) > 2 * std::numbers::pi && warnings != nullptr)
+    warnings->push_back(fmt::format("{}:{}: origin: its turn of {} is read in radians",
+                                    yaml_file.string(), yaml.at("origin").line(), map.yaw_rad));
   if (map.origin_m.cwiseAbs().maxCoeff() > kFurthest_m)
     yaml.at("origin").fail(
         fmt::format("({}, {}) m is farther than {} m", origin[0], origin[1], kFurthest_m));
-  const Grid2d<std::uint8_t> image = read_pgm(file, warnings);
-  map.levels = Grid2d<std::uint8_t>(image.width(), image.height());
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) map.levels(x, y) = image(x, image.height() - 1 - y);
+  const GrayPicture picture = read_picture(file, warnings, decode);
+  const int width = picture.levels.width(), height = picture.levels.height();
+  map.levels = Grid2d<std::uint8_t>(width, height);
+  for (int y = height - 1; y >= 0; --y) {
+    for (int x = 0; x < width; ++x) map.levels(x, height - 1 - y) = picture.levels(x, y);
+    if (picture.clear.empty()) continue;
+    const auto row = picture.clear.begin() + static_cast<std::ptrdiff_t>(y) * width;
+    map.clear.insert(map.clear.end(), row, row + width);
+  }
   return map;
 }
 
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
-                              std::vector<std::string>* warnings) {
+                              std::vector<std::string>* warnings, const PictureDecoder& decode) {
   YamlReader yaml = YamlReader::load(yaml_file);
   for (const auto& [key, value] : yaml.entries())
     if (warnings != nullptr && std::ranges::find(kKeys, key) == kKeys.end())
@@ -176,9 +257,9 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
                                       yaml_file.string(), value.line(), key,
                                       did_you_mean(key, words_of(kKeys))));
   const std::string mode = lower_case(yaml.string("mode", "trinary"));  // as nav2_map_server
-  if (mode != "trinary" && mode != "raw")
-    yaml.at("mode").fail("'" + mode + "' is not supported, only trinary and raw are");
-  const MapImage map = read_map_image(yaml, yaml_file, warnings);
+  if (mode != "trinary" && mode != "raw" && mode != "scale")
+    yaml.at("mode").fail("'" + mode + "' is not supported, only trinary, scale and raw are");
+  const MapImage map = read_map_image(yaml, yaml_file, warnings, decode);
   const std::string negated = lower_case(yaml.string("negate"));
   const bool negate = negated == "1" || negated == "true";  // map_server takes both
   if (!negate && negated != "0" && negated != "false")
@@ -189,10 +270,11 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
     yaml.at("free_thresh").fail(fmt::format("{} is above occupied_thresh, {}", free, occupied));
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(map.levels.width(), map.levels.height()),
                      .resolution_m = map.resolution_m,
-                     .origin_m = map.origin_m};
-  std::size_t out_of_range = 0;
+                     .origin_m = map.origin_m,
+                     .yaw_rad = map.yaw_rad};
+  std::size_t out_of_range = 0, pixel = 0;
   for (int y = 0; y < grid.cells.height(); ++y)
-    for (int x = 0; x < grid.cells.width(); ++x) {
+    for (int x = 0; x < grid.cells.width(); ++x, ++pixel) {
       const std::uint8_t level = map.levels(x, y);
       if (mode == "raw") {  // as nav2_map_server: what is not 0 to 100 is unknown
         out_of_range += level > kOccupiedCell && level != kUnknownRaw ? 1 : 0;
@@ -201,7 +283,13 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
       }
       const double p = negate ? level / 255.0 : 1.0 - level / 255.0;
       // A level on a threshold counts as beyond it, on both as free: as nav2_map_server.
-      grid.cells(x, y) = p <= free ? kFreeCell : p >= occupied ? kOccupiedCell : kUnknownCell;
+      grid.cells(x, y) =
+          !map.clear.empty() && map.clear[pixel] ? kUnknownCell
+          : p <= free                            ? kFreeCell
+          : p >= occupied                        ? kOccupiedCell
+          : mode == "scale"
+              ? static_cast<std::int8_t>(std::lround(100 * (p - free) / (occupied - free)))
+              : kUnknownCell;
     }
   if (out_of_range > 0 && warnings != nullptr)
     warnings->push_back(

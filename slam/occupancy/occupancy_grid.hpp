@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "slam/core/grid2d.hpp"
 
@@ -18,16 +21,19 @@ inline constexpr std::int8_t kOccupiedCell = 100;
 inline constexpr std::int8_t kUnknownCell = -1;
 
 /// The floor seen from above. Cell (x, y) covers [x, x+1) x [y, y+1) times resolution_m from
-/// origin_m; so row 0 is the southernmost and y grows north (images are flipped on writing).
+/// origin_m, along axes turned by yaw_rad; so without yaw row 0 is the southernmost and y grows
+/// north (images are flipped on writing).
 struct OccupancyGrid {
   Grid2d<std::int8_t> cells;
   double resolution_m = 0.05;
-  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< world position of the corner of cell (0,
-                                                       ///< 0)
+  /// World position of the corner of cell (0, 0).
+  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
+  double yaw_rad = 0;  ///< world_from_grid, counterclockwise about that corner
 
   /// World position of the center of a cell.
   Eigen::Vector2d center_m(int x, int y) const {
-    return origin_m + resolution_m * Eigen::Vector2d(x + 0.5, y + 0.5);
+    return origin_m +
+           Eigen::Rotation2Dd(yaw_rad) * (resolution_m * Eigen::Vector2d(x + 0.5, y + 0.5));
   }
   /// The cell that contains a place; nullopt outside.
   std::optional<Eigen::Vector2i> cell_of(const Eigen::Vector2d& place_m) const;
@@ -44,11 +50,22 @@ enum class GridMode {
 void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& stem,
                      GridMode mode = GridMode::kTrinary);
 
-/// Reads such a pair by its YAML file: trinary or raw, no rotation, a binary 8-bit PGM.
+/// Gray levels of an image, upper row first, and which pixels are not fully opaque.
+struct GrayPicture {
+  Grid2d<std::uint8_t> levels;
+  std::vector<bool> clear;  ///< empty: all are opaque
+};
+/// Decodes the bytes of an image that is no PGM. @throws InputError stating what is wrong with it
+using PictureDecoder = std::function<GrayPicture(const std::string& bytes)>;
+
+/// Reads a map by its YAML file as nav2_map_server does: in mode trinary, scale or raw (which it
+/// documents), turned or not; pixels that are not opaque are unknown but in mode raw.
+/// @param decode    of images that are no PGM; null: they are refused
 /// @param warnings  receives what was ignored: keys that map_server does not define, bytes behind
 ///                  the image, values out of range; may be null
 /// @throws InputError naming file, line, field and value.
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
-                              std::vector<std::string>* warnings = nullptr);
+                              std::vector<std::string>* warnings = nullptr,
+                              const PictureDecoder& decode = nullptr);
 
 }  // namespace mh

@@ -99,6 +99,10 @@ class VoxelMap {
   void save_bt(const std::filesystem::path& file) const;
   void save_ot(const std::filesystem::path& file) const;
   static VoxelMap load_ot(const std::filesystem::path& file);
+  /// Loads an octree of any program: OcTree or ColorOcTree, .ot or .bt. Without our counts, each
+  /// voxel is one that a single view hit or looked through, of no class.
+  /// @param notes  receives a line if it is so @throws InputError naming the file
+  static VoxelMap load_octree(const std::filesystem::path& file, std::vector<std::string>& notes);
 
  private:
   struct Impl;

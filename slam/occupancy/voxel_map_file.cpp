@@ -15,7 +15,6 @@
 //        content alone)
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <iostream>
 #include <sstream>
 
@@ -26,6 +25,8 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/occupancy/counts_reader.hpp"
+#include "slam/occupancy/octomap_file.hpp"
 #include "slam/occupancy/voxel_tree.hpp"
 
 namespace mh {
@@ -46,12 +47,13 @@ class QuietErrors {
 
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie");
 
-constexpr std::string_view kTreeMagic = "# Octomap OcTree file",
-                           kBinaryMagic = "# Octomap OcTree binary file";
 constexpr std::string_view kFloorlessMagic = "modelhouse voxel counts 4\n",
                            kCountsMagic = "modelhouse voxel counts 3\n",
                            kSecondCountsMagic = "modelhouse voxel counts 2\n",
                            kFirstCountsMagic = "modelhouse voxel counts 1\n";
+
+/// A full tree of more would fill the memory of a small machine.
+constexpr std::size_t kMostForeignVoxels = 30'000'000;
 
 template <class T>
 void put(std::string& bytes, const T& value) {
@@ -66,43 +68,6 @@ void put_number(std::string& bytes, unsigned number) {
   for (; number >= 128; number >>= 7U) bytes.push_back(static_cast<char>(number | 128U));
   bytes.push_back(static_cast<char>(number));
 }
-
-/// Takes what put() wrote from the front of a byte string.
-class CountsReader {
- public:
-  CountsReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
-  bool at_end() const { return bytes_.empty(); }
-  [[noreturn]] void fail(std::string_view what) const {
-    throw InputError(fmt::format("{}: is damaged: {}", name_, what));
-  }
-  std::string_view take(std::size_t size) {
-    if (size > bytes_.size()) fail("it is truncated");
-    const std::string_view front = bytes_.substr(0, size);
-    bytes_.remove_prefix(size);
-    return front;
-  }
-  template <class T>
-  T get() {
-    T value;
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-    return value;
-  }
-  std::uint16_t number() {
-    unsigned value = 0;
-    for (unsigned shift = 0;; shift += 7) {
-      const auto byte = static_cast<unsigned char>(take(1)[0]);
-      if (shift > 14) fail("a number is too long");
-      value |= (byte & 127U) << shift;
-      if (byte < 128) break;
-    }
-    if (value > UINT16_MAX) fail("a number is too large");
-    return static_cast<std::uint16_t>(value);
-  }
-
- private:
-  std::string_view bytes_;
-  const std::string& name_;
-};
 
 /// The place of a voxel in its block, and the block.
 std::pair<Eigen::Vector3i, unsigned> block_and_place(const octomap::OcTreeKey& key) {
@@ -230,50 +195,24 @@ void read_block(CountsReader& in, VoxelTree& tree) {
   if (!tree.nodeHasChildren(&block)) in.fail("an empty block");
 }
 
-/// Skips a node of a ColorOcTree and everything below it; returns how many nodes these are.
-std::size_t skip_node(CountsReader& in, unsigned levels_left) {
-  in.take(sizeof(float) + 3);  // log-odds, color
-  const auto children = in.get<std::uint8_t>();
-  if (children != 0 && levels_left == 0) in.fail("its tree is too deep");
-  std::size_t nodes = 1;
-  for (int i = 0; i < std::popcount(children); ++i) nodes += skip_node(in, levels_left - 1);
-  return nodes;
-}
-
-struct OtHeader {
-  std::string type;
-  std::size_t size = 0;
-  double resolution_m = 0;
-};
-
-/// Reads the lines before the tree.
-OtHeader read_header(std::istream& in, const std::string& name) {
-  std::string line, key, word;
-  std::getline(in, line);
-  if (line.starts_with(kBinaryMagic))
-    throw InputError(fmt::format(
-        "{}: is an octree in OctoMap's binary format (.bt), which knows no classes: name the .ot "
-        "file of `map build`",
-        name));
-  if (!line.starts_with(kTreeMagic))
-    throw InputError(fmt::format("{}: is not an OctoMap file (.ot)", name));
-  OtHeader header;
-  while (in >> key && key != "data") {
-    if (key == "id") in >> header.type;
-    if (key == "size") in >> header.size;
-    if (key == "res" && in >> word && (std::istringstream(word) >> header.resolution_m).fail())
-      throw InputError(fmt::format("{}: its resolution '{}' is no number", name, word));
-    if (key[0] == '#') std::getline(in, line);
-  }
-  in.get();  // the end of the line "data"
-  if (!in) throw InputError(fmt::format("{}: is truncated", name));
-  if (header.type != "ColorOcTree")
-    throw InputError(
-        fmt::format("{}: holds a tree of type '{}', not a ColorOcTree", name, header.type));
-  if (!(header.resolution_m >= 1e-3 && header.resolution_m <= 10))
-    throw InputError(fmt::format("{}: its resolution {} m is not within 0.001 to 10 m", name,
-                                 header.resolution_m));
-  return header;
+/// Adds a leaf of another program's tree: all of its voxels were seen once.
+void add_leaf(VoxelTree& tree, const OctomapLeaf& leaf) {
+  const int across = std::min(leaf.side, 8);  // voxels within a block
+  const Eigen::Vector3i first = leaf.lowest.array() + VoxelTree::kMiddle;
+  for (int z = 0; z < leaf.side; z += across)
+    for (int y = 0; y < leaf.side; y += across)
+      for (int x = 0; x < leaf.side; x += across) {
+        const Eigen::Vector3i at = first + Eigen::Vector3i(x, y, z);
+        VoxelNode& block = tree.block(at / 8 - Eigen::Vector3i::Constant(VoxelTree::kMiddle / 8));
+        for (int i = 0; i < across * across * across; ++i) {
+          const Eigen::Vector3i in_leaf(i % across, i / across % across, i / (across * across));
+          const Eigen::Vector3i v = (at + in_leaf).unaryExpr([](int k) { return k % 8; });
+          VoxelNode& node =
+              tree.voxel(block, static_cast<unsigned>(v.x() + 8 * v.y() + 64 * v.z()));
+          (leaf.occupied ? node.hits : node.misses) = 1;
+          node.follow_counts();
+        }
+      }
 }
 
 }  // namespace
@@ -318,14 +257,19 @@ void VoxelMap::write_ot(std::ostream& out) const {
 
 VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
   const auto begin = in.tellg();
-  const OtHeader header = read_header(in, name);
+  const OctomapHeader header = read_octomap_header(in, name);
+  if (header.binary || header.type != "ColorOcTree")
+    throw InputError(
+        fmt::format("{}: holds a tree of type '{}' without classes, not map.ot of "
+                    "`map build`",
+                    name, header.type));
   const auto header_size = static_cast<std::size_t>(in.tellg() - begin);
   in.seekg(begin);  // the checksum covers the header, too
   std::ostringstream whole;
   whole << in.rdbuf();
   const std::string bytes = std::move(whole).str();
   CountsReader reader(std::string_view(bytes).substr(header_size), name);
-  if (header.size > 0 && skip_node(reader, 16) != header.size)
+  if (read_octomap_nodes(reader, header, [](const OctomapLeaf&) {}) != header.size)
     reader.fail(fmt::format("its tree has not the {} nodes that it says", header.size));
   if (reader.at_end())
     throw InputError(fmt::format(
@@ -366,6 +310,35 @@ void VoxelMap::save_ot(const std::filesystem::path& file) const {
 VoxelMap VoxelMap::load_ot(const std::filesystem::path& file) {
   std::istringstream in(read_file(file));
   return read_ot(in, file.string());
+}
+
+VoxelMap VoxelMap::load_octree(const std::filesystem::path& file, std::vector<std::string>& notes) {
+  const std::string name = file.string(), bytes = read_file(file);
+  std::istringstream in(bytes);
+  const OctomapHeader header = read_octomap_header(in, name);
+  if (header.type != "OcTree" && header.type != "ColorOcTree")
+    throw InputError(fmt::format("{}: holds a tree of type '{}': OcTree and ColorOcTree are read",
+                                 name, header.type));
+  VoxelMap map(header.resolution_m);
+  CountsReader reader(std::string_view(bytes).substr(static_cast<std::size_t>(in.tellg())), name);
+  std::size_t voxels = 0;
+  const auto count = [&](const OctomapLeaf& leaf) {
+    const auto side = static_cast<std::size_t>(leaf.side);
+    voxels += side * side * side;
+  };
+  CountsReader ahead = reader;
+  read_octomap_nodes(ahead, header, count);
+  if (header.type == "ColorOcTree" && !header.binary && !ahead.at_end()) return load_ot(file);
+  if (voxels > kMostForeignVoxels)
+    throw InputError(fmt::format("{}: holds {} voxels of {} m, at most {} are read", name, voxels,
+                                 header.resolution_m, kMostForeignVoxels));
+  read_octomap_nodes(reader, header,
+                     [&](const OctomapLeaf& leaf) { add_leaf(map.impl_->tree, leaf); });
+  notes.push_back(
+      fmt::format("{}: is of another program: it knows no classes, and its z is taken "
+                  "for up",
+                  name));
+  return map;
 }
 
 }  // namespace mh

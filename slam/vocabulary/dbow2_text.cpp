@@ -172,4 +172,24 @@ VocabularyTree read_dbow2_text(std::string_view text, const std::string& name) {
   return tree;
 }
 
+std::string dbow2_text(const VocabularyTree& tree) {
+  if (tree.branching > kMaxBranching || tree.depth > kMaxDepth)
+    throw InputError(fmt::format(
+        "a tree of {} children per node and {} levels does not fit DBoW2's text format: at most {} "
+        "and {}",
+        tree.branching, tree.depth, kMaxBranching, kMaxDepth));
+  std::string text = fmt::format("{} {} 0 0", tree.branching, tree.depth);
+  std::size_t child = 1, word = 0;
+  for (std::size_t parent = 0; parent < tree.child_counts.size(); ++parent)
+    for (unsigned i = 0; i < tree.child_counts[parent]; ++i, ++child) {
+      const bool is_leaf = tree.child_counts[child] == 0;
+      text += fmt::format("\n{} {:d}", parent, is_leaf);
+      std::array<std::uint8_t, sizeof(Descriptor)> bytes;
+      std::memcpy(bytes.data(), tree.centers[child].data(), sizeof bytes);
+      for (const std::uint8_t byte : bytes) text += fmt::format(" {}", byte);
+      text += fmt::format(" {}", is_leaf ? tree.idf[word++] : 0.0F);
+    }
+  return text;
+}
+
 }  // namespace mh

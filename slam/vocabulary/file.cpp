@@ -156,4 +156,19 @@ void Vocabulary::save(const std::filesystem::path& file) const {
   write_atomically(file, bytes_.view);
 }
 
+void Vocabulary::save_dbow2(const std::filesystem::path& file) const {
+  const VocabularyTree tree{.branching = static_cast<std::uint32_t>(branching_),
+                            .depth = static_cast<std::uint32_t>(depth_),
+                            .centers = {centers_.begin(), centers_.end()},
+                            .child_counts = {child_counts_, child_counts_ + centers_.size()},
+                            .idf = {idf_.begin(), idf_.end()}};
+  std::string text;
+  try {
+    text = dbow2_text(tree);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  write_atomically(file, text);
+}
+
 }  // namespace mh

@@ -33,4 +33,10 @@ std::string encode(const VocabularyTree& tree);
 /// @throws InputError "name:line: ..." if the text is not such a tree.
 VocabularyTree read_dbow2_text(std::string_view text, const std::string& name);
 
+/// Writes the same format, for programs that read it: nodes breadth first, weights with all digits,
+/// scoring L1 (0), weighting TF-IDF (0). No line end at the end: ORB-SLAM's reader would take an
+/// empty line for a node. Training counts have no place in it. @throws InputError if the tree has
+/// more than the 20 children per node that ORB-SLAM's reader takes.
+std::string dbow2_text(const VocabularyTree& tree);
+
 }  // namespace mh

@@ -57,6 +57,10 @@ class Vocabulary {
   /// Saves in our own format, atomically. @throws InputError if it cannot be written.
   void save(const std::filesystem::path& file) const;
 
+  /// Saves in DBoW2's text format (dbow2_text()). @throws InputError if it does not fit or cannot
+  /// be written.
+  void save_dbow2(const std::filesystem::path& file) const;
+
   /// Returns the word of a descriptor: from the root down, always the nearest child in Hamming
   /// distance, ties to the first. @pre not empty.
   Quantized quantize(const Descriptor& descriptor) const;

@@ -422,6 +422,9 @@ TEST_F(CommandLine, AVocabularyInText) {
   EXPECT_EQ(run("vocabulary info " + own), 0) << err_;
   EXPECT_NE(out_.find("mean 1.250"), std::string::npos) << out_;
   EXPECT_NE(out_.find("images: not known"), std::string::npos) << out_;
+  const std::string back = (folder_ / "back.txt").string();
+  EXPECT_EQ(run("vocabulary convert " + own + " --out " + back), 0) << err_;
+  EXPECT_EQ(read_file(back), "10 6 0 0\n" + node + " 1.25");
   const std::string bad = write("bad.txt", "10 6 0 0\n" + node + " 1.25 3\n").string();
   expect_refused("vocabulary info " + bad, "bad.txt:2: line goes on where it should end: '3'");
   expect_refused("vocabulary info " + text + " --frames here --settings s.yaml", "s.yaml");

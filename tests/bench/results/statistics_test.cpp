@@ -76,6 +76,23 @@ TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
   EXPECT_TRUE(std::isinf(compare_scenes(all_equal_to(1, 5), 5, 1).detectable));
 }
 
+TEST(ComparePaired, AnIntervalThatEndsAtZeroBesideALargePIsRecognized) {
+  // Two of 40 queries differ, in one way: two of four patterns are as far from 0.
+  std::vector<PairedDifference> two = all_equal_to(0, 40);
+  two[3].difference = two[30].difference = 1;
+  const Comparison c = compare_paired(two, true, 1);
+  EXPECT_EQ(c.low, 0);
+  EXPECT_GT(c.high, 0);
+  EXPECT_DOUBLE_EQ(c.p, 0.5);
+  EXPECT_TRUE(ends_at_zero(c));
+  EXPECT_EQ(verdict(c), Verdict::kUndecided);
+  EXPECT_FALSE(ends_at_zero(compare_paired(all_equal_to(0, 40), true, 1))) << "nothing differs";
+  std::vector<PairedDifference> many = all_equal_to(1, 40);
+  EXPECT_FALSE(ends_at_zero(compare_paired(many, true, 1)));
+  for (std::size_t i = 0; i < 12; ++i) many[i].difference = -1;
+  EXPECT_FALSE(ends_at_zero(compare_paired(many, true, 1)));
+}
+
 TEST(SignFlip, CountsThePatternsThatAreAsFarFromZero) {
   // 2 + 1 - 1 = 2: of the eight sums +-2 +-1 +-1, six are 2 or 4 from zero.
   EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>{2, 1, -1}, 1), 6.0 / 8);

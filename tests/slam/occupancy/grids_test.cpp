@@ -237,8 +237,7 @@ TEST(MapServer, RefusesWhatItCannotRead) {
   expect_map_refused(good, "truncated");
   write_atomically(pgm, "P5\n# a comment\n1 2\n255\nab");
   expect_map_refused(yaml("0", "[0, 0, 0]"), "resolution");
-  expect_map_refused(yaml("0.05", "[0, 0, 0.7]"), "turned");
-  expect_map_refused(yaml("0.05", "[0, 0, 0]", "scale"), "scale");
+  expect_map_refused(yaml("0.05", "[0, 0, 0]", "gray"), "'gray' is not supported");
   expect_map_refused(yaml("0.05", "[1e300, 0, 0]"), "farther than");
   expect_map_refused(
       "image: bad_map.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n"
@@ -250,8 +249,81 @@ TEST(MapServer, RefusesWhatItCannotRead) {
     write_atomically(pgm, empty);
     expect_map_refused(good, "pixels, not 1 to 65536 each");
   }
-  write_atomically(pgm, "P2\n1 1\n255\n7\n");
-  expect_map_refused(good, "the only kind that is read");
+  for (const auto& [image, message] : std::vector<std::pair<std::string, std::string>>{
+           {"P6\n1 1\n255\nabc", "is no PGM image (P5 or P2)"},
+           {"P2\n2 1\n255\n7\n", "is truncated"},
+           {"P2\n2 1\n255\n7 # 8\n", "is truncated"},
+           {"P2\n2 1\n255\n7 8x", "pixel 2 is '8x', not a number"},
+           {"P2\n2 1\n100\n7 101", "a pixel is 101, its maximum 100"},
+           {"P2\n2 1\n0\n0 0", "a maximum of 1 to 65535"},
+           {"P2\n2 1\n", "a maximum of 1 to 65535"},
+           {"P5\n2 1\n65535\nabc", "is truncated"}}) {
+    write_atomically(pgm, image);
+    expect_map_refused(good, message);
+  }
+}
+
+/// Writes a map of that image and of further keys, and loads it.
+OccupancyGrid loaded(const std::string& image, const std::string& keys,
+                     const PictureDecoder& decode = nullptr) {
+  write_atomically(testing::TempDir() + "made.pgm", image);
+  const std::string file = testing::TempDir() + "made.yaml";
+  write_atomically(file, "image: made.pgm\nresolution: 0.5\nnegate: 0\n" + keys);
+  return load_map_server(file, nullptr, decode);
+}
+
+std::vector<int> cells_of(const OccupancyGrid& grid) {
+  return {grid.cells.begin(), grid.cells.end()};
+}
+
+TEST(MapServer, PgmMayBeTextOrOfAnotherMaximum) {
+  const std::string keys = "origin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+  const std::vector<int> expected{-1, 100, 0, 100};  // the lower row first
+  EXPECT_EQ(cells_of(loaded("P2\n# GIMP\n2 2\n255\n254 0 # a row\n205\n0\n", keys)), expected);
+  EXPECT_EQ(cells_of(loaded("P2 2 2 100 100 0 80 0", keys)), expected);
+  const std::string nul(1, '\0');
+  EXPECT_EQ(cells_of(loaded("P5 2 2 65535\n\xFF\xFE" + nul + nul + "\xCD\xCD" + nul + nul, keys)),
+            expected);
+}
+
+TEST(MapServer, ModeScaleKeepsWhatIsBetweenTheThresholds) {
+  // nav2_map_server: 100 (p - free) / (occupied - free), rounded; p = 1 - level / 255.
+  EXPECT_EQ(cells_of(loaded("P2 5 1 255 255 204 153 102 51",
+                            "mode: scale\norigin: [0, 0, 0]\noccupied_thresh: 0.75\n"
+                            "free_thresh: 0.25\n")),
+            (std::vector<int>{0, 0, 30, 70, 100}));
+}
+
+TEST(MapServer, PixelsThatAreNotOpaqueAreUnknown) {
+  const auto decode = [](const std::string& bytes) {
+    EXPECT_EQ(bytes, "\x89PNG");
+    GrayPicture picture{Grid2d<std::uint8_t>(2, 2, 255), {false, true, false, false}};
+    picture.levels(0, 1) = 0;
+    return picture;
+  };
+  const std::string keys = "origin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+  EXPECT_EQ(cells_of(loaded("\x89PNG", keys, decode)), (std::vector<int>{100, 0, 0, -1}));
+}
+
+TEST(MapServer, ATurnedGridKeepsItsYawAndItsPlaces) {
+  // By hand: 30 degrees, cells of 0.5 m. The center of cell (2, 1) is (1.25, 0.75) along the grid:
+  // 1.25 cos - 0.75 sin = 0.7075, 1.25 sin + 0.75 cos = 1.2745 from the corner (10, -20).
+  const OccupancyGrid grid =
+      loaded("P2 3 2 255 254 254 0 254 254 254",
+             "origin: [10, -20, 0.5235987755982988]\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  EXPECT_EQ(grid.cells(2, 1), kOccupiedCell);
+  EXPECT_NEAR(grid.center_m(2, 1).x(), 10.7075, 1e-4);
+  EXPECT_NEAR(grid.center_m(2, 1).y(), -18.7255, 1e-4);
+  EXPECT_EQ(grid.cell_of({10.7075, -18.7255}), Eigen::Vector2i(2, 1));
+  EXPECT_EQ(grid.cell_of({10.3, -19.7}), Eigen::Vector2i(0, 0));
+  EXPECT_FALSE(grid.cell_of({11.4, -19.9})) << "inside of the unturned grid, outside of this one";
+  const std::string stem = testing::TempDir() + "turned";
+  save_map_server(grid, stem);
+  EXPECT_EQ(load_map_server(stem + ".yaml").yaw_rad, grid.yaw_rad);
+  const CostMap costs = cost_map(grid);
+  save_cost_map(costs, stem);
+  EXPECT_EQ(load_cost_map(stem + ".yaml").yaw_rad, grid.yaw_rad);
+  EXPECT_EQ(as_published(costs).yaw_rad, grid.yaw_rad);
 }
 
 TEST(MapServer, ReadsWhatOthersWrite) {

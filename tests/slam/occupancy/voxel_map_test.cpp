@@ -244,7 +244,7 @@ TEST(VoxelMap, DamagedFilesAreRefused) {
   expect_refused(with_header("res", "nan"), "its resolution 'nan' is no number");
   std::ostringstream binary;
   mapped_room().map().write_bt(binary);
-  expect_refused(binary.str(), "binary format (.bt)");
+  expect_refused(binary.str(), "without classes");
   expect_refused(good + "x", "after its end");
   octomap::ColorOcTree other(0.05);
   other.updateNode(octomap::point3d(0, 0, 0), true);
@@ -254,6 +254,83 @@ TEST(VoxelMap, DamagedFilesAreRefused) {
   EXPECT_THROW(VoxelMap::load_ot("/no/such/map.ot"), InputError);
   EXPECT_THROW(mapped_room().map().save_ot("/no/such/folder/map.ot"), InputError);
   EXPECT_THROW(mapped_room().map().save_bt("/no/such/folder/map.bt"), InputError);
+}
+
+/// A floor, a wall, free space between and a pruned cube, around the origin.
+template <class Tree>
+void fill(Tree& tree) {
+  for (int x = -12; x < 12; ++x)
+    for (int y = -7; y < 9; ++y) {
+      tree.updateNode(octomap::OcTreeKey(32768 + x, 32768 + y, 32767), true);
+      for (int z = 0; z < 20; ++z)
+        tree.updateNode(octomap::OcTreeKey(32768 + x, 32768 + y, 32768 + z), x == 5);
+    }
+  for (int i = 0; i < 16 * 16 * 16; ++i)
+    tree.setNodeValue(octomap::OcTreeKey(32768 + 64 + i % 16, 32768 + i / 16 % 16, 32768 + i / 256),
+                      2.0F);
+  tree.updateInnerOccupancy();
+  tree.prune();
+}
+
+/// Loads a file of another program; its known voxels must be those of the tree.
+template <class Tree>
+void expect_alike(const std::string& file, const Tree& tree) {
+  std::vector<std::string> notes;
+  const VoxelMap map = VoxelMap::load_octree(file, notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("knows no classes"), std::string::npos) << notes[0];
+  EXPECT_EQ(map.voxel_count(), 24U * 16 * 21 + 16 * 16 * 16);
+  map.for_each([&](const Voxel& voxel) {
+    const Vector3d c = voxel.center_m(0.05);
+    const auto* node = tree.search(c.x(), c.y(), c.z());
+    ASSERT_NE(node, nullptr) << c.transpose();
+    EXPECT_EQ(voxel.occupied, tree.isNodeOccupied(node)) << c.transpose();
+    EXPECT_EQ(voxel.votes, 0U);
+  });
+}
+
+TEST(VoxelMap, OctreesOfOtherProgramsAreReadWithoutClasses) {
+  octomap::OcTree plain(0.05);
+  octomap::ColorOcTree colored(0.05);
+  fill(plain);
+  fill(colored);
+  const std::string ot = in_temporary("foreign.ot"), bt = in_temporary("foreign.bt"),
+                    color = in_temporary("foreign_color.ot");
+  ASSERT_TRUE(plain.write(ot) && plain.writeBinaryConst(bt) && colored.write(color));
+  expect_alike(ot, plain);
+  expect_alike(bt, plain);
+  expect_alike(color, colored);
+  std::vector<std::string> notes;
+  mapped_room().map().save_ot(ot);
+  EXPECT_EQ(bytes_of(VoxelMap::load_octree(ot, notes)), bytes_of(mapped_room().map()));
+  EXPECT_TRUE(notes.empty()) << "our own";
+}
+
+TEST(VoxelMap, DamagedOctreesOfOtherProgramsAreRefused) {
+  const std::string file = in_temporary("foreign_damaged.ot");
+  const auto expect = [&](const std::string& bytes, const std::string& message) {
+    write_atomically(file, bytes);
+    std::vector<std::string> notes;
+    try {
+      VoxelMap::load_octree(file, notes);
+      ADD_FAILURE() << "was read: " << message;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  };
+  octomap::OcTree tree(0.05);
+  fill(tree);
+  std::ostringstream full, binary;
+  tree.write(full);
+  tree.writeBinaryConst(binary);
+  for (const std::string& good : {full.str(), binary.str()})
+    for (std::size_t size = good.find("\ndata\n") + 6; size < good.size(); size += 97)
+      expect(good.substr(0, size), "is truncated");
+  const std::string head = "\nid OcTree\nsize 9\nres 0.05\ndata\n";
+  expect("# Octomap OcTree binary file" + head + std::string(100, '\xFF'), "too deep");
+  expect("# Octomap OcTree binary file" + head + "\x01" + std::string(1, '\0'),
+         "holds 35184372088832 voxels of 0.05 m, at most 30000000 are read");
+  expect("# Octomap OcTree file\nid SemanticOcTree\nsize 9\nres 0.05\ndata\n", "SemanticOcTree");
 }
 
 TEST(VoxelMap, OctoMapReadsTheFilesWithColorsOfClasses) {

@@ -109,6 +109,46 @@ TEST(Dbow2Text, LeavesMayStandAtAnyLevelAndLinesEndAsInDos) {
   EXPECT_EQ(Vocabulary(tree).size(), 2U);
 }
 
+TEST(Dbow2Text, IsWrittenAsItsReadersExpectIt) {
+  // By hand: a root with a word and a node of two words, as DBoW2's TemplatedVocabulary has it.
+  VocabularyTree tree{.branching = 2, .depth = 2};
+  const Descriptor a{1, 0, 0, 0}, b{0x0201, 0, 0, 0}, c{0, 0, 0, 0xffULL << 56U}, d{2, 0, 0, 0};
+  tree.centers = {Descriptor{}, a, b, c, d};
+  tree.child_counts = {2, 0, 2, 0, 0};
+  tree.idf = {0.1F, 2.5F, 0.0F};
+  std::string zeros30, zeros31;
+  for (int i = 0; i < 31; ++i) zeros31 += " 0", zeros30 += i < 30 ? " 0" : "";
+  EXPECT_EQ(dbow2_text(tree), "2 2 0 0\n0 1 1" + zeros31 + " 0.1\n0 0 1 2" + zeros30 + " 0\n2 1" +
+                                  zeros31 + " 255 2.5\n2 1 2" + zeros31 + " 0")
+      << "no line end at the end: ORB-SLAM would take what follows it for a node";
+  tree.branching = 21;
+  EXPECT_THROW(dbow2_text(tree), InputError);
+}
+
+TEST(Dbow2Text, RoundTripKeepsEveryDescriptorWeightAndParent) {
+  std::vector<std::vector<Descriptor>> images(30);
+  for (std::size_t i = 0; i < images.size(); ++i)
+    for (std::uint64_t k = 0; k < 40; ++k)
+      images[i].push_back(drawn_descriptor(RandomStream(i).fork(k)));
+  const Vocabulary trained = Vocabulary::train(images, {.branching = 7, .depth = 3});
+  const fs::path folder = fs::path(testing::TempDir()) / "dbow2_round_trip";
+  make_output_folder(folder);
+  trained.save_dbow2(folder / "words.txt");
+  const VocabularyTree once = read_dbow2_text(read_file(folder / "words.txt"), "t.txt");
+  EXPECT_EQ(once.centers.size(), trained.node_count());
+  ASSERT_EQ(once.idf.size(), trained.size());
+  for (WordId word = 0; word < trained.size(); ++word) EXPECT_EQ(once.idf[word], trained.idf(word));
+  const Vocabulary again(once);
+  for (const Descriptor& d : images[3]) {
+    EXPECT_EQ(again.quantize(d).word, trained.quantize(d).word);
+    EXPECT_EQ(again.quantize(d).node, trained.quantize(d).node);
+  }
+  const VocabularyTree twice = read_dbow2_text(dbow2_text(once), "t.txt");
+  EXPECT_EQ(twice.centers, once.centers);
+  EXPECT_EQ(twice.child_counts, once.child_counts);
+  EXPECT_EQ(twice.idf, once.idf);
+}
+
 TEST(Dbow2Text, IsLoadedLikeAFileOfOurOwnAndSavedAsOne) {
   const fs::path folder = fs::path(testing::TempDir()) / "dbow2_text";
   make_output_folder(folder);

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slam/core/error.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// Why a line of a file gives no pose.
+enum class PoseFault { kNotFinite, kZero, kRepeated, kNoPose };
+
+class BadPose : public InputError {
+ public:
+  BadPose(const std::string& what, PoseFault fault) : InputError(what), fault(fault) {}
+  PoseFault fault;
+};
+
+/// Position of a line, for messages.
+struct LinePlace {
+  const std::string& file;
+  int line;
+
+  /// @throws BadPose "file:line: what"
+  [[noreturn]] void fail(const std::string& what, PoseFault fault = PoseFault::kNoPose) const;
+};
+
+/// The poses of a file in the order of their stamps, and what was left out.
+class PoseCollector {
+ public:
+  /// @param strict  nothing may be left out, nor come after a later stamp
+  PoseCollector(const std::string& file, bool strict) : file_(file), strict_(strict) {}
+
+  /// @param stamp  as written @throws BadPose if it repeats one
+  void add(const TimedPose& pose, std::string_view stamp, const LinePlace& place);
+  /// @throws InputError if strict
+  void leave_out(const BadPose& line);
+  /// The poses; empties the collector. @param notes  receives what was left out or put in order
+  /// @throws InputError if more lines are no poses than are: the file is something else
+  Trajectory finish(std::vector<std::string>* notes);
+  /// "; line 5: ..." for a message; empty if nothing was left out
+  std::string first_fault() const { return first_fault_.empty() ? "" : "; line " + first_fault_; }
+
+ private:
+  std::size_t count(PoseFault fault) const { return counts_[static_cast<std::size_t>(fault)]; }
+  std::size_t left_out() const;
+  std::string note() const;
+
+  const std::string& file_;
+  bool strict_;
+  Trajectory poses_;
+  std::set<Stamp> stamps_;
+  Stamp latest_ns_ = 0;
+  std::size_t early_ = 0;  ///< poses behind a later one
+  std::array<std::size_t, 4> counts_{};
+  std::string first_fault_, first_no_pose_;
+};
+
+}  // namespace mh
