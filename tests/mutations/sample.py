@@ -70,10 +70,10 @@ def mutants_of(tree, name):
     return found
 
 
-def draw(tree, seed):
+def draw(tree, seed, folders):
     """All mutants in the order in which the seed tries them: the kinds in turn, of each kind the
     lines in the order of the seed, of each line one mutant; the others after all lines."""
-    names = subprocess.run(['git', '-C', tree, 'ls-files', *SOURCES], check=True, text=True,
+    names = subprocess.run(['git', '-C', tree, 'ls-files', *folders], check=True, text=True,
                            capture_output=True).stdout.split()
     by_kind = {kind: [] for kind in KINDS}
     for name in names:
@@ -124,7 +124,7 @@ class Results:
 class Copy:
     """A worktree of its own, built like the project."""
 
-    def __init__(self, root, work, jobs, commit):
+    def __init__(self, root, work, jobs, commit, folders):
         self.tree, self.build, self.jobs = work / 'tree', work / 'tree/build/release', jobs
         self.log = work / 'log'
         self.head = subprocess.run(['git', '-C', root, 'rev-parse', commit], check=True, text=True,
@@ -134,10 +134,16 @@ class Copy:
             subprocess.run(['git', '-C', root, 'worktree', 'prune'], check=True)
             self.run('git', '-C', root, 'worktree', 'add', '--quiet', '--detach', self.tree, self.head)
         self.run('git', '-C', self.tree, 'checkout', '--quiet', '--force', '--detach', self.head)
+        # What is changed is compiled alone: an object file then tells its source, and is soon made.
+        alone = work / 'alone.cmake'
+        globs = ' '.join(f'{self.tree / folder}/*.cpp' for folder in (*folders, 'tests'))
+        alone.write_text(f'file(GLOB_RECURSE ALONE {globs})\n'
+                         'set_source_files_properties(${ALONE} PROPERTIES '
+                         'SKIP_UNITY_BUILD_INCLUSION ON)\n')
         if not (self.build / 'build.ninja').exists():
             # Of the library's containers: an index past the end ends the program.
             self.run('cmake', '--preset', 'release', '-DCMAKE_CXX_FLAGS=-D_GLIBCXX_ASSERTIONS',
-                     cwd=self.tree)
+                     f'-DCMAKE_PROJECT_INCLUDE={alone}', cwd=self.tree)
         self.ninja('build.ninja')
         targets = subprocess.run(['ninja', '-C', self.build, '-t', 'targets', 'all'], check=True,
                                  text=True, capture_output=True).stdout
@@ -308,6 +314,8 @@ def arguments():
     parser.add_argument('--count', type=int, default=200,
                         help='mutants that compile and are not equal, in all (default 200)')
     parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--only', nargs='+', default=SOURCES, metavar='FOLDER',
+                        help=f'draws from these folders (default {" ".join(SOURCES)})')
     parser.add_argument('--results', type=Path, help='default: tests/mutations/sample_seedS.tsv')
     parser.add_argument('--work', type=Path, help='keeps the copy of the sources here')
     parser.add_argument('--commit', default='HEAD', help='whose sources and tests (default HEAD)')
@@ -329,7 +337,7 @@ def main():
     root = Path(subprocess.run(['git', '-C', HERE, 'rev-parse', '--show-toplevel'], check=True,
                                text=True, capture_output=True).stdout.strip())
     if args.list:
-        order = draw(root, args.seed)
+        order = draw(root, args.seed, args.only)
         for turn in range(args.count):
             of_kind = order[KINDS[turn % len(KINDS)]]
             if turn // len(KINDS) < len(of_kind):
@@ -340,10 +348,11 @@ def main():
     results = Results(args.results or HERE / f'sample_seed{args.seed}.tsv')
     os.environ.setdefault('CCACHE_BASEDIR', str(work.resolve()))
     os.environ['CCACHE_NOHASHDIR'] = '1'
-    copy = Copy(root, work.resolve(), args.jobs, args.commit)
+    copy = Copy(root, work.resolve(), args.jobs, args.commit, args.only)
     experience = Experience(work / 'experience.json')
-    order = draw(copy.tree, args.seed)
-    head = (f'# tests/mutations/sample.sh --count {args.count} --seed {args.seed}\n'
+    order = draw(copy.tree, args.seed, args.only)
+    only = f' --only {" ".join(args.only)}' if args.only != SOURCES else ''
+    head = (f'# tests/mutations/sample.sh --count {args.count} --seed {args.seed}{only}\n'
             '# A later line of one id counts in the place of an earlier one.\n')
 
     def try_out(mutant):
