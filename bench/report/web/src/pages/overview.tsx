@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
-import { useCallback, useMemo } from "preact/hooks";
+import { useCallback, useMemo, useState } from "preact/hooks";
 import { type Difference, type Folder, type Headline, type Overview, type PlaceImages, Table, shownNumber } from "../data";
 import { linkTo, useNoted } from "../route";
 import { colorOf, ink } from "../theme";
@@ -265,6 +265,7 @@ function counted(count: number, one: string): string {
 
 function Top({ folder, place, overview }: { folder: Folder; place: number; overview: Overview }): JSX.Element | null {
   const { suite, verdicts } = overview;
+  const [open, setOpen] = useState(false); // a chart needs to know its width
   const [picked, setLevel] = useNoted(`level-${place}`, suite?.levels[0] ?? "");
   if (!suite || !verdicts || !overview.tiles) return null;
   const tiles = new Table(overview.tiles);
@@ -300,9 +301,9 @@ function Top({ folder, place, overview }: { folder: Folder; place: number; overv
         </div>
       </div>
       {differences.length > 0 && (
-        <details>
+        <details onToggle={(event) => setOpen(event.currentTarget.open)}>
           <summary>All comparisons</summary>
-          <Differences all={differences} unit="m" />
+          {open && <Differences all={differences} unit="m" />}
           <DataTable id={`verdicts-${place}`} table={new Table(verdicts.table)} />
         </details>
       )}
