@@ -30,15 +30,15 @@ bool is_one_of(const auto& encodings, const std::string& encoding) {
 bool is_ours(const ImageTopic& topic) {
   return topic.name.ends_with("/labels/image") || topic.name.ends_with("/instances/image");
 }
-bool is_compressed_depth(const ImageTopic& topic) {
-  return topic.compressed && mh::is_compressed_depth(topic.encoding);
+bool has_compressed_depth(const ImageTopic& topic) {
+  return topic.compressed && is_compressed_depth(topic.encoding);
 }
 bool is_depth(const ImageTopic& topic) {
-  return !is_ours(topic) && (is_compressed_depth(topic) ||
+  return !is_ours(topic) && (has_compressed_depth(topic) ||
                              (!topic.compressed && is_one_of(kDepthEncodings, topic.encoding)));
 }
 bool is_color(const ImageTopic& topic) {
-  return !is_ours(topic) && (topic.compressed ? !is_compressed_depth(topic)
+  return !is_ours(topic) && (topic.compressed ? !has_compressed_depth(topic)
                                               : is_one_of(kColorEncodings, topic.encoding));
 }
 bool is_gray(const ImageTopic& topic) {
