@@ -16,6 +16,7 @@
 #include "bench/store/store.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_text.hpp"
 
 namespace mh::cli {
 namespace {
@@ -76,7 +77,7 @@ void forget_other_audit(const std::filesystem::path& out) {
   const std::filesystem::path file = out / "audit.json";
   const auto runs = runs_of_results(out);
   if (!runs || !std::filesystem::exists(file)) return;
-  const auto json = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  const auto json = parse_json_or_discard<nlohmann::ordered_json>(read_file(file));
   if (!json.is_object() || !json.contains("definitions")) return;  // not one of ours
   nlohmann::ordered_json same = nlohmann::ordered_json::object();
   for (const auto& [name, key] : *runs) same[name] = key;

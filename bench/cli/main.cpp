@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <stdexcept>
@@ -132,6 +133,9 @@ int run(int argc, char** argv) {
     return fail(kMachineFailed, error.what());
   } catch (const std::bad_alloc&) {
     return fail(kMachineFailed, "out of memory");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(kMachineFailed,
+                fmt::format("{}: {}", error.path1().string(), error.code().message()));
   } catch (const std::exception& error) {
     return fail(kMachineFailed, error.what());
   }

@@ -7,6 +7,7 @@
 
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/legible.hpp"
 
 namespace mh {
@@ -21,7 +22,7 @@ Json json_file(PagesSource& source, const std::string& name,
                std::initializer_list<const char*> keys) {
   const fs::path file = source.folder / name;
   if (!is_file(file)) return nullptr;
-  const Json json = Json::parse(read_file(file), nullptr, false);
+  const Json json = parse_json_or_discard<Json>(read_file(file));
   if (json.is_object() &&
       std::ranges::all_of(keys, [&](const char* key) { return json.contains(key); }))
     return json;

@@ -6,6 +6,7 @@
 #include "slam/config/slam.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/json_number.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/settings_io.hpp"
 
 namespace mh {
@@ -303,7 +304,7 @@ RunSpec run_spec_from_json(const Json& json) {
   try {
     return read(json);
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("run description: {}", error.what()));
+    throw InputError(fmt::format("run description: {}", json_fault(error)));
   }
 }
 

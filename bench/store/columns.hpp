@@ -13,6 +13,7 @@
 
 #include "bench/provenance/json_fields.hpp"
 #include "bench/store/row_digest.hpp"
+#include "slam/core/json_text.hpp"
 
 // Records as rows of SQL tables, by their lists of fields: the column definitions, and values in
 // both directions. Nested records are flattened into columns; a pose takes seven; a list is JSON
@@ -152,7 +153,7 @@ class RowReader {
       for (int i = 0; i < 7; ++i) list.push_back(row_.getColumn(next_++).getDouble());
       read_json(list, value);
     } else if constexpr (kIsArray<Value> || kIsVector<Value>) {
-      read_json(nlohmann::ordered_json::parse(row_.getColumn(next_++).getString()), value);
+      read_json(parse_json<nlohmann::ordered_json>(row_.getColumn(next_++).getString()), value);
     } else if constexpr (kIsColumn<Value>) {
       read_json(nlohmann::ordered_json(row_.getColumn(next_++).getString()), value);
     } else {

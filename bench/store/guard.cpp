@@ -41,12 +41,13 @@ void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& e
     case SQLITE_MISMATCH:
     case SQLITE_CONSTRAINT:
       throw InputError(fmt::format(
-          "{}: does not hold what a results file must ({}): put back a copy, or move it "
-          "away and run again",
-          name, error.what()));
+          "{}: does not hold what a results file must: put back a copy, or move it away and run "
+          "again",
+          name));
     default:
-      throw MachineError(fmt::format("{}: SQLite gave up ({}): run again, what is finished is kept",
-                                     name, error.what()));
+      throw MachineError(
+          fmt::format("{}: SQLite gave up (code {}): run again, what is finished is kept", name,
+                      error.getErrorCode()));
   }
 }
 

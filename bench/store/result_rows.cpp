@@ -12,6 +12,7 @@
 #include "bench/store/columns.hpp"
 #include "bench/store/frame_row.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/settings_io.hpp"
 
 namespace mh {
@@ -159,7 +160,7 @@ void load_times(SQLite::Database& db, const std::string& key, RunResult& run) {
                        .session_start = s.getColumn(3).getString(),  // null becomes empty
                        .jobs = s.getColumn(4).getInt(),
                        .load = s.getColumn(5).getDouble()};
-  const Json calls = Json::parse(s.getColumn(1).getString(), nullptr, false);
+  const Json calls = parse_json_or_discard<Json>(s.getColumn(1).getString());
   if (!calls.is_object()) return;
   run.times.track_ms = calls.value("track_ms", std::vector<double>());
   run.times.relocalize_ms = calls.value("relocalize_ms", std::vector<double>());
@@ -216,17 +217,22 @@ RunResult load_rows(SQLite::Database& db, const std::filesystem::path& file, con
   s.bind(1, key);
   if (!s.executeStep())
     throw InputError(fmt::format("{}: run '{}' is not in it", file.string(), spec.name));
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(
+        fmt::format("{}: run '{}' is damaged: {}: put back a copy, or move the file away "
+                    "and run again",
+                    file.string(), spec.name, what));
+  };
   try {
-    read_result(Json::parse(s.getColumn(0).getString()), run);
+    read_result(parse_json<Json>(s.getColumn(0).getString()), run);
     load_calls(db, key, run);
     load_frames(db, key, run);
     load_queries(db, key, run);
     load_times(db, key, run);
   } catch (const Json::exception& error) {
-    throw InputError(
-        fmt::format("{}: run '{}' is damaged: {}: put back a copy, or move the file away "
-                    "and run again",
-                    file.string(), spec.name, error.what()));
+    refuse(json_fault(error));
+  } catch (const InputError& error) {
+    refuse(error.what());
   }
   return run;
 }

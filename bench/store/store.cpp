@@ -21,6 +21,7 @@
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/json_number.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/temporary_folder.hpp"
 
 namespace mh {
@@ -181,7 +182,7 @@ Suite Store::planned_suite() const {
       throw InputError(fmt::format("{}: holds no suite: run `modelhouse bench` into its folder",
                                    file_.string()));
     return parse_suite(s.getColumn(1).getString(), s.getColumn(0).getString(),
-                       overrides_from_json(nlohmann::json::parse(s.getColumn(2).getString())),
+                       overrides_from_json(parse_json<nlohmann::json>(s.getColumn(2).getString())),
                        false);  // they may have been made on another machine
   });
 }

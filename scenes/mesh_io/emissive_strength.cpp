@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slam/core/files.hpp"
+#include "slam/core/json_text.hpp"
 
 namespace mh {
 namespace {
@@ -71,7 +72,7 @@ std::vector<float> emissive_strengths(const std::filesystem::path& file) {
   const std::string text = gltf_json(file);
   if (text.find(kExtension) == text.npos) return strengths;
   try {
-    const Json gltf = Json::parse(text);
+    const Json gltf = parse_json_or_discard<Json>(text);
     const MaterialOrder order(gltf);
     for (const std::size_t material : order.materials())
       strengths.push_back(strength_of(gltf.at("materials").at(material)));

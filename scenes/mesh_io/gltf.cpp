@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slam/core/error.hpp"
+#include "slam/core/json_text.hpp"
 
 namespace mh {
 namespace {
@@ -64,7 +65,7 @@ std::optional<std::string> repaired_gltf(std::string_view bytes,
     text = bytes.substr(kHeader, number_at(bytes, 12));
     chunks = bytes.substr(kHeader + text.size());
   }
-  Json gltf = Json::parse(text, nullptr, false);
+  Json gltf = parse_json_or_discard<Json>(text);
   if (!gltf.is_object()) return std::nullopt;
   require_places(gltf, file);
   if (!drop_movement(gltf)) return std::nullopt;

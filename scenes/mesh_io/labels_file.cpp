@@ -8,6 +8,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/json_number.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
@@ -119,9 +120,9 @@ void save_labels(const Scene& scene, const fs::path& file) {
 
 void load_labels(Scene& scene, const fs::path& file) {
   try {
-    read(scene, Json::parse(read_text(file)));
+    read(scene, parse_json<Json>(read_text(file)));
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+    throw InputError(fmt::format("{}: {}", file.string(), json_fault(error)));
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   }

@@ -12,6 +12,7 @@
 #include "scenes/mesh_io/node_name.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_text.hpp"
 
 namespace mh {
 namespace {
@@ -31,12 +32,14 @@ Names read_names(std::initializer_list<fs::path> files, const char* list, const 
   for (const fs::path& file : files) {
     if (!is_file(file)) continue;
     try {
-      const Json json = Json::parse(read_file(file));
+      const Json json = parse_json<Json>(read_file(file));
       for (const Json& item : json.at(list))
         if (item.at(id).is_number_unsigned() &&
             item.at(id).get<std::uint64_t>() <= kLastObjectInPly)
           names[item.at(id).get<std::uint32_t>()] = item.at(name).get<std::string>();
     } catch (const Json::exception& wrong) {
+      throw InputError(fmt::format("{}: {}", file.string(), json_fault(wrong)));
+    } catch (const InputError& wrong) {
       throw InputError(fmt::format("{}: {}", file.string(), wrong.what()));
     }
     return names;

@@ -16,6 +16,7 @@
 #include "scenes/recorded/numbered_images.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
@@ -33,7 +34,7 @@ fs::path camera_file(const fs::path& folder) {
 }
 
 RecordedCamera read_camera_file(const fs::path& file) {
-  const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
+  const auto json = parse_json_or_discard<nlohmann::json>(read_text(file));
   if (!json.is_object() || !json.contains("camera") || !json["camera"].is_object())
     throw InputError(fmt::format("{}: is not JSON with an object 'camera'", file.string()));
   const auto number = [&](const char* key) {

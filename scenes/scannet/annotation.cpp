@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slam/core/error.hpp"
+#include "slam/core/json_text.hpp"
 
 namespace mh {
 namespace {
@@ -65,7 +66,7 @@ class SegmentsHandler : public nlohmann::json_sax<Json> {
   }
   bool parse_error(std::size_t, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    fail(error.what());
+    fail(json_fault(error));
   }
 
  private:
@@ -112,7 +113,7 @@ std::vector<SegmentGroup> parse_aggregation(std::string_view json, const std::st
   std::vector<SegmentGroup> groups;
   std::map<std::uint32_t, std::size_t> place_of;  // by objectId
   try {
-    const Json root = Json::parse(json.begin(), json.end());
+    const Json root = parse_json<Json>(json);
     for (const Json& item : root.at("segGroups")) try {
         SegmentGroup group = read_group(item);
         const auto [first, is_new] = place_of.try_emplace(group.object, groups.size());
@@ -120,10 +121,14 @@ std::vector<SegmentGroup> parse_aggregation(std::string_view json, const std::st
           throw InputError(fmt::format("objectId {} is that of segGroups[{}] already", group.object,
                                        first->second));
         groups.push_back(std::move(group));
-      } catch (const std::exception& error) {
+      } catch (const Json::exception& error) {
+        throw InputError(fmt::format("segGroups[{}]: {}", groups.size(), json_fault(error)));
+      } catch (const InputError& error) {
         throw InputError(fmt::format("segGroups[{}]: {}", groups.size(), error.what()));
       }
-  } catch (const std::exception& error) {
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: {}", name, json_fault(error)));
+  } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", name, error.what()));
   }
   return groups;

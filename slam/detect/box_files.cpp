@@ -17,6 +17,7 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/legible.hpp"
 #include "slam/core/number_in.hpp"
 #include "slam/core/text_file.hpp"
@@ -199,6 +200,9 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
 void read_coco(const fs::path& file, const ClassNames& names, bool own_names, FiledBoxes& all) {
   using Json = nlohmann::json;
   const std::string text = read_text(file);
+  if (is_nested_too_deep(text))
+    throw InputError(
+        fmt::format("{}: is nested more than {} levels deep", file.string(), kDeepestJson));
   Json json;
   try {
     json = Json::parse(text);
