@@ -8,6 +8,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/json_number.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/text_file.hpp"
 
 namespace mh {
@@ -86,8 +87,14 @@ void save_baseline(const Baseline& baseline, const std::filesystem::path& file) 
   write_atomically(file, to_text(baseline));
 }
 
+bool is_baseline(const std::string& text) {
+  const Json json = parse_json_or_discard<Json>(text);
+  return json.is_object() && json.contains("format") && json["format"].is_string() &&
+         json["format"].get<std::string>().starts_with("modelhouse-baseline-");
+}
+
 Baseline load_baseline(const std::filesystem::path& file) {
-  const Json json = Json::parse(read_text(file), nullptr, false);
+  const Json json = parse_json_or_discard<Json>(read_text(file));
   if (!json.is_object() || !json.contains("format") || !json["format"].is_string())
     throw InputError(
         fmt::format("{}: is not a baseline: it should be JSON as `modelhouse check "
@@ -99,7 +106,9 @@ Baseline load_baseline(const std::filesystem::path& file) {
                                  file.string(), format, kBaselineFormat));
   try {
     return read(json);
-  } catch (const std::exception& e) {  // from the JSON, or from a number in it
+  } catch (const Json::exception& e) {
+    throw InputError(fmt::format("{}: is damaged: {}", file.string(), json_fault(e)));
+  } catch (const InputError& e) {  // a number in it
     throw InputError(fmt::format("{}: is damaged: {}", file.string(), e.what()));
   }
 }

@@ -199,10 +199,8 @@ std::string gate_junit(const GateResult& result, const std::string& suite) {
         fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n{}  </testsuite>\n",
                     escaped(name), s.tests, s.failures, s.cases);
   }
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\" tests=\"{}\" "
-      "failures=\"{}\">\n{}</testsuites>\n",
-      escaped(suite), tests, failures, body);
+  return fmt::format("{}<testsuites name=\"{}\" tests=\"{}\" failures=\"{}\">\n{}</testsuites>\n",
+                     kJunitHead, escaped(suite), tests, failures, body);
 }
 
 std::string failures_junit(std::span<const FailedRun> failed, const std::string& suite) {
@@ -213,10 +211,10 @@ std::string failures_junit(std::span<const FailedRun> failed, const std::string&
         "    </testcase>\n",
         escaped(suite), escaped(run.spec.name), escaped(run.error));
   return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{0}\" tests=\"{1}\" "
-      "errors=\"{1}\">\n  <testsuite name=\"runs\" tests=\"{1}\" errors=\"{1}\">\n{2}"
+      "{3}<testsuites name=\"{0}\" tests=\"{1}\" errors=\"{1}\">\n"
+      "  <testsuite name=\"runs\" tests=\"{1}\" errors=\"{1}\">\n{2}"
       "  </testsuite>\n</testsuites>\n",
-      escaped(suite), failed.size(), cases);
+      escaped(suite), failed.size(), cases, kJunitHead);
 }
 
 }  // namespace mh

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,10 @@
 #include "bench/results/run_result.hpp"
 
 namespace mh {
+
+/// What JUnit XML of ours begins with: any file of another's is left alone.
+inline constexpr std::string_view kJunitHead =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- modelhouse check -->\n";
 
 /// The gate's findings as text: each judged measure with its change, its tolerance and the smallest
 /// detectable change; then what changed, by how much and where.

@@ -106,7 +106,15 @@ void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
 
 void require_replaceable(const fs::path& file, std::string_view head, std::string_view kind,
                          const std::vector<fs::path>& read) {
-  if (is_file(file) && !read_file(file).starts_with(head))
+  require_replaceable(
+      file, [&](const std::string& text) { return text.starts_with(head); }, kind, read);
+}
+
+void require_replaceable(const fs::path& file,
+                         const std::function<bool(const std::string&)>& is_ours,
+                         std::string_view kind, const std::vector<fs::path>& read) {
+  if (!is_file(file)) return require_writable(file, read);
+  if (const std::string text = read_file(file); !text.empty() && !is_ours(text))
     throw InputError(
         fmt::format("{}: is there already, and not from {}: name another", file.string(), kind));
   require_writable(file, read);
@@ -114,11 +122,10 @@ void require_replaceable(const fs::path& file, std::string_view head, std::strin
 
 namespace {
 
-constexpr const char* kMark = ".modelhouse";
 constexpr std::string_view kMarkHead = "Written here, and replaced when it is written anew, by:\n";
 
 std::string mark_in(const fs::path& folder) {
-  const fs::path file = folder / kMark;
+  const fs::path file = folder / kOutputMark;
   std::error_code error;
   if (!fs::exists(fs::symlink_status(file, error))) return {};
   const ReadScope no_input(ReadScope::Outer::kIgnores);
@@ -157,7 +164,7 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
   make_output_folder(folder);
   if (others == Others::kNone) hold_.take();
   if (ours) return;
-  write_atomically(folder / kMark, (mark.empty() ? std::string(kMarkHead) : mark) + line);
+  write_atomically(folder / kOutputMark, (mark.empty() ? std::string(kMarkHead) : mark) + line);
   mark_before_ = mark;
 }
 
@@ -172,10 +179,10 @@ OutputFolder::~OutputFolder() {
   std::error_code error;
   if (mark_before_ && !holds_any()) {
     try {
-      if (!mark_before_->empty()) write_atomically(folder_ / kMark, *mark_before_);
+      if (!mark_before_->empty()) write_atomically(folder_ / kOutputMark, *mark_before_);
     } catch (const std::exception&) {  // leftovers there do no harm
     }
-    if (mark_before_->empty()) fs::remove(folder_ / kMark, error);
+    if (mark_before_->empty()) fs::remove(folder_ / kOutputMark, error);
   }
 }
 

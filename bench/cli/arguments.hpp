@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,9 +40,13 @@ void require_writable(const std::filesystem::path& file,
                       const std::vector<std::filesystem::path>& read = {});
 
 /// As require_writable(), for a file that its own command may replace, but no other.
-/// @param head  what such a file begins with
+/// @param is_ours  whether that is what such a file holds; an empty one is anybody's
+/// @param head     what it begins with
 /// @param kind  "`modelhouse map plan`", what writes it
 void require_replaceable(const std::filesystem::path& file, std::string_view head,
+                         std::string_view kind, const std::vector<std::filesystem::path>& read);
+void require_replaceable(const std::filesystem::path& file,
+                         const std::function<bool(const std::string&)>& is_ours,
                          std::string_view kind, const std::vector<std::filesystem::path>& read);
 
 /// Checks, before anything is written, that the output file is not one that was read; for a scene,

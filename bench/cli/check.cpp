@@ -157,8 +157,11 @@ void run(CheckArguments options) {
           "{}: trials: {}: system '{}' is not repeatable: at least {} are needed to judge it",
           options.suite, suite.trials, system.name, kFewestRuns));
   if (!options.junit.empty())
-    require_writable(options.junit, {options.suite, baseline_file(options)});
-  if (options.update) require_writable(baseline_file(options), {options.suite});
+    require_replaceable(options.junit, kJunitHead, "`modelhouse check --junit`",
+                        {options.suite, baseline_file(options)});
+  if (options.update)
+    require_replaceable(baseline_file(options), is_baseline, "`modelhouse check --update`",
+                        {options.suite});
   Progress progress("check");
   InputReader inputs([&](std::string_view stage) { progress.say(stage); });
   if (options.update) return update(options, suite, measure(suite, options, inputs, progress));

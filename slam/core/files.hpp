@@ -9,6 +9,9 @@
 
 namespace mh {
 
+/// The file by which a folder names the commands that wrote there.
+inline constexpr const char* kOutputMark = ".modelhouse";
+
 /// Creates a folder (and its parents) and verifies that files can be written to it.
 /// @throws InputError naming the folder.
 void make_output_folder(const std::filesystem::path& folder);

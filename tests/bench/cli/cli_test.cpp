@@ -929,6 +929,18 @@ TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
                  "tolerances");
 }
 
+TEST_F(CommandLine, CheckReplacesNoFileOfAnothers) {
+  const std::string check = "check " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml ";
+  const fs::path mine = write("mine.json", R"({"format": "of another"})"),
+                 xml = write("mine.xml", "<?xml version=\"1.0\"?>\n<testsuites/>\n");
+  expect_refused(check + "--update --baseline " + mine.string(),
+                 "mine.json: is there already, and not from `modelhouse check --update`");
+  expect_refused(check + "--junit " + xml.string(),
+                 "mine.xml: is there already, and not from `modelhouse check --junit`");
+  EXPECT_EQ(content(mine), R"({"format": "of another"})");
+  EXPECT_EQ(content(xml), "<?xml version=\"1.0\"?>\n<testsuites/>\n");
+}
+
 TEST_F(CommandLine, AMapWithAnEmptyGridSaysSo) {
   // Eight frames from a robot's height see nothing below 0.15 m.
   const std::string map =
