@@ -20,11 +20,37 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
+/// What LaTeX sets as this character; whatever it has no letter for, as "[U+6F22]".
+std::string latex_character(char32_t c, std::string_view bytes) {
+  if (c < 0x80 && std::string_view("&%$#_{}").find(static_cast<char>(c)) != std::string_view::npos)
+    return "\\" + std::string(bytes);
+  if (c == U'\\') return "\\textbackslash{}";
+  if (c == U'~') return "\\textasciitilde{}";
+  if (c == U'^') return "\\textasciicircum{}";
+  if (c == U'<') return "\\textless{}";
+  if (c == U'>') return "\\textgreater{}";
+  if (c == U'|') return "\\textbar{}";
+  if (c == U'²') return "$^2$";
+  if (c == U'°') return "$^\\circ$";
+  const bool is_letter = c < 0x80 || (c >= 0xc0 && c < 0x180);
+  return is_letter ? std::string(bytes) : fmt::format("[U+{:04X}]", static_cast<unsigned>(c));
+}
+
 std::string latex_cell(std::string_view text) {
   std::string safe;
-  for (const char c : text)
-    safe += std::string_view("&%$#_{}").find(c) == std::string_view::npos ? std::string(1, c)
-                                                                          : std::string("\\") + c;
+  while (!text.empty()) {
+    const auto first = static_cast<unsigned char>(text[0]);
+    const std::size_t size = std::min<std::size_t>(first < 0xc0   ? 1
+                                                   : first < 0xe0 ? 2
+                                                   : first < 0xf0 ? 3
+                                                                  : 4,
+                                                   text.size());
+    char32_t c = size == 1 ? first : first & (0x7fU >> size);
+    for (std::size_t i = 1; i < size; ++i)
+      c = c << 6U | (static_cast<unsigned char>(text[i]) & 0x3fU);
+    safe += latex_character(c, text.substr(0, size));
+    text.remove_prefix(size);
+  }
   return safe;
 }
 
@@ -158,9 +184,10 @@ std::string export_latex(const Store& store) {
     if (std::any_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(row.parameters),
                     same))
       continue;
-    std::string head = fmt::format(
-        "{} & {} & {} & {} & ", latex_cell(suite.environments[row.environment].name),
-        latex_cell(level_name(suite.levels[row.level])), name(row.labels), latex_cell(system.name));
+    std::string head =
+        fmt::format("{} & {} & {} & {} & ", latex_cell(suite.environments[row.environment].name),
+                    latex_cell(level_name(suite.levels[row.level])), latex_cell(name(row.labels)),
+                    latex_cell(system.name));
     for (const std::string& name : suite.sweep.varied)
       head += (system.takes_settings() ? latex_cell(shown_value(seen, name)) : "--") + " & ";
     const auto trials = static_cast<std::size_t>(suite.trials);

@@ -425,5 +425,17 @@ TEST_F(Figures, OfTheLatexTableStandUnderTheirHeadings) {
   EXPECT_EQ(rows[4][10], "20.00\\,\\%");
 }
 
+TEST_F(Figures, OfALatexTableHaveNamesThatLatexCanTypeset) {
+  Suite named = made_up_suite(folder_, {"den_\\~^<|> 45° Bürö 漢&%$#{}"});
+  named.labels[0].called = "confused_25";
+  std::vector<RunResult> runs;
+  for (const RunSpec& spec : expand(named)) runs.push_back(made_up_run(spec, kPlain));
+  const std::string text = export_latex(stored(folder_, named, runs));
+  EXPECT_NE(text.find("den\\_\\textbackslash{}\\textasciitilde{}\\textasciicircum{}\\textless{}"
+                      "\\textbar{}\\textgreater{} 45$^\\circ$ Bürö [U+6F22]\\&\\%\\$\\#\\{\\} & "),
+            std::string::npos)
+      << text;
+}
+
 }  // namespace
 }  // namespace mh

@@ -11,10 +11,17 @@ const kLatex: Record<string, string> = {
   "\\": "\\textbackslash{}",
   "~": "\\textasciitilde{}",
   "^": "\\textasciicircum{}",
+  "<": "\\textless{}",
+  ">": "\\textgreater{}",
+  "|": "\\textbar{}",
   "²": "$^2$",
+  "°": "$^\\circ$",
 };
+/** As latex_cell() of bench/report/export.cpp. */
 function latexCell(text: string): string {
-  return text.replace(/[\\~^²&%$#_{}]/g, (c) => kLatex[c] ?? `\\${c}`);
+  return text
+    .replace(/[\\~^<>|²°&%$#_{}]/gu, (c) => kLatex[c] ?? `\\${c}`)
+    .replace(/[^\0-\x7f\u00c0-\u017f]/gu, (c) => `[U+${c.codePointAt(0)?.toString(16).toUpperCase().padStart(4, "0")}]`);
 }
 function markdownCell(text: string): string {
   return text.replace(/[\\|<>*_`]/g, "\\$&").replaceAll("\n", " ");
