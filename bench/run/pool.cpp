@@ -211,7 +211,7 @@ class Pool {
       note_end(job, true);
       return;
     }
-    const bool killed = end.signal == SIGKILL || end.signal == SIGTERM;
+    const bool killed = end.signal == SIGKILL || end.signal == SIGTERM || end.signal == SIGHUP;
     if (killed && ended.cut_off.empty() && !ended.what.alone) {
       options_.say(
           fmt::format("{}: was killed from outside; will be tried again, alone", job.spec.name));

@@ -57,10 +57,10 @@ struct PoolOptions {
 /// - Another process starts only if there is enough memory for it and for what the running ones
 ///   still need (as measured on finished ones); one always runs.
 /// - A run that ends by itself without success is a failure and stays one. One that was killed from
-///   outside (SIGKILL, SIGTERM: the kernel out of memory, an impatient scheduler) is tried once
-///   more, alone. One that hits a full disk ends all work and is not a failure: the same command
-///   resumes once there is space.
-/// @throws Interrupted on Ctrl-C or SIGTERM; DiskFullError.
+///   outside (SIGKILL, SIGTERM, SIGHUP: the kernel out of memory, an impatient scheduler) is tried
+///   once more, alone. One that hits a full disk ends all work and is not a failure: the same
+///   command resumes once there is space.
+/// @throws Interrupted on Ctrl-C, SIGTERM or SIGHUP; DiskFullError.
 void run_pending(Store& store, std::vector<Job> jobs, const PoolOptions& options);
 
 }  // namespace mh

@@ -28,23 +28,28 @@ const char* interrupted_line(bool goes_on) {
 
 void tell_of_interrupts() {
   for (const int number : {SIGINT, SIGTERM}) std::signal(number, end_at_once);
+  // Ignored under nohup, which it stays.
+  if (std::signal(SIGHUP, end_at_once) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 void interrupts_go_on() {
   g_goes_on = 1;
 }
 
-SignalWatch::SignalWatch() : old_int_{}, old_term_{} {
+SignalWatch::SignalWatch() : old_int_{}, old_term_{}, old_hangup_{} {
   g_signal = 0;
   struct sigaction action {};
   action.sa_handler = [](int number) { g_signal = number; };
   sigaction(SIGINT, &action, &old_int_);
   sigaction(SIGTERM, &action, &old_term_);
+  sigaction(SIGHUP, &action, &old_hangup_);
+  if (old_hangup_.sa_handler == SIG_IGN) sigaction(SIGHUP, &old_hangup_, nullptr);
 }
 
 SignalWatch::~SignalWatch() {
   sigaction(SIGINT, &old_int_, nullptr);
   sigaction(SIGTERM, &old_term_, nullptr);
+  sigaction(SIGHUP, &old_hangup_, nullptr);
 }
 
 int SignalWatch::signal() const {

@@ -5,8 +5,8 @@
 
 namespace mh {
 
-/// Thrown when the user interrupted the work (Ctrl-C, SIGTERM): every process has ended, what is
-/// finished is kept.
+/// Thrown when the user interrupted the work (Ctrl-C, SIGTERM, SIGHUP): every process has ended,
+/// what is finished is kept.
 struct Interrupted {
   int signal = 0;
   bool goes_on = true;  ///< whether the same command resumes from what is finished
@@ -17,13 +17,13 @@ inline constexpr int kInterruptedCode = 130;  ///< exit code
 /// The line that an interrupted command ends with.
 const char* interrupted_line(bool goes_on);
 
-/// From now on SIGINT and SIGTERM end the program at once, with that line and code 130; where a
-/// SignalWatch lives, it decides.
+/// From now on SIGINT, SIGTERM and SIGHUP end the program at once, with that line and code 130;
+/// where a SignalWatch lives, it decides.
 void tell_of_interrupts();
 /// The same command resumes from what is finished: what tell_of_interrupts() says from now on.
 void interrupts_go_on();
 
-/// During its lifetime, records SIGINT and SIGTERM instead of terminating.
+/// During its lifetime, records SIGINT, SIGTERM and SIGHUP instead of terminating.
 class SignalWatch {
  public:
   SignalWatch();
@@ -35,7 +35,7 @@ class SignalWatch {
   int signal() const;
 
  private:
-  struct sigaction old_int_, old_term_;
+  struct sigaction old_int_, old_term_, old_hangup_;
 };
 
 }  // namespace mh

@@ -152,6 +152,7 @@ void obey(const GuardLimits& limits) {
   // The parent decides what happens on an interrupt; if it dies, so does the child.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
+  std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXCPU, on_processor_limit);
   limit(RLIMIT_CORE, 0);
