@@ -72,9 +72,10 @@ struct MappedSystem {
 };
 
 struct MapTools {
-  std::filesystem::path folder;  ///< for an outside program's log; exists
-  Cache maps = Cache();          ///< finished maps of systems that can save them
-  std::string key;               ///< of the map
+  std::filesystem::path folder;                    ///< for an outside program's log; exists
+  Cache maps = Cache();                            ///< finished maps of systems that can save them
+  std::string key;                                 ///< of the map
+  std::vector<std::filesystem::path> hidden = {};  ///< as RunTools
   std::function<void(std::string_view)> say = [](std::string_view) {};  ///< as EpisodeOptions
   std::function<void(double)> progress = [](double) {};
   std::function<void(std::string_view)> status = {};  ///< receives what a library is asked for

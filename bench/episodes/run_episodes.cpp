@@ -266,6 +266,7 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
                                          {.folder = folder,
                                           .maps = cache,
                                           .key = keys[r].map,
+                                          .hidden = {options.out, cache.folder()},
                                           .say = options.say,
                                           .status = options.status});
           options.say(fmt::format(
@@ -307,6 +308,7 @@ OneEpisode prepare_episode(const Suite& suite, const RunSpec& run, const Episode
                         {.folder = options.out,
                          .maps = cache,
                          .key = keys.map,
+                         .hidden = {options.out, cache.folder()},
                          .say = options.say,
                          .progress = options.progress});
   return one;

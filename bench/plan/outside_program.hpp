@@ -31,7 +31,9 @@ struct OutsideProgram {
   std::vector<std::string> inputs = {};
   std::string library = {};   ///< in mode kLibrary the file to load, relative to the folder
   std::string settings = {};  ///< its settings file, relative to the folder; empty: none
-  std::string place = {};     ///< "suite.yaml:12", for messages; empty: not from a file
+  /// Files and folders that it must not see; not from the suite.
+  std::vector<std::filesystem::path> hidden = {};
+  std::string place = {};  ///< "suite.yaml:12", for messages; empty: not from a file
 };
 
 /// Refuses an empty command or library, limits out of range, an unknown placeholder and a

@@ -239,6 +239,7 @@ void execute_run(const SingleRunOptions& order) {
   if (!order.metrics_only) remove_run(folder);
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
+                                 .hidden = {order.folder, order.cache},
                                  .progress = order.progress,
                                  .status = order.status,
                                  .system = {},

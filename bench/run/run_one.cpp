@@ -11,6 +11,7 @@
 #include "bench/inputs/run_key.hpp"
 #include "bench/provenance/digest.hpp"
 #include "bench/results/placed.hpp"
+#include "bench/run/hidden.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
 #include "bench/systems/library.hpp"
@@ -210,8 +211,8 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
 
 /// Writes the mapping frames as a folder and returns an outside program's trajectory for them.
 /// @param skipped  receives the frames that could not be written
-Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, const RunTools& tools,
-                        WorkDone& work, SkippedFrames& skipped) {
+Trajectory run_recorded(const RunSpec& spec, const World& world, const Sequence& mapping,
+                        const RunTools& tools, WorkDone& work, SkippedFrames& skipped) {
   const RandomStream stream = mapping_stream(spec);
   const std::vector<std::size_t> offered = offered_frames(mapping.size(), spec.protocol);
   UsableFrames frames(mapping);
@@ -225,8 +226,8 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, const RunT
   frames.require_any();
   skipped = frames.skipped();
   Trajectory trajectory = run_on_dataset(
-      spec.system.outside, given.path(), stamps, spec.seed, tools.folder / kOutsideLog,
-      [&](std::size_t read) {
+      program_of(spec, world, tools.hidden), given.path(), stamps, spec.seed,
+      tools.folder / kOutsideLog, [&](std::size_t read) {
         tools.status(fmt::format("has read {} of {}", read, counted(stamps.size(), "frame")));
         work.reached(offered.size() + std::min(read, stamps.size()));
       });
@@ -237,14 +238,15 @@ Trajectory run_recorded(const RunSpec& spec, const Sequence& mapping, const RunT
 }  // namespace
 
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, const fs::path& folder,
-                                    std::function<void(std::string_view)> status) {
+                                    std::function<void(std::string_view)> status,
+                                    const std::vector<fs::path>& hidden) {
   if (spec.system.is_outside()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
     if (spec.system.is_library())
       return make_library_system(spec.system.outside, world.mapping->camera(), spec.seed,
                                  folder / kOutsideLog, std::move(status));
-    return make_conversation_system(spec.system.outside, world.mapping->camera(), spec.seed,
-                                    folder / kOutsideLog);
+    return make_conversation_system(program_of(spec, world, hidden), world.mapping->camera(),
+                                    spec.seed, folder / kOutsideLog);
   }
   SlamConfig settings = spec.slam;
   if (world.readout_s) settings.track.readout_s = *world.readout_s;
@@ -288,12 +290,12 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
 
-  std::unique_ptr<System> inner = tools.system
-                                      ? tools.system(spec, world)
-                                      : make_system(spec, world, tools.folder, tools.status);
+  std::unique_ptr<System> inner =
+      tools.system ? tools.system(spec, world)
+                   : make_system(spec, world, tools.folder, tools.status, tools.hidden);
   if (inner == nullptr) {  // a program that only returns a trajectory: no queries
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
-    run.estimate = run_recorded(spec, frames, tools, work, run.mapping.skipped);
+    run.estimate = run_recorded(spec, world, frames, tools, work, run.mapping.skipped);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
     run.frames = frames_of(run.estimate, run.truth);
     integrate();

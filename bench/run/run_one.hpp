@@ -28,10 +28,12 @@ inline constexpr const char* kOutsideLog = "outside.log";
 /// a folder of recorded frames instead.
 /// @param folder  for the log of an outside program
 /// @param status  receives what a library is being asked for
+/// @param hidden  as RunTools
 /// @throws InputError if settings are out of range; OutsideError if the program does not start.
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder,
-                                    std::function<void(std::string_view)> status = {});
+                                    std::function<void(std::string_view)> status = {},
+                                    const std::vector<std::filesystem::path>& hidden = {});
 
 /// The stream that mapping draws from (bench/protocol/mapping.hpp).
 RandomStream mapping_stream(const RunSpec& spec);
@@ -47,6 +49,8 @@ RandomStream query_stream(const RunSpec& spec, QuerySet set);
 /// `occupancy` can change a result.
 struct RunTools {
   std::filesystem::path folder = ".";  ///< exists; an outside program's files go there
+  std::vector<std::filesystem::path> hidden =
+      {};  ///< output folder and cache: no outside program sees them
   /// Receives the share of the work that is done, in [0, 1]; a rewind does not reduce it.
   std::function<void(double)> progress = [](double) {};
   /// Receives the status of the mapping after each frame: "frame 120 of 4490, 2 restarts, lost".

@@ -21,6 +21,8 @@
 #include <fmt/format.h>
 
 #include "slam/core/error.hpp"
+#include "slam/core/last_line.hpp"
+#include "slam/core/legible.hpp"
 
 extern char** environ;
 
@@ -45,11 +47,11 @@ std::vector<char*> with_large_pages() {
 
 /// The last nonblank line.
 std::string last_line(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::string line, last;
-  while (std::getline(in, line))
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  return last;
+  const int opened = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (opened < 0) return {};
+  std::string line = last_line_of(opened);
+  close(opened);
+  return line;
 }
 
 double seconds(const timeval& t) {
@@ -124,10 +126,14 @@ void RunProcess::kill() {
 
 void RunProcess::read_shares() {
   char buffer[4096];
-  for (;;) {
+  constexpr int kMost = 256;  // pieces: one that always has more must not keep us
+  for (int piece = 0; piece < kMost; ++piece) {
     const ssize_t got = read(output_, buffer, sizeof buffer);
     if (got <= 0) break;
     unread_.append(buffer, static_cast<std::size_t>(got));
+    // A library in it may print there, too, and without an end.
+    constexpr std::size_t kLongestLine = 1 << 16;
+    if (unread_.size() > kLongestLine && unread_.find('\n') == std::string::npos) unread_.clear();
   }
   for (auto end = unread_.find('\n'); end != std::string::npos; end = unread_.find('\n')) {
     const std::string line = unread_.substr(0, end);
@@ -136,11 +142,11 @@ void RunProcess::read_shares() {
     const double share = std::strtod(line.c_str(), &rest);
     if (!line.empty() && *rest == '\0') {
       if (share_ == 0) first_share_ = std::chrono::steady_clock::now();
-      share_ = share;
+      share_ = share >= 0 && share <= 1 ? share : share_;
     } else if (line.starts_with(kStatusMark)) {
-      status_ = line.substr(1);
+      status_ = legible(line.substr(1));
     } else {
-      stages_.push_back(line);
+      stages_.push_back(legible(line));
     }
   }
 }

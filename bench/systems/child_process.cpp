@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/systems/child_process.hpp"
+#include "bench/plan/find_program.hpp"
+#include "bench/systems/hiding.hpp"
+#include "bench/systems/program_folder.hpp"
+#include "slam/core/last_line.hpp"
+#include "slam/core/legible.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -12,7 +17,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <fstream>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,11 +27,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLongestLine = std::size_t{64} << 20;  // a trajectory is about 1e5 bytes
+constexpr std::size_t kLongestLine = std::size_t{16} << 20;  // a trajectory is about 1e5 bytes
 constexpr auto kLook = std::chrono::milliseconds(500);       // between two checks of its limits
 constexpr double kMegabyte = 1024.0 * 1024.0;
-constexpr double kLogLimit_mb = 64;  // docs/outside_systems.md
-constexpr int kMoment_ms = 2000;     // grace for a program that closed its pipe
+constexpr double kLogLimit_mb = 64;                      // docs/outside_systems.md
+constexpr int kMoment_ms = 2000;                         // grace for a program that closed its pipe
+constexpr std::size_t kMostSaid = 200, kMostTold = 600;  // bytes of a log's line, of a message
 
 Clock::time_point after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -39,15 +44,28 @@ void close_if_open(int& fd) {
   fd = -1;
 }
 
-/// Total size of the files below a folder, MB; files removed meanwhile are not counted.
-double size_mb(const fs::path& folder) {
-  double bytes = 0;
+/// What lies below a folder: total size of its files, whether folders nest too deep to look into.
+struct Contents {
+  double mb = 0;
+  bool too_deep = false;
+};
+
+/// Files removed meanwhile are not counted.
+Contents contents_of(const fs::path& folder) {
+  Contents found;
   std::error_code error;
-  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
-       it.increment(error))
+  constexpr auto kHow = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator it(folder, kHow, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it.depth() >= kDeepestFolder) {
+      found.too_deep = true;
+      it.disable_recursion_pending();
+    }
     if (std::error_code gone; it->symlink_status(gone).type() == fs::file_type::regular)
-      if (const auto size = it->file_size(gone); !gone) bytes += static_cast<double>(size);
-  return bytes / kMegabyte;
+      if (const auto size = it->file_size(gone); !gone)
+        found.mb += static_cast<double>(size) / kMegabyte;
+  }
+  return found;
 }
 
 /// Removes the folders' names from file paths in a text, so that it does not depend on them.
@@ -65,25 +83,29 @@ std::string without_folders(std::string text, const std::vector<fs::path>& folde
   return text;
 }
 
-std::string last_line(const fs::path& file, const std::vector<fs::path>& folders) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in) return {};
-  constexpr std::streamoff kTail = 4096;
-  const std::streamoff size = in.tellg();
-  in.seekg(std::max<std::streamoff>(0, size - kTail));
-  std::string line, last;
-  while (std::getline(in, line))
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  if (last.starts_with("modelhouse: ")) return {};  // the watcher's note; reported separately
-  last = without_folders(last, folders);
-  constexpr std::size_t kMost = 200;
-  if (last.size() > kMost) last = last.substr(0, kMost) + "...";
-  for (char& c : last)
+/// What a program needs to see, as far as the suite names it.
+std::vector<fs::path> needed_by(const OutsideProgram& program, const fs::path& folder) {
+  std::vector<fs::path> needed = {program.folder, folder};
+  if (!program.hidden.empty())
+    for (const ProgramFile& file : files_of(program)) needed.push_back(file.file);
+  return needed;
+}
+
+/// The beginning of a text in one line of printable characters.
+std::string told(std::string text, std::size_t most) {
+  const bool cut = text.size() > most;
+  if (cut) text.resize(most);
+  for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return last;
+  return legible(std::move(text)) + (cut ? "..." : "");
 }
 
 }  // namespace
+
+int new_log(const fs::path& file) {
+  unlink(file.c_str());  // an earlier program may have put a link there
+  return open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
+}
 
 ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, Talk talk,
                            const fs::path& log, const fs::path& folder)
@@ -91,8 +113,8 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   const auto machine = [&](std::string_view what) {
     throw MachineError(fmt::format("{}: {}: {}", program_.name, what, std::strerror(errno)));
   };
-  const int log_file = open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (log_file < 0) machine(log_.string());
+  log_file_ = new_log(log_);
+  if (log_file_ < 0) machine(log_.string());
   int in[2] = {-1, -1}, out[2] = {-1, -1};  // ours, the child's
   if (talk == Talk::kOverPipes) {
     // A socket, not a pipe: writing to a program that has exited must return an error, not raise
@@ -104,32 +126,38 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   }
   to_child_ = in[0];
   from_child_ = out[0];
-  size_before_mb_ = size_mb(folder_);
+  size_before_mb_ = contents_of(folder_).mb;
   const std::string runs_in = program_.folder.string(), scratch = folder_.string();
+  const Hiding hiding(program_.hidden, needed_by(program_, folder_));
   watcher_.emplace(WatchedCommand{
       .folder = runs_in.c_str(),
       .command = command_.c_str(),
       .in = in[1],
       .out = out[1],
-      .log = log_file,
+      .log = log_file_,
       .log_limit_bytes = static_cast<std::uint64_t>(kLogLimit_mb * kMegabyte),
       .file_limit_bytes = static_cast<std::uint64_t>(program_.disk_limit_mb * kMegabyte),
-      .scratch = scratch.c_str()});
-  for (const int file : {in[1], out[1], log_file})
+      .scratch = scratch.c_str(),
+      .hiding = &hiding});
+  for (const int file : {in[1], out[1]})
     if (file >= 0) close(file);
 }
 
 ChildProcess::~ChildProcess() {
   close_if_open(to_child_);
   close_if_open(from_child_);
+  close_if_open(log_file_);
 }
 
 void ChildProcess::fail(std::string_view what) {
   watcher_->end_all();
   const std::vector<fs::path> folders = {folder_, log_.parent_path()};
-  const std::string said = last_line(log_, folders);
+  // Its file may be another by now.
+  std::string said = last_line_of(log_file_);
+  if (said.starts_with("modelhouse: ")) said.clear();  // the watcher's note; reported separately
+  said = told(without_folders(std::move(said), folders), kMostSaid);
   throw OutsideError(fmt::format("outside program '{}' ({}) {}{}", program_.name, program_.command,
-                                 without_folders(std::string(what), folders),
+                                 told(without_folders(std::string(what), folders), kMostTold),
                                  said.empty() ? "" : "; it last wrote: " + said));
 }
 
@@ -140,12 +168,21 @@ void ChildProcess::check_limits(std::string_view doing) {
     if (const double mb = watcher_->resident_mb(); mb > program_.memory_limit_mb)
       fail(fmt::format("used {:.0f} MB of memory during {}, its limit is {:g} MB", mb, doing,
                        program_.memory_limit_mb));
-  if (program_.disk_limit_mb > 0)
-    if (const double mb = size_mb(folder_) - size_before_mb_; mb > program_.disk_limit_mb)
+  if (program_.disk_limit_mb > 0) {
+    const Contents found = contents_of(folder_);
+    if (found.too_deep)
+      fail(fmt::format("nested folders more than {} levels deep in its folder during {}",
+                       kDeepestFolder, doing));
+    if (const double mb = found.mb - size_before_mb_; mb > program_.disk_limit_mb)
       fail(fmt::format("wrote {:.0f} MB into its folder during {}, its limit is {:g} MB", mb, doing,
                        program_.disk_limit_mb));
+  }
   // Checking takes a small share of the time, however many files there are.
   next_look_ = Clock::now() + std::max<Clock::duration>(kLook, 20 * (Clock::now() - start));
+}
+
+double ChildProcess::written_mb() const {
+  return contents_of(folder_).mb - size_before_mb_;
 }
 
 std::string ChildProcess::ending(int wait_ms) {
@@ -193,8 +230,8 @@ void ChildProcess::send(std::string_view line, std::string_view doing) {
 
 std::string ChildProcess::read_line(double limit_s, std::string_view doing) {
   const auto deadline = after(limit_s);
-  for (;;) {
-    if (const std::size_t end = unread_.find('\n'); end != std::string::npos) {
+  for (std::size_t searched = 0;;) {
+    if (const std::size_t end = unread_.find('\n', searched); end != std::string::npos) {
       std::string line = unread_.substr(0, end);
       unread_.erase(0, end + 1);
       return line;
@@ -210,6 +247,7 @@ std::string ChildProcess::read_line(double limit_s, std::string_view doing) {
     if (ready <= 0) continue;
     char buffer[1 << 16];
     const ssize_t n = read(from_child_, buffer, sizeof buffer);
+    searched = unread_.size();
     if (n > 0)
       unread_.append(buffer, static_cast<std::size_t>(n));
     else if (n == 0 || errno != EINTR)

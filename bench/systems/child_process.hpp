@@ -14,6 +14,10 @@
 
 namespace mh {
 
+/// Opens a new file for what a program says, in place of an earlier one; -1 and errno if it cannot
+/// be.
+int new_log(const std::filesystem::path& file);
+
 /// An outside program running under a watcher, with limits on time, memory and disk use. The
 /// program and all its descendants are killed when this object is destroyed or this process ends,
 /// for whatever reason (for exceptions see watcher.hpp). Every failure is an OutsideError naming
@@ -53,6 +57,9 @@ class ChildProcess {
   /// failure has the same message anywhere.
   [[noreturn]] void fail(std::string_view what);
 
+  /// By how much its folder has grown.
+  double written_mb() const;
+
  private:
   void check_limits(std::string_view doing);
   /// Describes how it ended; waits for that.
@@ -64,7 +71,7 @@ class ChildProcess {
   const std::filesystem::path log_, folder_;
   double size_before_mb_ = 0;                        ///< of the folder
   std::chrono::steady_clock::time_point next_look_;  ///< check of its limits
-  int to_child_ = -1, from_child_ = -1;
+  int to_child_ = -1, from_child_ = -1, log_file_ = -1;
   std::optional<Watcher> watcher_;
   std::string unread_;
 };

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/systems/conversation.hpp"
 
-#include <stdlib.h>
-#include <unistd.h>
-
 #include <array>
 #include <mutex>
 #include <set>
@@ -15,8 +12,11 @@
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/outside_system.hpp"
+#include "bench/systems/scratch_folder.hpp"
 #include "scenes/recorded/frame_files.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/json_text.hpp"
 #include "slam/core/lower_case.hpp"
 #include "slam/core/trajectory_io.hpp"
 
@@ -24,33 +24,11 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Request = nlohmann::ordered_json;
+using Json = nlohmann::json;  // of a reply: one of many keys costs no more than its length
 
 constexpr int kProtocol = 1;
 constexpr double kFarewell_s = 5;  // docs/outside_systems.md
-
-/// A scratch folder, in memory if possible, removed at the end.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::error_code error;
-    const fs::path memory = "/dev/shm";
-    const bool there = fs::is_directory(memory, error) && access(memory.c_str(), W_OK) == 0;
-    std::string name =
-        ((there ? memory : fs::temp_directory_path()) / "modelhouse-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw MachineError(fmt::format("{}: no temporary folder can be made", name));
-    path = name;
-  }
-  ~ScratchFolder() {
-    std::error_code error;
-    fs::remove_all(path, error);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  fs::path path;
-};
 
 std::string shortened(std::string_view line) {
   constexpr std::size_t kMost = 120;
@@ -61,9 +39,9 @@ std::string shortened(std::string_view line) {
 }
 
 /// k4 to k6 only where they are not 0.
-Json json_of(const Camera& camera) {
+Request json_of(const Camera& camera) {
   const Distortion& d = camera.distortion;
-  Json json = {{"width", camera.width_px},
+  Request json = {{"width", camera.width_px},
                {"height", camera.height_px},
                {"fx", camera.fx_px},
                {"fy", camera.fy_px},
@@ -87,8 +65,8 @@ class Conversation {
                const fs::path& log)
       : reply_limit_s_(program.reply_limit_s),
         child_(program, command(program, camera, seed), ChildProcess::Talk::kOverPipes, log,
-               scratch_.path) {
-    Json classes_by_id = Json::array();
+               scratch_.path()) {
+    Request classes_by_id = Request::array();
     for (const ClassInfo& info : classes()) classes_by_id.push_back(info.name);
     const Json reply = ask("hello",
                            {{"protocol", kProtocol},
@@ -105,10 +83,10 @@ class Conversation {
 
   /// Sends a request and returns its reply. The reply must have this request's number and no keys
   /// other than `known`.
-  Json ask(const std::string& what, const Json& fields, const std::set<std::string>& known) {
+  Json ask(const std::string& what, const Request& fields, const std::set<std::string>& known) {
     const std::lock_guard lock(mutex_);
     doing_ = fmt::format("{} (request {})", what, ++number_);
-    Json request = {{"id", number_}, {"do", what}};
+    Request request = {{"id", number_}, {"do", what}};
     request.update(fields);
     child_.send(request.dump(), doing_);
     const std::string line = child_.read_line(reply_limit_s_, doing_);
@@ -127,14 +105,15 @@ class Conversation {
 
   /// Sends a request about a frame and parses the fields that any such reply may contain.
   SystemReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
-                         Json fields) {
-    if (std::error_code error; !fs::is_directory(scratch_.path, error))
-      fail("removed the folder of its images");
-    const FrameFiles files = show(frame, scratch_.path);
+                         Request fields) {
+    const FrameFiles files = image_files(frame);
+    images_mb_ =
+        static_cast<double>(files.color.size() + files.depth.size() + files.labels.size()) /
+        (1024.0 * 1024.0);
     fields["stamp"] = format_stamp(frame.stamp_ns);
-    fields["color"] = files.color.string();
-    fields["depth"] = files.depth.string();
-    if (!files.labels.empty()) fields["labels"] = files.labels.string();
+    fields["color"] = show("color.ppm", files.color);
+    fields["depth"] = show("depth.pgm", files.depth);
+    if (!files.labels.empty()) fields["labels"] = show("labels.pgm", files.labels);
     fields["seed"] = told_seed(stream);
     const Json reply =
         ask(what, fields,
@@ -157,7 +136,19 @@ class Conversation {
   }
 
  private:
-  fs::path settings() const { return scratch_.path / "settings.yaml"; }
+  fs::path settings() const { return scratch_.path() / "settings.yaml"; }
+  /// Writes an image for the program. @returns its path
+  std::string show(const char* name, const std::string& image) {
+    try {
+      if (const std::string why = scratch_.write(name, image); !why.empty()) fail(why);
+    } catch (const DiskFullError&) {
+      constexpr double kMuch_mb = 1;
+      if (const double mb = child_.written_mb() - images_mb_; mb > kMuch_mb)
+        fail(fmt::format("left no room for its images: it wrote {:.0f} MB beside them", mb));
+      throw;
+    }
+    return (scratch_.path() / name).string();
+  }
   std::string command(const OutsideProgram& program, const Camera& camera, std::uint64_t seed) {
     write_atomically(settings(), settings_text(camera));
     return expand_command(program.command,
@@ -165,6 +156,9 @@ class Conversation {
   }
 
   Json parse(const std::string& line) {
+    if (is_nested_too_deep(line))
+      fail(fmt::format("nested its reply more than {} levels deep: '{}'", kDeepestJson,
+                       shortened(line)));
     Json reply;
     std::vector<std::set<std::string>> keys;  // of the open objects, innermost last
     std::string doubled;
@@ -253,6 +247,7 @@ class Conversation {
   const double reply_limit_s_;
   std::mutex mutex_;
   std::uint64_t number_ = 0;
+  double images_mb_ = 0;  ///< of one frame
   std::string doing_ = "hello";
   ChildProcess child_;
 };
@@ -263,19 +258,20 @@ class ConversationSystem : public OutsideSystem {
                      const fs::path& log)
       : talk_(std::make_unique<Conversation>(program, camera, seed, log)) {}
 
-  void rewind() override { talk_->ask("rewind", Json::object(), {}); }
+  void rewind() override { talk_->ask("rewind", Request::object(), {}); }
   void finish() override { talk_->finish(); }
 
  private:
   SystemReport ask(Question what, std::uint64_t session, const RgbdFrame& frame,
                    RandomStream stream) const override {
-    if (what == Question::kTrack) return talk_->ask_about("track", frame, stream, Json::object());
+    if (what == Question::kTrack)
+      return talk_->ask_about("track", frame, stream, Request::object());
     return talk_->ask_about(what == Question::kBlank ? "blank" : "relocalize", frame, stream,
                             {{"session", session}});
   }
-  void forget() override { talk_->ask("reset", Json::object(), {}); }
+  void forget() override { talk_->ask("reset", Request::object(), {}); }
   std::optional<Trajectory> end_mapping() override {
-    const Json reply = talk_->ask("freeze", Json::object(), {"trajectory"});
+    const Json reply = talk_->ask("freeze", Request::object(), {"trajectory"});
     const auto it = reply.find("trajectory");
     if (it == reply.end()) return std::nullopt;
     return trajectory_of(*it);

@@ -22,6 +22,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/systems/child_process.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/outside_system.hpp"
 #include "include/modelhouse/system.h"
@@ -38,8 +39,7 @@ namespace fs = std::filesystem;
 /// An open file that receives what is printed.
 class Log {
  public:
-  explicit Log(const fs::path& file)
-      : descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644)) {
+  explicit Log(const fs::path& file) : descriptor_(new_log(file)) {
     if (descriptor_ < 0)
       throw MachineError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
   }

@@ -35,6 +35,7 @@ void check_told(const SystemReport& report, const Refuse& refuse) {
     refuse(fmt::format("gave a pose and the stage \"{}\", which is one of failure", name(*stage)));
   if (stage == RelocalizationStage::kVerified && !report.world_from_camera)
     refuse(fmt::format("gave the stage \"{}\" without a pose", name(*stage)));
+  if (report.keyframe_added && !report.world_from_camera) refuse("gave a keyframe without a pose");
   if (report.inliers && report.keypoints && *report.inliers > *report.keypoints)
     refuse(fmt::format("gave {} inliers of {} keypoints", *report.inliers, *report.keypoints));
   const Candidates& c = report.candidates;

@@ -21,7 +21,8 @@ using Refuse = std::function<void(const std::string& what)>;
 /// non-finite values and a quaternion far from unit length.
 SE3 told_pose(const std::array<double, 7>& values, const Refuse& refuse);
 
-/// Refuses candidate counts that grow from step to step, and a failure stage together with a pose.
+/// Refuses candidate counts that grow from step to step, a failure stage together with a pose, and
+/// a keyframe without one.
 void check_told(const SystemReport& report, const Refuse& refuse);
 
 /// The seed that an outside system receives: 31 bits of a frame's stream, which fit an int

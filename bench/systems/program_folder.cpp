@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <functional>
 #include <optional>
 #include <set>
@@ -15,6 +16,7 @@
 
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/remove_tree.hpp"
 
 namespace mh {
 namespace {
@@ -33,21 +35,62 @@ bool is_true_folder(const fs::path& path) {
   return fs::symlink_status(path, error).type() == fs::file_type::directory;
 }
 
-/// Lists each file as "SIZE TIME NAME" and each folder as "NAME/", one per line. Names that contain
-/// a newline are left out and therefore never removed.
+/// Gives us all rights to a folder of a program, which may have denied them.
+void open_up(const fs::path& folder) {
+  std::error_code error;
+  fs::permissions(folder, fs::perms::owner_all, fs::perm_options::add, error);
+}
+
+/// Lists each file as "SIZE TIME NAME" and each folder as "NAME/", one per line; opens the folders
+/// up. Names that contain a newline, and folders that are too deep, are left out and therefore
+/// never removed.
 std::string list_of(const fs::path& folder) {
   std::string list;
   std::error_code error;
-  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+  constexpr auto kHow = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator it(folder, kHow, error), end; !error && it != end;
        it.increment(error)) {
+    const bool is_folder = is_true_folder(it->path());
+    if (is_folder) open_up(it->path());
+    if (it.depth() >= kDeepestFolder) it.disable_recursion_pending();
     const std::string name = it->path().lexically_relative(folder).string();
     if (name.find('\n') != std::string::npos) continue;
-    if (is_true_folder(it->path()))
+    if (is_folder)
       list += name + "/\n";
     else if (const auto state = state_of(it->path()))
       list += fmt::format("{} {}\n", *state, name);
   }
   return list;
+}
+
+/// Moves a folder to a name that is not taken, on another disk, too. There, what is neither a file
+/// nor a folder nor a link is left out, and what is too deep.
+void move_folder(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (!error) return;
+  if (error != std::errc::cross_device_link) throw_unwritable(to, error.value());
+  fs::create_directory(to);
+  for (fs::recursive_directory_iterator it(from), end; it != end; ++it) {
+    const fs::path copy = to / it->path().lexically_relative(from);
+    const fs::file_type type = it->symlink_status().type();
+    if (it.depth() >= kDeepestFolder) it.disable_recursion_pending();
+    if (type == fs::file_type::directory) open_up(it->path());
+    if (type == fs::file_type::directory)
+      fs::create_directory(copy, error);
+    else if (type == fs::file_type::symlink)
+      fs::copy_symlink(it->path(), copy, error);
+    else if (type == fs::file_type::regular)
+      fs::copy_file(it->path(), copy, error);
+    if (error) throw_unwritable(copy, error.value());
+  }
+}
+
+/// Where a program's folder is made: not below one that holds results, and with room for images.
+fs::path place_of_folders() {
+  const fs::path large = "/var/tmp";  // in memory on fewer systems than /tmp
+  const bool usable = std::getenv("TMPDIR") == nullptr && access(large.c_str(), W_OK | X_OK) == 0;
+  return usable ? large : fs::temp_directory_path();
 }
 
 /// Whether a name is inside the folder, not through a link.
@@ -87,6 +130,11 @@ void remove_listed(const fs::path& folder) {
   ::rmdir(folder.c_str());
 }
 
+std::string identity_of(const fs::path& folder) {
+  struct stat s {};
+  return lstat(folder.c_str(), &s) == 0 ? fmt::format("{} {}", s.st_dev, s.st_ino) : std::string();
+}
+
 fs::path made(const fs::path& folder) {
   fs::create_directory(folder);
   return folder;
@@ -96,8 +144,9 @@ fs::path made(const fs::path& folder) {
 
 ProgramFolder::ProgramFolder(const fs::path& run)
     : run_(fs::absolute(run).lexically_normal()),
-      work_(run_.parent_path()),
-      path_(made(work_.path() / "run")) {}
+      work_(place_of_folders()),
+      path_(made(work_.path() / "run")),
+      identity_(identity_of(path_)) {}
 
 ProgramFolder::~ProgramFolder() {
   try {
@@ -108,15 +157,18 @@ ProgramFolder::~ProgramFolder() {
 }
 
 void ProgramFolder::move_to_run() {
-  if (!is_true_folder(path_)) return;
-  write_atomically(path_ / kList, list_of(path_));
+  if (!is_true_folder(path_) || identity_of(path_) != identity_) return;
+  open_up(path_);
   for (int number = 1;; ++number) {
     const fs::path place = run_ / (number == 1 ? "outside" : fmt::format("outside.{}", number));
     remove_listed(place);
     std::error_code error;
     if (fs::exists(fs::symlink_status(place, error))) continue;
-    fs::rename(path_, place, error);
-    if (error) throw_unwritable(place, error.value());
+    move_folder(path_, place);
+    // Last: a copy has times of its own. What the program itself put there goes.
+    remove_tree((place / kList).c_str());
+    fs::remove(place / kList, error);
+    write_atomically(place / kList, list_of(place));
     return;
   }
 }

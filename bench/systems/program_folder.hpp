@@ -2,19 +2,23 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "slam/core/temporary_folder.hpp"
 
 namespace mh {
 
+/// How deep folders in a program's folder may nest: paths cost as much as they have parts.
+inline constexpr int kDeepestFolder = 100;
+
 /// The folder given to an outside program, for its dataset and its output. It is new for each run
-/// and not inside a folder with results, so the program sees neither the ground truth nor the
-/// remains of an earlier run. At the end it is moved into the run's folder, as `outside`.
+/// and below TMPDIR (/var/tmp if that is not set), not below a folder with results, so that the
+/// program meets neither the ground truth nor the remains of an earlier run. At the end it is moved
+/// into the run's folder, as `outside`.
 ///
 /// Before that, the remains of an earlier run are removed there: the files it contained when it was
 /// moved, unless they changed since. If anything else is there, it stays, and the new folder
 /// becomes `outside.2`, and so on.
-/// `outside.2`, and so on.
 class ProgramFolder {
  public:
   /// @param run  exists; the program never learns its path
@@ -33,6 +37,7 @@ class ProgramFolder {
   const std::filesystem::path run_;
   const TemporaryFolder work_;
   const std::filesystem::path path_;
+  const std::string identity_;  ///< of that folder, which the program could replace
 };
 
 }  // namespace mh

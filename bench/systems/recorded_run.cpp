@@ -13,6 +13,7 @@
 #include "bench/systems/frames_read.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "scenes/recorded/tum_folder.hpp"
+#include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -21,6 +22,8 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kTrajectory = "trajectory.txt";
 
 /// Returns the frame that a stamp refers to; nullopt if none is within the tolerance.
 std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
@@ -31,9 +34,26 @@ std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
   return best;
 }
 
+/// What the program wrote as its trajectory: a file of its own folder, not what a link leads to.
+/// @param home  the folder's canonical path, before the program ran
+std::string written_text(const fs::path& home, ChildProcess& child) {
+  constexpr std::uintmax_t kLongest = std::uintmax_t{64} << 20;  // one is about 1e5 bytes
+  const fs::path trajectory = home / kTrajectory;
+  std::error_code error;
+  if (!fs::exists(trajectory, error)) child.fail("ended well but wrote no trajectory");
+  require_readable(trajectory);
+  const fs::path file = fs::canonical(trajectory, error);
+  if (error || *file.lexically_relative(home).begin() == "..")
+    child.fail("made its trajectory a link out of its folder");
+  if (const auto bytes = fs::file_size(file, error); bytes > kLongest)
+    child.fail(
+        fmt::format("wrote a trajectory of {} MB, {} MB is the most", bytes >> 20, kLongest >> 20));
+  return read_text(trajectory);
+}
+
 /// A file without poses is a valid answer: completeness 0.
-bool tracked_nothing(const fs::path& trajectory) {
-  std::istringstream lines(read_text(trajectory));
+bool tracked_nothing(const std::string& trajectory) {
+  std::istringstream lines(trajectory);
   for (std::string line; std::getline(lines, line);)
     if (line.find_first_not_of(" \t\r") < line.find('#')) return false;
   return true;
@@ -81,7 +101,7 @@ Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& folder,
                           const std::function<void(std::size_t)>& read) {
   validate(program);
   const fs::path place = fs::absolute(folder), dataset = place / "dataset";
-  const fs::path trajectory = place / "trajectory.txt";
+  const fs::path trajectory = place / kTrajectory;
   const std::string command =
       expand_command(program.command, {{"dataset", dataset.string()},
                                        {"associations", (dataset / "associations.txt").string()},
@@ -89,14 +109,15 @@ Trajectory run_on_dataset(const OutsideProgram& program, const fs::path& folder,
                                        {"labels", (dataset / "label.txt").string()},
                                        {"trajectory", trajectory.string()},
                                        {"seed", std::to_string(seed)}});
+  const fs::path home = fs::canonical(place);
   ChildProcess child(program, command, ChildProcess::Talk::kNo, fs::absolute(log), place);
   FramesRead images(dataset / "rgb");
   child.wait_for_success(program.run_limit_s, [&] { read(images.count()); });
   read(images.count());
-  if (!fs::exists(trajectory)) child.fail("ended well but wrote no trajectory");
   try {
-    if (tracked_nothing(trajectory)) return {};
-    return with_frame_stamps(read_trajectory(trajectory), stamps, child);
+    const std::string text = written_text(home, child);
+    if (tracked_nothing(text)) return {};
+    return with_frame_stamps(parse_trajectory(text, trajectory.string()), stamps, child);
   } catch (const InputError& error) {
     child.fail(fmt::format("wrote a bad trajectory: {}", error.what()));
   }

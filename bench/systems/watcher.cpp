@@ -23,7 +23,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/systems/hiding.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/remove_tree.hpp"
 
 namespace mh {
 namespace {
@@ -92,6 +94,8 @@ void for_each_process(const Work& work) {
   }
   if (dup2(c.in, 0) < 0 || dup2(c.out < 0 ? said : c.out, 1) < 0 || dup2(said, 2) < 0) _exit(126);
   close_range(3, ~0U, 0);
+  if (c.hiding != nullptr) c.hiding->apply();
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // again: a new user namespace may clear it
   if (chdir(c.folder) != 0) {
     constexpr char kWhy[] = "its folder cannot be entered\n";
     if (write(2, kWhy, sizeof kWhy - 1) < 0) _exit(125);
@@ -144,8 +148,7 @@ class Watch {
     char byte = 0;
     const bool abandoned = read(life_, &byte, 1) <= 0;
     end_all();
-    if (abandoned && *command_.scratch != '\0')
-      execl("/bin/rm", "rm", "-rf", "--", command_.scratch, static_cast<char*>(nullptr));
+    if (abandoned && *command_.scratch != '\0') remove_tree(command_.scratch);
     _exit(0);
   }
 

@@ -8,6 +8,8 @@
 
 namespace mh {
 
+class Hiding;
+
 /// A command to run under a watcher; everything it points to must outlive only the call that starts
 /// it.
 struct WatchedCommand {
@@ -19,6 +21,7 @@ struct WatchedCommand {
   std::uint64_t log_limit_bytes = 0;
   std::uint64_t file_limit_bytes = 0;  ///< per file that it writes; 0: unlimited
   const char* scratch = "";            ///< removed if this process ends before the watcher
+  const Hiding* hiding = nullptr;      ///< from the command; null: nothing
 };
 
 /// How a watched command ended.

@@ -2,18 +2,13 @@
 #include "scenes/recorded/frame_files.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "slam/core/file_errors.hpp"
-
 namespace mh {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The head of a portable any-map.
 struct PnmHead {
@@ -21,12 +16,10 @@ struct PnmHead {
   int width, height, greatest;
 };
 
-void write_pnm(const fs::path& file, const PnmHead& head, const void* pixels, std::size_t bytes) {
-  std::ofstream out(file, std::ios::binary);
-  out << head.magic << '\n' << head.width << ' ' << head.height << '\n' << head.greatest << '\n';
-  out.write(static_cast<const char*>(pixels), static_cast<std::streamsize>(bytes));
-  if (!out.flush())
-    throw DiskFullError(fmt::format("{}: cannot be written: is the disk full?", file.string()));
+std::string pnm(const PnmHead& head, const void* pixels, std::size_t bytes) {
+  std::string file =
+      fmt::format("{}\n{} {}\n{}\n", head.magic, head.width, head.height, head.greatest);
+  return file.append(static_cast<const char*>(pixels), bytes);
 }
 
 }  // namespace
@@ -41,22 +34,21 @@ Grid2d<ClassId> class_image(const SemanticImage& semantics) {
   return image;
 }
 
-FrameFiles show(const RgbdFrame& frame, const fs::path& folder) {
+FrameFiles image_files(const RgbdFrame& frame) {
   static_assert(sizeof(Rgb8) == 3);
   const int width = frame.color.width(), height = frame.color.height();
-  FrameFiles files{folder / "color.ppm", folder / "depth.pgm", {}};
-  write_pnm(files.color, {"P6", width, height, 255}, frame.color.data(), 3 * frame.color.size());
+  FrameFiles files;
+  files.color = pnm({"P6", width, height, 255}, frame.color.data(), 3 * frame.color.size());
   std::vector<std::uint8_t> depth(2 * frame.depth_m.size());
   for (std::size_t i = 0; i < frame.depth_m.size(); ++i) {
     const std::uint16_t units = depth_units(frame.depth_m.data()[i]);
     depth[2 * i] = static_cast<std::uint8_t>(units >> 8);  // big-endian, as the format requires
     depth[2 * i + 1] = static_cast<std::uint8_t>(units & 0xff);
   }
-  write_pnm(files.depth, {"P5", width, height, 65535}, depth.data(), depth.size());
+  files.depth = pnm({"P5", width, height, 65535}, depth.data(), depth.size());
   if (frame.semantics.index.empty()) return files;
-  files.labels = folder / "labels.pgm";
   const Grid2d<ClassId> labels = class_image(frame.semantics);
-  write_pnm(files.labels, {"P5", width, height, 255}, labels.data(), labels.size());
+  files.labels = pnm({"P5", width, height, 255}, labels.data(), labels.size());
   return files;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <string>
 
 #include "slam/core/camera.hpp"
 #include "slam/core/rgbd_frame.hpp"
@@ -22,16 +22,14 @@ inline std::uint16_t depth_units(float depth_m) {
 /// The class of each pixel: the most probable one of its distribution.
 Grid2d<ClassId> class_image(const SemanticImage& semantics);
 
-/// Paths of one frame's images, as written by show().
+/// One frame's images as what their files hold: uncompressed, so that they cost no more than a
+/// copy.
 struct FrameFiles {
-  std::filesystem::path color, depth;
-  std::filesystem::path labels;  ///< empty if the frame has none
+  std::string color;   ///< PPM, 8 bit
+  std::string depth;   ///< PGM, 16 bit, kDepthPerMeter
+  std::string labels;  ///< PGM, 8 bit, class ids; empty if the frame has none
 };
-
-/// Writes a frame's images as color.ppm (8 bit), depth.pgm (16 bit, kDepthPerMeter) and labels.pgm
-/// (8 bit, class ids) into a folder, overwriting those of the previous frame: uncompressed, so that
-/// it costs no more than a copy. @throws MachineError if that fails.
-FrameFiles show(const RgbdFrame& frame, const std::filesystem::path& folder);
+FrameFiles image_files(const RgbdFrame& frame);
 
 /// A calibration in the format of ORB-SLAM2 and its descendants: Camera.*, DepthMapFactor, ThDepth,
 /// ORBextractor.*, Viewer.*. load_recorded_camera() reads it back.

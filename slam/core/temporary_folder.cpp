@@ -18,6 +18,7 @@
 #include "slam/core/error.hpp"
 #include "slam/core/file_errors.hpp"
 #include "slam/core/files.hpp"
+#include "slam/core/remove_tree.hpp"
 
 namespace mh {
 namespace {
@@ -87,8 +88,7 @@ std::optional<OwnedFolder> OwnedFolder::take(const fs::path& folder) {
 
 void OwnedFolder::remove() {
   if (path_.empty()) return;
-  std::error_code error;
-  fs::remove_all(path_, error);
+  remove_tree(path_.c_str());
   path_.clear();
 }
 

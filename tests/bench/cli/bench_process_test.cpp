@@ -288,6 +288,22 @@ TEST(BenchProcess, CtrlCEndsEverythingAndKeepsWhatIsFinished) {
   EXPECT_EQ(tables("stopped"), undisturbed());
 }
 
+TEST(BenchProcess, AHangupIsAnInterruptUnlessItIsIgnored) {
+  for (const bool ignored : {false, true}) {
+    ASSERT_TRUE(fs::exists(test_folder()));
+    const auto before = std::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL);  // as nohup does
+    Command command("scene statistics model_house");
+    std::signal(SIGHUP, before);
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // its work takes longer
+    command.signal(SIGHUP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_EQ(command.running(), ignored);
+    if (ignored) command.signal(SIGTERM);
+    EXPECT_EQ(command.wait(), 130) << errors();
+    EXPECT_NE(errors().find("modelhouse: interrupted"), std::string::npos) << errors();
+  }
+}
+
 TEST(BenchProcess, ARenderingThatIsInterruptedSaysWhetherItGoesOn) {
   const std::string mesh = (test_folder() / "floor.obj").string();
   std::ofstream(mesh) << "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n";
@@ -395,6 +411,25 @@ TEST(BenchProcess, AnOutsideProgramThatIsRunAgainMeetsNeitherTruthNorLeavings) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".work.")) << entry.path();
 }
 
+// From the folders that it is told, and from its own, up and down: while it runs, another's
+// results, of which the truth is the same, are not there.
+TEST(BenchProcess, AnOutsideProgramFindsNoTruth) {
+  const std::string finds =
+      "find . $(dirname $(dirname $(dirname {dataset}))) -name truth.tum -o -name estimate.tum -o "
+      "-name results.sqlite -o -name views.png; cat $(echo " +
+      kRoom + "); echo; echo \"#\" > {trajectory}";
+  const fs::path suite =
+      write_suite("finds", "[plain, {name: vo, protocol: trajectory, command: '" + finds + "'}]",
+                  "", kRoom, "[exact]");
+  EXPECT_EQ(run(bench(write_suite("beside", "[plain]"), "beside")), 0) << errors();
+  EXPECT_EQ(run(bench(suite, "finds")), 0) << errors();
+  EXPECT_TRUE(fs::exists(test_folder() / "finds" / "plain-pepper-0" / "truth.tum"));
+  const std::string log = content(test_folder() / "finds" / "vo-exact-pepper-0" / "outside.log");
+  if (log.starts_with("modelhouse: nothing is hidden")) GTEST_SKIP() << log;
+  EXPECT_TRUE(log.starts_with("modelhouse: hidden from the program by a mount namespace: ")) << log;
+  EXPECT_EQ(log.find('\n'), log.size() - 2) << log;
+}
+
 TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
   const fs::path suite = write_suite("deleted", "[plain]");
   EXPECT_EQ(run(bench(suite, "deleted")), 0) << errors();
@@ -470,12 +505,18 @@ TEST(BenchProcess, AnEditedAnnotationOfAScanMakesItsRunsAnew) {
 TEST(BenchProcess, AFileThatChangesDuringTheWorkEndsIt) {
   const fs::path scene = test_folder() / "changed_room.yaml";
   fs::copy_file(kRoom, scene);
-  const fs::path suite =
-      write_suite("changing",
-                  "[{name: vo, protocol: conversation, command: 'echo \"# x\" >>" + scene.string() +
-                      "; exit 3'}, plain]",
-                  "", scene);
-  EXPECT_EQ(run(bench(suite, "changing", "--jobs 1")), 2) << errors();
+  const fs::path began = test_folder() / "began", changed = test_folder() / "changed";
+  const fs::path suite = write_suite("changing",
+                                     "[{name: vo, protocol: conversation, command: 'touch " +
+                                         began.string() + "; while ! test -e " + changed.string() +
+                                         "; do sleep 0.1; done; exit 3'}, plain]",
+                                     "", scene);
+  Command command(bench(suite, "changing", "--jobs 1"));
+  for (int i = 0; i < 6000 && command.running() && !fs::exists(began); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::ofstream(scene, std::ios::app) << "# x\n";
+  std::ofstream(changed) << "";
+  EXPECT_EQ(command.wait(), 2) << errors();
   EXPECT_NE(errors().find("a file that it reads was changed"), std::string::npos) << errors();
   EXPECT_EQ(errors().find("plain-pepper-0: failed"), std::string::npos) << errors();
 }

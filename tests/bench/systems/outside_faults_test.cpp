@@ -307,6 +307,179 @@ TEST_F(OutsideFaults, AProgramThatRemovesTheFolderOfItsImagesFails) {
                "removed the folder of its images");
 }
 
+/// Replies to a track request after doing something to $color, the file of its image.
+std::string with_image(const std::string& work) {
+  return R"sh(color=$(echo "$line" | sed 's/.*"color":"//; s/".*//'); folder=$(dirname "$color"); )sh" +
+         work +
+         R"(; echo '{"id":2,"pose":null}'; read -r line; echo '{"id":3,"pose":null}'; )"
+         R"(read -r line)";
+}
+
+TEST_F(OutsideFaults, NothingThatAProgramPutsInThePlaceOfAnImageIsOpened) {
+  const fs::path mine = folder_ / "mine";
+  const auto after = [&](const std::string& work) {
+    std::ofstream(mine) << "mine";
+    const fs::path note = folder_ / "scratch";
+    const OutsideProgram p = says(with_image("echo $folder > " + note.string() + "; " + work));
+    const std::string error = error_of(p, [&] {
+      const auto system = make_conversation_system(p, camera_, 0, folder_ / "log");
+      for (std::uint64_t i = 0; i < 2; ++i)
+        system->track(fake_frame(i, RandomStream(i)), RandomStream(i));
+    });
+    EXPECT_EQ(read_file(mine), "mine") << work;
+    std::string scratch = read_file(note);
+    scratch.pop_back();
+    for (const char* moved : {"", ".moved"})
+      EXPECT_FALSE(fs::exists(fs::symlink_status(scratch + moved))) << scratch + moved << work;
+    return error;
+  };
+  EXPECT_HOLDS(after("rm $color; mkdir $color"), "put a folder in the place of its color.ppm");
+  EXPECT_EQ(after("rm $color"), "no error");
+  EXPECT_EQ(after("rm $color; mkfifo $color"), "no error");
+  EXPECT_EQ(after("ln -sf " + mine.string() + " $color"), "no error");
+  EXPECT_EQ(after("ln -f " + mine.string() + " $color || cp " + mine.string() + " $color"),
+            "no error");
+  EXPECT_EQ(after("chmod 0 $color; mkdir -p $folder/a/b; chmod 0 $folder/a"), "no error");
+  EXPECT_HOLDS(after("mv $folder $folder.moved"), "removed the folder of its images");
+  EXPECT_HOLDS(after("mv $folder $folder.moved; ln -s $folder.moved $folder"),
+               "removed the folder of its images");
+  if (geteuid() != 0) {
+    EXPECT_HOLDS(after("chmod 555 $folder"), "left its color.ppm unwritable: Permission denied");
+  }
+}
+
+TEST_F(OutsideFaults, RepliesOfAnyShapeCostLittle) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto brackets = [](const std::string& key, char open, char close) {
+    const auto many = [](char c) {
+      return std::string("head -c 100000 /dev/zero | tr '\\0' '") + c + "'; ";
+    };
+    return "printf '{\"id\":2,\"" + key + "\":'; " + many(open) + many(close) +
+           "echo '}'; sleep 60";
+  };
+  for (const char* key : {"pose", "error", "what", "stage", "candidates"})
+    EXPECT_HOLDS(track_error(says(brackets(key, '[', ']'))),
+                 "nested its reply more than 200 levels deep: '{\"id\":2,");
+  EXPECT_HOLDS(track_error(says(brackets("pose", '{', '}'))), "nested its reply");
+  EXPECT_HOLDS(track_error(says(R"sh((printf '{"id":2,"pose":null'; seq 1 200000 | )sh"
+                                R"sh(sed 's/.*/,"k&":0/' | tr -d '\n'; echo '}'); sleep 60)sh")),
+               "gave an unknown key 'k1'");
+  EXPECT_HOLDS(track_error(says("head -c 100000000 /dev/zero | tr '\\0' 'a'; sleep 60")),
+               "with a line of more than 16 MB");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+}
+
+TEST_F(OutsideFaults, AKeyframeHasAPose) {
+  EXPECT_HOLDS(track_error(says(R"(echo '{"id":2,"pose":null,"keyframe":true}'; sleep 60)")),
+               "gave a keyframe without a pose");
+}
+
+TEST_F(OutsideFaults, ATrajectoryIsAFileOfItsFolderOfABearableSize) {
+  const fs::path truth = folder_ / "truth.tum";
+  std::ofstream(truth) << "1 0 0 0 0 0 0 1\n";
+  const auto error = [&](const std::string& command) {
+    return trajectory_error(
+        program(OutsideMode::kTrajectory, "cd $(dirname {trajectory}); " + command));
+  };
+  EXPECT_HOLDS(error("ln -s " + truth.string() + " {trajectory}"),
+               "made its trajectory a link out of its folder");
+  EXPECT_HOLDS(error("mv $PWD $PWD.moved; mkdir elsewhere; ln -s " + truth.string() +
+                     " elsewhere/trajectory.txt; ln -s $PWD.moved/elsewhere $PWD"),
+               "made its trajectory a link out of its folder");
+  EXPECT_EQ(run(program(OutsideMode::kTrajectory,
+                        "cd $(dirname {trajectory}); "
+                        "echo 1 0 0 0 0 0 0 1 > mine; "
+                        "ln -s mine {trajectory}"))
+                .size(),
+            1u);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_HOLDS(error("truncate -s 3900M {trajectory}"),
+               "wrote a trajectory of 3900 MB, 64 MB is the most");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_HOLDS(error("mkfifo {trajectory}"), "it is not a file");
+  EXPECT_HOLDS(error("mkdir {trajectory}"), "it is a folder");
+  EXPECT_HOLDS(error("ln -s trajectory.txt {trajectory}"), "wrote no trajectory");
+  const std::string endless =
+      error("head -c 30000000 /dev/zero | tr '\\0' 'a' > {trajectory}; echo >> {trajectory}");
+  EXPECT_HOLDS(endless, "trajectory.txt:1: pose: 1 value, expected 8");
+  EXPECT_LT(error("printf '1 ' > {trajectory}; head -c 3000000 /dev/zero | tr '\\0' 'a' >> "
+                  "{trajectory}; echo ' 0 0 0 0 0 1' >> {trajectory}")
+                .size(),
+            1200u);
+}
+
+TEST_F(OutsideFaults, NothingIsWrittenThroughALinkOfAProgram) {
+  const fs::path mine = folder_ / "mine";
+  std::ofstream(mine) << "mine";
+  fs::create_symlink(mine, folder_ / "out" / "outside.log");
+  run(program(OutsideMode::kTrajectory,
+              "cd $(dirname {trajectory}); echo 1 0 0 0 0 0 0 1 > {trajectory}; ln -s " +
+                  mine.string() + " .modelhouse-files; echo said"));
+  EXPECT_EQ(read_file(mine), "mine");
+  EXPECT_EQ(read_file(folder_ / "out" / "outside.log"), "said\n");
+  EXPECT_HOLDS(read_file(folder_ / "out" / "outside" / ProgramFolder::kList), "trajectory.txt\n");
+  // A folder by that name, too, and rights that it denied: the next run replaces it all the same.
+  const std::string locks =
+      "cd $(dirname {trajectory}); echo 1 0 0 0 0 0 0 1 > {trajectory}; mkdir -p "
+      ".modelhouse-files/a b; touch b/c; chmod 500 b; chmod 500 .";
+  for (int times = 0; times < 2; ++times) run(program(OutsideMode::kTrajectory, locks));
+  EXPECT_EQ(names_in(folder_ / "out"), (std::set<std::string>{"outside", "outside.log"}));
+}
+
+TEST_F(OutsideFaults, ALogThatAProgramReplacesBlocksNobody) {
+  EXPECT_HOLDS(trajectory_error(program(
+                   OutsideMode::kTrajectory,
+                   "echo first words >&2; rm " + (folder_ / "out" / "outside.log").string() +
+                       "; mkfifo " + (folder_ / "out" / "outside.log").string() +
+                       "; printf 'last \\377 words' >&2; exit 3; : {trajectory}")),
+               "exited with code 3; it last wrote: last ? words");
+}
+
+// Where this machine allows no mount namespace, the log says so, and the program sees everything.
+TEST_F(OutsideFaults, AProgramDoesNotSeeWhatIsHiddenFromIt) {
+  const fs::path secret = folder_ / "secret", other = folder_ / "other.yaml";
+  fs::create_directories(secret / "run");
+  fs::create_directories(folder_ / "suite");
+  std::ofstream(secret / "run" / "truth.tum") << "the truth";
+  std::ofstream(other) << "the truth";
+  std::ofstream(folder_ / "suite" / "own") << "its own";
+  const auto look = [&](std::vector<fs::path> hidden) {
+    OutsideProgram p =
+        program(OutsideMode::kTrajectory,
+                "cd .; grep -rs . ../secret ../other.yaml own; touch ../secret/x ../new "
+                "/tmp/mh_new 2>/dev/null; "
+                "rm -f /tmp/mh_new; umount " +
+                    secret.string() + " 2>/dev/null; echo 1 0 0 0 0 0 0 1 > {trajectory}");
+    p.folder = folder_ / "suite";
+    p.hidden = std::move(hidden);
+    EXPECT_EQ(run(p).size(), 1u);
+    return read_file(folder_ / "out" / "outside.log");
+  };
+  EXPECT_HOLDS(look({}), "the truth");
+  const std::string log = look({secret, other, folder_ / "nowhere", secret / "run"});
+  if (log.starts_with("modelhouse: nothing is hidden from the program: no mount namespace here: "))
+    GTEST_SKIP() << log;
+  EXPECT_TRUE(log.starts_with("modelhouse: hidden from the program by a mount namespace: " +
+                              secret.string() + ", 1 file of the recording or scene\n"))
+      << log;
+  EXPECT_EQ(log.find("the truth"), std::string::npos) << log;
+  EXPECT_HOLDS(log, "own:its own");
+  EXPECT_TRUE(fs::exists(folder_ / "new")) << "it may write elsewhere";
+  EXPECT_FALSE(fs::exists(secret / "x"));
+  EXPECT_EQ(read_file(other), "the truth");
+  const std::string inside = look({folder_, secret});
+  EXPECT_HOLDS(inside,
+               "; not hidden, since the program's own files are there: " + folder_.string() + "\n");
+  EXPECT_EQ(inside.find("the truth"), std::string::npos) << inside;
+}
+
+TEST_F(OutsideFaults, WhatAProgramIsToldLiesBelowNoResults) {
+  run(program(OutsideMode::kTrajectory,
+              "dirname {trajectory}; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
+  const std::string told = read_file(folder_ / "out" / "outside.log");
+  EXPECT_NE(told.substr(0, folder_.string().size()), folder_.string()) << told;
+}
+
 TEST_F(OutsideFaults, WhatIsSaidIsBounded) {
   const auto start = std::chrono::steady_clock::now();
   // 3 GB, were it let.

@@ -95,14 +95,16 @@ TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
   frame.depth_m = Grid2d<float>(3, 2, 0.0F);
   frame.depth_m(1, 0) = 1.2345F;  // 6172.5 units
   frame.depth_m(2, 1) = 20.0F;    // beyond what 16 bits hold
-  FrameFiles files = show(frame, folder);
-  EXPECT_TRUE(files.labels.empty());
+  EXPECT_TRUE(image_files(frame).labels.empty());
   frame.semantics = {Grid2d<std::uint8_t>(3, 2), {{}, {{{5, 0.3F}, {7, 0.6F}}}}};
   frame.semantics.index(0, 1) = 1;
-  files = show(frame, folder);
-  const cv::Mat color = cv::imread(files.color.string(), cv::IMREAD_UNCHANGED);
-  const cv::Mat depth = cv::imread(files.depth.string(), cv::IMREAD_UNCHANGED);
-  const cv::Mat labels = cv::imread(files.labels.string(), cv::IMREAD_UNCHANGED);
+  const FrameFiles files = image_files(frame);
+  const auto read = [&](const char* name, const std::string& content) {
+    write_atomically(folder / name, content);
+    return cv::imread((folder / name).string(), cv::IMREAD_UNCHANGED);
+  };
+  const cv::Mat color = read("color.ppm", files.color), depth = read("depth.pgm", files.depth),
+                labels = read("labels.pgm", files.labels);
   fs::remove_all(folder);
   ASSERT_EQ(color.type(), CV_8UC3);
   EXPECT_EQ(color.at<cv::Vec3b>(1, 2), cv::Vec3b(50, 100, 200));

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/hidden.hpp"
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "bench/cache/cache.hpp"
+#include "scenes/recorded/open_sequence.hpp"
+#include "slam/core/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder and those around it, except the root.
+std::set<fs::path> ancestors_of(const fs::path& folder) {
+  std::set<fs::path> all;
+  if (folder.empty()) return all;
+  for (fs::path at = fs::absolute(folder).lexically_normal(); at != at.root_path();
+       at = at.parent_path())
+    all.insert(at);
+  return all;
+}
+
+/// Adds the folders that modelhouse wrote: this one and those in it.
+/// @param depth  how much deeper to look
+void add_written(const fs::path& folder, int depth, std::vector<fs::path>& written) {
+  std::error_code error;
+  if (fs::exists(folder / kOutputMark, error)) written.push_back(folder);
+  if (depth == 0) return;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (std::error_code gone; it->symlink_status(gone).type() == fs::file_type::directory)
+      add_written(it->path(), depth - 1, written);
+}
+
+/// Where the environment's inputs lie, by their names; what is generated lies nowhere.
+std::map<std::string_view, fs::path> sources_of(const Environment& e) {
+  std::map<std::string_view, fs::path> sources = {{"scene", e.scene},
+                                                  {"mapping_tour", e.mapping_tour}};
+  const auto add = [&](std::string_view name, const std::optional<fs::path>& source) {
+    if (source) sources[name] = *source;
+  };
+  add("query_tour", e.query_tour);
+  add("query_scene", e.query_scene);
+  add("kidnapped_tour", e.kidnapped_tour);
+  add("pedestrian", e.pedestrian);
+  if (e.is_recorded()) sources = {{"sequence", split_sequence(e.sequence).second}};
+  if (e.queries) sources["queries"] = split_sequence(*e.queries).second;
+  return sources;
+}
+
+}  // namespace
+
+OutsideProgram program_of(const RunSpec& spec, const World& world,
+                          const std::vector<fs::path>& of_bench) {
+  OutsideProgram program = spec.system.outside;
+  program.hidden = of_bench;
+  program.hidden.push_back(Cache::default_folder());
+  std::set<fs::path> around = ancestors_of(program.folder);
+  for (const fs::path& folder : of_bench) around.merge(ancestors_of(folder));
+  for (const fs::path& folder : around) add_written(folder, 2, program.hidden);
+  const auto sources = sources_of(spec.environment);
+  for (const InputDigest& input : world.inputs) {
+    const auto source = sources.find(input.name);
+    if (source == sources.end() || source->second.empty() || is_generated(source->second)) continue;
+    if (is_folder(source->second)) {
+      program.hidden.push_back(source->second);
+      continue;
+    }
+    const fs::path folder = fs::absolute(source->second).parent_path();
+    for (const FileDigest& file : input.files) program.hidden.push_back(folder / file.file);
+  }
+  return program;
+}
+
+}  // namespace mh

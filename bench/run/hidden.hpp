@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "bench/plan/runs.hpp"
+#include "bench/world/world.hpp"
+
+namespace mh {
+
+/// The outside program of a run, with what is hidden from it: the bench's own folders, others that
+/// modelhouse wrote, as far as they lie near these or near the suite, and the recording or scene
+/// that its frames are made from, with its tours.
+/// @param of_bench  output folder and cache
+OutsideProgram program_of(const RunSpec& spec, const World& world,
+                          const std::vector<std::filesystem::path>& of_bench);
+
+}  // namespace mh

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace mh {
+
+/// A temporary folder, in memory if possible, in which a program may do what it likes. What is
+/// written there is each time a new file in this very folder: nothing that the program put into the
+/// place of a file, or of the folder, is opened or followed. Removed at the end, whatever the
+/// program made of it.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Writes a file in place of the one by that name.
+  /// @returns what the program did that prevents it; empty: it is written
+  /// @throws DiskFullError
+  [[nodiscard]] std::string write(const char* name, std::string_view content) const;
+
+ private:
+  bool is_in_place() const;
+
+  std::filesystem::path path_;
+  int folder_ = -1;
+};
+
+}  // namespace mh
