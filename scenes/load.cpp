@@ -70,7 +70,8 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
     return built(generate_scene(parse_generated(file.native())), file, frame);
   if (is_scannet_scene(file) || is_folder(file))
     return settled(turned(load_scannet(file, warnings), frame), frame, warnings);
-  constexpr std::array<std::string_view, 5> kMeshes = {".dae", ".glb", ".gltf", ".obj", ".ply"};
+  constexpr std::array<std::string_view, 6> kMeshes = {".dae", ".glb", ".gltf",
+                                                       ".obj", ".ply", ".stl"};
   const std::string ending = lower_case(file.extension().string());
   if (std::ranges::find(kMeshes, ending) != kMeshes.end())
     return settled(load_turned_mesh(file, frame.up, warnings), frame, warnings);
@@ -85,7 +86,7 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
     return settled(turned(load_gazebo_world(file, warnings), frame), frame, warnings);
   throw InputError(
       fmt::format("{}: unknown kind of scene: the ending must be .yaml, .ply, .obj, .glb, .gltf, "
-                  ".dae, .sdf or .world",
+                  ".dae, .stl, .sdf or .world",
                   file.string()));
 }
 

@@ -11,7 +11,7 @@
 namespace mh {
 
 /// Loads a scene of any kind, by file extension: .yaml is a house (load_house) or, where it lists
-/// objects, a scene of mesh files (load_placed_scene); .ply .obj .glb .gltf .dae are meshes
+/// objects, a scene of mesh files (load_placed_scene); .ply .obj .glb .gltf .dae .stl are meshes
 /// (load_mesh), .sdf and .world are Gazebo worlds (load_gazebo_world). A folder is a ScanNet scene
 /// (load_scannet), "generated:CATEGORY:SEED" is generated (generate_scene).
 ///

@@ -56,6 +56,28 @@ TEST_F(Worlds, ObjectsStandWhereTheYamlPutsThem) {
   EXPECT_EQ(std::ranges::count(scene.class_of, *class_by_name("sofa")), 2);
 }
 
+TEST_F(Worlds, AnStlIsASceneAndAnObject) {
+  const std::string text =
+      "solid wooden chair\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 2 0 1\n"
+      "vertex 0 3 1\nendloop\nendfacet\nendsolid\n";
+  std::string binary(80, ' ');
+  const std::uint32_t count = 1;
+  const float numbers[] = {0, 0, 1, 0, 0, 1, 2, 0, 1, 0, 3, 1};
+  binary.append(reinterpret_cast<const char*>(&count), sizeof count);
+  binary.append(reinterpret_cast<const char*>(numbers), sizeof numbers).append(2, '\0');
+  write("chair.stl", text);
+  for (const fs::path& file : {write("a.STL", binary), folder_ / "chair.stl"}) {
+    const Scene scene = load_scene(file);
+    EXPECT_EQ(scene.positions_m, (std::vector<Eigen::Vector3f>{{0, 0, 1}, {2, 0, 1}, {0, 3, 1}}));
+    ASSERT_EQ(scene.instances.size(), 1U);
+  }
+  const Scene scene = load_scene(
+      write("room.yaml", "objects:\n  - {file: chair.stl, scale: 0.5, position_m: [0, 0, 1]}\n"));
+  EXPECT_EQ(instance(scene, "chair").class_id, *class_by_name("chair"));
+  EXPECT_EQ(instance(scene, "chair").max_m, Eigen::Vector3f(1, 1.5F, 1.5F));
+  EXPECT_TRUE(names(error_of([&] { load_scene(write("a.step", "")); }), {"a.step", ".stl"}));
+}
+
 TEST_F(Worlds, LabelRulesTellNodesAndMaterialsApart) {
   write_mesh("a.obj");
   const auto file = write("room.yaml",
