@@ -40,15 +40,6 @@ constexpr const char* kGroundPlane =
     "<geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>"
     "<material><diffuse>0.7 0.7 0.7 1</diffuse></material></visual></link></model></sdf>";
 
-std::string text_of(const XMLElement* element) {
-  const char* text = element == nullptr ? nullptr : element->GetText();
-  if (text == nullptr) return {};
-  std::string_view trimmed = text;
-  const auto first = trimmed.find_first_not_of(" \t\r\n");
-  if (first == trimmed.npos) return {};
-  return std::string(trimmed.substr(first, trimmed.find_last_not_of(" \t\r\n") - first + 1));
-}
-
 class Expander {
  public:
   Expander(const fs::path& world, UniqueWarnings& collected)

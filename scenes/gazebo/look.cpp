@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "scenes/find_file.hpp"
+#include "scenes/gazebo/source.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
 
@@ -15,11 +16,6 @@ namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
 
 namespace {
-
-std::string raw_text_of(const XMLElement* element) {
-  const char* text = element == nullptr ? nullptr : element->GetText();
-  return text == nullptr ? "" : text;
-}
 
 void append_text(XMLElement& out, const char* name, const std::string& text) {
   out.InsertNewChildElement(name)->SetText(text.c_str());
@@ -39,7 +35,7 @@ std::vector<fs::path> scripts_at(const fs::path& place) {
 }  // namespace
 
 void LookWriter::write(const XMLElement& material, const fs::path& file, XMLElement& out) {
-  std::string diffuse = raw_text_of(material.FirstChildElement("diffuse"));
+  std::string diffuse = text_of(material.FirstChildElement("diffuse"));
   std::string texture = texture_of_pbr(material, file);
   if (const XMLElement* script = material.FirstChildElement("script"); script && texture.empty())
     if (const auto found = material_of(*script, file)) {
@@ -49,10 +45,9 @@ void LookWriter::write(const XMLElement& material, const fs::path& file, XMLElem
         if (!found->diffuse) diffuse = "1 1 1 1";
       }
     }
-  if (diffuse.empty() && texture.empty())
-    diffuse = raw_text_of(material.FirstChildElement("ambient"));
+  if (diffuse.empty() && texture.empty()) diffuse = text_of(material.FirstChildElement("ambient"));
   append_text(out, "diffuse", diffuse.empty() ? "1 1 1 1" : diffuse);
-  const std::string emissive = raw_text_of(material.FirstChildElement("emissive"));
+  const std::string emissive = text_of(material.FirstChildElement("emissive"));
   if (!emissive.empty()) append_text(out, "emissive", emissive);
   if (texture.empty()) return;
   XMLElement* workflow = out.InsertNewChildElement("pbr")->InsertNewChildElement("metal");
@@ -64,7 +59,7 @@ std::string LookWriter::texture_of_pbr(const XMLElement& material, const fs::pat
   if (pbr == nullptr) return {};
   for (const XMLElement* workflow = pbr->FirstChildElement(); workflow != nullptr;
        workflow = workflow->NextSiblingElement()) {
-    const std::string uri = raw_text_of(workflow->FirstChildElement("albedo_map"));
+    const std::string uri = text_of(workflow->FirstChildElement("albedo_map"));
     if (uri.empty()) continue;
     if (const auto found = finder_.find(uri, file)) return found->string();
     if (const auto found = finder_.find("file://materials/textures/" + uri, file))
@@ -76,12 +71,12 @@ std::string LookWriter::texture_of_pbr(const XMLElement& material, const fs::pat
 
 std::optional<OgreMaterial> LookWriter::material_of(const XMLElement& script,
                                                     const fs::path& file) {
-  const std::string name = raw_text_of(script.FirstChildElement("name"));
+  const std::string name = text_of(script.FirstChildElement("name"));
   std::vector<fs::path> folders;
   std::optional<OgreMaterial> found;
   for (const XMLElement* uri = script.FirstChildElement("uri"); uri != nullptr;
        uri = uri->NextSiblingElement("uri")) {
-    const auto place = finder_.find(raw_text_of(uri), file);
+    const auto place = finder_.find(text_of(uri), file);
     if (!place) continue;
     for (const fs::path& path : scripts_at(*place)) {
       folders.push_back(path.parent_path());

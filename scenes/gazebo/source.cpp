@@ -36,6 +36,15 @@ void drop_late_declaration(std::string& text) {
 
 }  // namespace
 
+std::string text_of(const tinyxml2::XMLElement* element) {
+  const char* text = element == nullptr ? nullptr : element->GetText();
+  if (text == nullptr) return {};
+  std::string_view trimmed = text;
+  const auto first = trimmed.find_first_not_of(" \t\r\n");
+  if (first == trimmed.npos) return {};
+  return std::string(trimmed.substr(first, trimmed.find_last_not_of(" \t\r\n") - first + 1));
+}
+
 std::unique_ptr<Source> parse_source(const fs::path& file, std::string text) {
   drop_late_declaration(text);
   auto made = std::make_unique<Source>();

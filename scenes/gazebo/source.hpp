@@ -18,6 +18,9 @@ struct Source {
   std::set<std::string> referred;  ///< names used by relative_to and attached_to
 };
 
+/// The text of an element, without blanks around it; empty for null.
+std::string text_of(const tinyxml2::XMLElement* element);
+
 /// @throws InputError naming file and line if it is not SDF
 std::unique_ptr<Source> parse_source(const std::filesystem::path& file, std::string text);
 

@@ -272,6 +272,20 @@ TEST_F(GazeboWorld, OgreScriptsAndAlbedoMapsDressShapesAndMeshes) {
   EXPECT_TRUE(collected({"material No/Such"}));
 }
 
+TEST_F(GazeboWorld, NamesOfMaterialsMayHaveBlanksAround) {
+  write("wall.material", "material Wall { technique { pass { diffuse 0 0 1 1 } } }");
+  const auto script = [](const std::string& name) {
+    return "<material><script><uri>\n file://wall.material </uri><name>" + name +
+           "</name></script></material>";
+  };
+  const Scene scene = load(write_world(model("a", link(box(1, script("Gazebo/Red ")))) +
+                                       model("b", link(box(1, script("\n  Wall\n"))))));
+  EXPECT_TRUE(warnings_.empty()) << warnings_[0];
+  ASSERT_EQ(scene.materials.size(), 2U);
+  EXPECT_EQ(scene.materials[0].base_color, (Rgb8{255, 0, 0}));
+  EXPECT_EQ(scene.materials[1].base_color, (Rgb8{0, 0, 255}));
+}
+
 TEST(OgreScript, ReadsFirstDiffuseAndTextureAndInheritsThem) {
   const auto materials = gazebo::parse_ogre_script(
       "material A\n{\n technique\n {\n pass\n {\n  diffuse 1 0.5 0\n"
