@@ -119,6 +119,9 @@ std::optional<ImageSize> announced_size(std::string_view bytes) {
 const char* image_fault(std::string_view bytes) {
   if (bytes.starts_with("\xff\xd8")) return jpeg_is_whole(bytes) ? nullptr : "is truncated";
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return png_fault(bytes);
+  if (bytes.starts_with("\xabKTX ")) return "is KTX (Basis Universal), which is not read: use PNG";
+  if (bytes.starts_with("DDS ")) return "is DDS, which is not read: use PNG";
+  if (bytes.substr(0, 12).ends_with("ftypavif")) return "is AVIF, which is not read: use PNG";
   return nullptr;
 }
 

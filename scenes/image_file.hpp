@@ -25,8 +25,8 @@ struct ImageSize {
 std::optional<ImageSize> announced_size(std::string_view bytes);
 
 /// What is wrong with a JPEG or PNG as a file, found without decoding it: "is truncated", or a
-/// PNG's wrong checksum; nullptr if nothing, or if the bytes are neither. Decoders would return an
-/// image whose end is gray, and at most report it on stderr.
+/// PNG's wrong checksum; or the kind of the image if it is one that is not read. nullptr if
+/// nothing. Decoders would return an image whose end is gray, and at most report it on stderr.
 const char* image_fault(std::string_view bytes);
 
 /// Whether the header declares more pixels than so few bytes can encode, or than anybody needs:

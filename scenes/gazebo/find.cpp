@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scenes/find_file.hpp"
+#include "scenes/mesh_io/percent.hpp"
 #include "slam/core/files.hpp"
 
 namespace mh::gazebo {
@@ -89,6 +90,12 @@ std::optional<fs::path> find_in_fuel_cache(const std::string& named) {
 Finder::Finder(const fs::path& world) : world_folder_(folder_of(world)) {}
 
 std::optional<fs::path> Finder::find(const std::string& uri, const fs::path& file) const {
+  if (auto found = find_named(uri, file)) return found;
+  const std::string decoded = percent_decoded(uri);
+  return decoded == uri ? std::nullopt : find_named(decoded, file);
+}
+
+std::optional<fs::path> Finder::find_named(const std::string& uri, const fs::path& file) const {
   const std::size_t mark = uri.find("://");
   const std::string_view scheme =
       mark == uri.npos ? std::string_view() : std::string_view(uri).substr(0, mark);

@@ -19,7 +19,8 @@ class Finder {
   /// and in the four folders above; model://NAME/... and package://NAME/... there, in the models/
   /// of each, in the same places from the world's folder, and in the folders of GAZEBO_MODEL_PATH,
   /// GZ_SIM_RESOURCE_PATH and SDF_PATH; https:// in Fuel's cache (~/.gz/fuel, ~/.ignition/fuel,
-  /// GZ_FUEL_CACHE_PATH). Never in the current folder.
+  /// GZ_FUEL_CACHE_PATH). Never in the current folder. Percent codes are replaced if there is no
+  /// file named with them.
   std::optional<std::filesystem::path> find(const std::string& uri,
                                             const std::filesystem::path& file) const;
 
@@ -28,6 +29,9 @@ class Finder {
   static std::optional<std::filesystem::path> model_file(const std::filesystem::path& found);
 
  private:
+  std::optional<std::filesystem::path> find_named(const std::string& uri,
+                                                  const std::filesystem::path& file) const;
+
   std::filesystem::path world_folder_;
 };
 

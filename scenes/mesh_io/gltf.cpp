@@ -8,6 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "scenes/mesh_io/gltf/draco.hpp"
+#include "scenes/mesh_io/gltf/extensions.hpp"
+#include "scenes/mesh_io/gltf/materials.hpp"
+#include "scenes/mesh_io/gltf/nodes.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/json_text.hpp"
 
@@ -46,35 +50,73 @@ void require_places(const Json& gltf, const std::filesystem::path& file) {
   }
 }
 
-/// @returns whether there was anything to drop
-bool drop_movement(Json& gltf) {
-  bool any = gltf.erase("animations") + gltf.erase("skins") > 0;
-  if (const auto nodes = gltf.find("nodes"); nodes != gltf.end() && nodes->is_array())
-    for (Json& node : *nodes) any = (node.is_object() && node.erase("skin") > 0) || any;
-  return any;
+/// Whether it is the version that has extensions of these kinds; none stated is taken for it.
+bool is_version_2(const Json& gltf) {
+  const Json::json_pointer place("/asset/version");
+  return !gltf.contains(place) || !gltf[place].is_string() ||
+         gltf[place].get_ref<const std::string&>().starts_with("2");
+}
+
+/// @returns the content of an additional buffer
+std::string mend(Json& gltf, const std::filesystem::path& file, std::string_view body,
+                 std::vector<std::string>& warnings) {
+  gltf::drop_movement(gltf);
+  if (!is_version_2(gltf)) return {};
+  gltf::check_extensions(gltf, file, warnings);
+  gltf::decode_uris(gltf, file.parent_path());
+  gltf::choose_images(gltf);
+  gltf::mend_materials(gltf);
+  gltf::drop_hidden(gltf);
+  gltf::Data data(gltf, file, body);
+  data.decompress_views();
+  gltf::decompress_primitives(gltf, data);
+  gltf::place_instances(gltf, data);
+  gltf::mend_primitives(gltf, data, gltf::take_uv_placements(gltf, file, warnings), warnings);
+  return data.finish();
+}
+
+/// The content of a binary file's second chunk.
+std::string_view body_of(std::string_view chunks) {
+  constexpr std::size_t kHead = 8;
+  if (chunks.size() < kHead || chunks.substr(4, 3) != "BIN") return {};
+  return chunks.substr(kHead, number_at(chunks, 0));
 }
 
 }  // namespace
 
-std::optional<std::string> repaired_gltf(std::string_view bytes,
-                                         const std::filesystem::path& file) {
+std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::filesystem::path& file,
+                                          std::vector<std::string>* warnings) {
   std::string_view text = bytes, chunks;
   const bool binary = bytes.starts_with("glTF");
   if (binary) {
     if (bytes.size() < kHeader) return std::nullopt;
     text = bytes.substr(kHeader, number_at(bytes, 12));
-    chunks = bytes.substr(kHeader + text.size());
+    chunks = bytes.substr(std::min(kHeader + (text.size() + 3) / 4 * 4, bytes.size()));
   }
   Json gltf = parse_json_or_discard<Json>(text);
   if (!gltf.is_object()) return std::nullopt;
   require_places(gltf, file);
-  if (!drop_movement(gltf)) return std::nullopt;
-  std::string repaired = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const Json before = gltf;
+  RepairedGltf repaired;
+  std::vector<std::string> lines;
+  try {
+    repaired.decoded = mend(gltf, file, body_of(chunks), lines);
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: is not sound glTF: {}", file.string(), error.what()));
+  }
+  if (warnings != nullptr)
+    for (const std::string& line : lines)
+      warnings->push_back(fmt::format("{}: {}", file.string(), line));
+  if (gltf == before) return std::nullopt;
+  repaired.decoded_name = file.parent_path() / gltf::kDecodedBuffer;
+  repaired.bytes = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (!binary) return repaired;
-  repaired.append((4 - repaired.size() % 4) % 4, ' ');
-  return std::string(bytes.substr(0, 8)) + bytes_of(kHeader + repaired.size() + chunks.size()) +
-         bytes_of(repaired.size()) + std::string(bytes.substr(16, 4)) + repaired +
-         std::string(chunks);
+  repaired.bytes.append((4 - repaired.bytes.size() % 4) % 4, ' ');
+  repaired.bytes = std::string(bytes.substr(0, 8)) +
+                   bytes_of(kHeader + repaired.bytes.size() + chunks.size()) +
+                   bytes_of(repaired.bytes.size()) + std::string(bytes.substr(16, 4)) +
+                   repaired.bytes + std::string(chunks);
+  return repaired;
 }
 
 }  // namespace mh

@@ -5,14 +5,27 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mh {
 
-/// A glTF file (text or binary) without invisible content that assimp cannot handle: animations,
-/// and skins, whose meshes stay in their modeled pose. nullopt: nothing to remove, or not glTF,
-/// which assimp will report.
-/// @throws InputError naming the file if an offset into its buffers is beyond every buffer:
-/// assimp's sums of such numbers overflow.
-std::optional<std::string> repaired_gltf(std::string_view bytes, const std::filesystem::path& file);
+/// A glTF file as assimp can read it.
+struct RepairedGltf {
+  std::string bytes;
+  std::filesystem::path decoded_name;  ///< names the file's additional buffer
+  std::string decoded;                 ///< its content; empty if there is none
+};
+
+/// The gate through which glTF files (text or binary) go to assimp: what the file states by
+/// extensions, quantized, sparse and compressed data, other texture coordinates than the first, and
+/// percent codes in names become plain glTF. Animations and skins, which are invisible, are
+/// removed: meshes stay in their modeled pose. nullopt: nothing to change, or not glTF, which
+/// assimp will report.
+/// @param warnings  one line for each extension that changes what is seen and is left out; may be
+///                  null
+/// @throws InputError naming the file: an unknown extension that it requires; an offset into its
+/// buffers beyond every buffer (assimp's sums of such numbers overflow); damaged data
+std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::filesystem::path& file,
+                                          std::vector<std::string>* warnings = nullptr);
 
 }  // namespace mh

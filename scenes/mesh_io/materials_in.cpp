@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "scenes/find_file.hpp"
-#include "scenes/mesh_io/emissive_strength.hpp"
 #include "scenes/srgb.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
@@ -154,7 +153,41 @@ Material convert(const Source& in, const aiMaterial& record, SharedGrid<Rgb8>& g
   return material;
 }
 
+const char* edge_of(const aiMaterial& record, const char* key) {
+  int mode = aiTextureMapMode_Wrap;
+  for (const aiTextureType kind : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
+    if (record.Get(key, kind, 0, mode) == aiReturn_SUCCESS) break;
+  return mode == aiTextureMapMode_Wrap     ? nullptr
+         : mode == aiTextureMapMode_Mirror ? "mirrored"
+                                           : "clamped";
+}
+
+std::array<const char*, 2> edges_of(const aiMaterial& record) {
+  return {edge_of(record, _AI_MATKEY_MAPPINGMODE_U_BASE),
+          edge_of(record, _AI_MATKEY_MAPPINGMODE_V_BASE)};
+}
+
 }  // namespace
+
+void warn_of_edges(const Scene& scene, const std::vector<std::array<const char*, 2>>& edges,
+                   const fs::path& file, std::vector<std::string>& warnings) {
+  constexpr float kBeyond = 0.01F;  // charts end at edges, give or take a few texels
+  std::vector<const char*> crossed(edges.size(), nullptr);
+  for (std::size_t face = 0; face < scene.triangles.size() && !scene.uvs.empty(); ++face)
+    for (const std::uint32_t vertex : scene.triangles[face])
+      for (const int axis : {0, 1}) {
+        const float at = scene.uvs[vertex][axis];
+        const std::uint16_t material = scene.material_of[face];
+        if (material < edges.size() && (at < -kBeyond || at > 1 + kBeyond) &&
+            crossed[material] == nullptr)
+          crossed[material] = edges[material][static_cast<std::size_t>(axis)];
+      }
+  for (std::size_t i = 0; i < crossed.size(); ++i)
+    if (crossed[i] != nullptr && !scene.materials[i].texture.empty())
+      warnings.push_back(
+          fmt::format("{}: material {}: its texture is {} beyond the image's edges: it is repeated",
+                      file.string(), scene.materials[i].name, crossed[i]));
+}
 
 MaterialsIn convert_materials(const aiScene& in, const fs::path& file, bool linear_colors,
                               ImageStore& images, std::vector<std::string>* warnings) {
@@ -164,10 +197,7 @@ MaterialsIn convert_materials(const aiScene& in, const fs::path& file, bool line
   std::vector<Material>& materials = out.materials;
   for (unsigned i = 0; i < in.mNumMaterials; ++i)
     materials.push_back(convert(source, *in.mMaterials[i], out.glow[i]));
-  if (!linear_colors) return out;
-  const std::vector<float> strengths = emissive_strengths(file);
-  for (std::size_t i = 0; i < std::min(strengths.size(), materials.size()); ++i)
-    materials[i].emission *= strengths[i];
+  for (unsigned i = 0; i < in.mNumMaterials; ++i) out.edges.push_back(edges_of(*in.mMaterials[i]));
   return out;
 }
 

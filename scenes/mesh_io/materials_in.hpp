@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,7 +17,15 @@ struct MaterialsIn {
   std::vector<Material> materials;
   std::vector<SharedGrid<Rgb8>> glow;  ///< for each, the texture that multiplies its emission; or
                                        ///< empty
+  /// For each, how its texture continues beyond its left and right edge, and the upper and lower:
+  /// "clamped", "mirrored"; null = it repeats.
+  std::vector<std::array<const char*, 2>> edges;
 };
+
+/// A line for each material whose texture is used beyond an edge where it does not repeat: here all
+/// textures do.
+void warn_of_edges(const Scene& scene, const std::vector<std::array<const char*, 2>>& edges,
+                   const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 /// Converts the materials of a file that assimp has read, one to one.
 /// @param file           its folder is searched for textures; warnings name it.

@@ -35,12 +35,18 @@ bool NotedFiles::Exists(const char* file) const {
 
 Assimp::IOStream* NotedFiles::Open(const char* file, const char*) {
   try {
-    HeldBytes bytes = repaired_ && file_ == file ? hold(*repaired_) : map_file(file);
+    const auto known = in_memory_.find(file);
+    HeldBytes bytes = known != in_memory_.end() ? hold(known->second) : map_file(file);
     const std::string_view name = file;
     const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // on such a mark
     std::string_view part = stumbles ? without_mark(bytes.view, file) : bytes.view;
     if (auto repaired = stumbles ? repaired_obj(part) : std::nullopt) {
       bytes = hold(std::move(*repaired));
+      part = bytes.view;
+    }
+    if (auto plain =
+            name.ends_with(".mtl") ? without_options(part, file, textures_) : std::nullopt) {
+      bytes = hold(std::move(*plain));
       part = bytes.view;
     }
     return new HeldStream(std::move(bytes), part);

@@ -5,9 +5,11 @@
 #include <assimp/IOSystem.hpp>
 
 #include <filesystem>
-#include <optional>
+#include <map>
 #include <string>
 #include <utility>
+
+#include "scenes/mesh_io/mtl_textures.hpp"
 
 namespace mh {
 
@@ -15,10 +17,10 @@ namespace mh {
 /// (ReadScope).
 class NotedFiles : public Assimp::IOSystem {
  public:
-  NotedFiles() = default;
-  /// @param repaired  replaces the content of that file, which the caller has already read
-  NotedFiles(std::filesystem::path file, std::string repaired)
-      : file_(std::move(file)), repaired_(std::move(repaired)) {}
+  /// @param in_memory  content of files by name, in place of what is stored under it
+  /// @param textures   receives what the MTL files state that assimp does not read
+  NotedFiles(std::map<std::filesystem::path, std::string> in_memory, MtlTextures& textures)
+      : in_memory_(std::move(in_memory)), textures_(textures) {}
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
@@ -27,8 +29,8 @@ class NotedFiles : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override { delete stream; }
 
  private:
-  std::filesystem::path file_;
-  std::optional<std::string> repaired_;
+  std::map<std::filesystem::path, std::string> in_memory_;
+  MtlTextures& textures_;
 };
 
 }  // namespace mh

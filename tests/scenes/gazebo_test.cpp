@@ -219,6 +219,17 @@ TEST_F(GazeboWorld, FilesAreFoundWhateverTheCaseOfTheirLetters) {
   EXPECT_EQ(scene.materials[scene.material_of[0]].texture.width(), 2);
 }
 
+TEST_F(GazeboWorld, UrisMayHavePercentCodes) {
+  write_model("models/Big Box", model("b",
+                                      "<link name='l'><visual name='v'><geometry><mesh><uri>"
+                                      "model://Big%20Box/my%20meshes/m.obj</uri></mesh></geometry>"
+                                      "</visual></link>"));
+  write("models/Big Box/my meshes/m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Scene scene = load(write_world("<include><uri>model://Big%20Box</uri></include>"));
+  EXPECT_TRUE(warnings_.empty()) << warnings_[0];
+  EXPECT_EQ(scene.triangles.size(), 1U);
+}
+
 TEST_F(GazeboWorld, AColladaMeshHasZUpWhateverItsAxisIs) {
   const std::string mesh =
       R"(<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">

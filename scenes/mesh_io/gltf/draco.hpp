@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "scenes/mesh_io/gltf/data.hpp"
+
+namespace mh::gltf {
+
+/// Replaces primitives of KHR_draco_mesh_compression by the triangles that are compressed there.
+/// @throws InputError if the compression is damaged.
+void decompress_primitives(Json& gltf, Data& data);
+
+}  // namespace mh::gltf

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenes/mesh_io/gltf/data.hpp"
+
+namespace mh::gltf {
+
+/// Judges the extensions that a glTF 2.0 file lists, by one table: those that are honored or change
+/// nothing that is seen pass in silence, others are warned of.
+/// @param warnings  a line for each loss
+/// @throws InputError naming a required extension that is not known.
+void check_extensions(Json& gltf, const std::filesystem::path& file,
+                      std::vector<std::string>& warnings);
+
+}  // namespace mh::gltf

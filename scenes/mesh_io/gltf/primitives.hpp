@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scenes/mesh_io/gltf/data.hpp"
+
+namespace mh::gltf {
+
+/// Where a material's texture lies: the set of texture coordinates, and what is done to them
+/// (KHR_texture_transform), row by row: u' = a u + b v + c, v' = d u + e v + f.
+struct UvPlacement {
+  std::size_t set = 0;
+  std::array<float, 6> rows{1, 0, 0, 0, 1, 0};
+  auto operator<=>(const UvPlacement&) const = default;
+};
+
+/// Gives every primitive what assimp reads rightly: positions, colors and texture coordinates as
+/// floats (KHR_mesh_quantization, sparse accessors, Draco), morph targets applied by the weights of
+/// their mesh, and as the first set the texture coordinates of its material.
+/// @param placements  of each material, see take_uv_placements
+/// @param warnings    a line for each mesh that lacks the set its material wants
+void mend_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
+                     std::vector<std::string>& warnings);
+
+}  // namespace mh::gltf

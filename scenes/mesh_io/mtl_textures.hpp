@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace mh {
+
+/// Where a material's texture lies by an MTL's options `-s u v` and `-o u v`: texture coordinates
+/// are multiplied, then moved.
+struct MtlUvs {
+  Eigen::Vector2f scale = Eigen::Vector2f::Ones(), offset = Eigen::Vector2f::Zero();
+  bool operator==(const MtlUvs&) const = default;
+
+  /// @param uv  as in a Scene, whose v grows downward; an OBJ's grows upward
+  Eigen::Vector2f place(const Eigen::Vector2f& uv) const {
+    return {scale.x() * uv.x() + offset.x(), 1 - (scale.y() * (1 - uv.y()) + offset.y())};
+  }
+};
+
+/// What MTL files state of textures that assimp does not read.
+struct MtlTextures {
+  std::map<std::string, MtlUvs> uvs;  ///< by material; those whose texture is placed otherwise
+  std::vector<std::string> warnings;
+};
+
+/// Removes the options of the textures that we show (`map_Kd -s 2 2 1 -bm 1 my image.png`), before
+/// or behind the name of the file, except -clamp, which assimp reads. nullopt: there are none.
+/// @param file  names the MTL in warnings: options that change what is seen and are not honored
+std::optional<std::string> without_options(std::string_view mtl, const std::filesystem::path& file,
+                                           MtlTextures& textures);
+
+}  // namespace mh
