@@ -151,16 +151,22 @@ std::vector<std::string_view> words_of_line(std::string_view line, char separato
 
 std::optional<PoseColumns> columns_named_by(std::string_view line, char separator,
                                             const PoseColumns& usual, std::size_t values) {
-  const std::vector<Name> names = names_in(line, separator);
+  std::vector<Name> names = names_in(line, separator);
   const bool is_comment = trimmed(line, kBlanks).starts_with('#');
-  const auto pose = pose_in(names);
+  auto pose = pose_in(names);
+  if (const std::size_t words = names.size() - std::min(names.size(), values);
+      pose && words > 0 && words < std::ranges::min(*pose)) {  // "# format: timestamp tx ..."
+    names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(words));
+    for (std::size_t& place : *pose) place -= words;
+  }
   PoseColumns columns = usual;
   if (names.size() == values && pose) {
     columns.pose = *pose;
     find_stamp(names, columns);
     const std::size_t last =
         std::max({std::ranges::max(*pose), columns.stamp, columns.nanoseconds.value_or(0)});
-    columns.count = separator == ' ' ? values : last + 1;
+    columns.least = last + 1;
+    columns.most = std::max(usual.most, values);
     if (const std::string& unit = names[(*pose)[0]].unit; !unit.empty() && unit != "m")
       throw InputError(fmt::format("its positions are in '{}', not in m", unit));
     return columns;
@@ -182,6 +188,7 @@ std::optional<PoseColumns> columns_named_by(std::string_view line, char separato
   if (last - first != 6 || first == 0) return std::nullopt;
   for (std::size_t k = 0; k < 7; ++k) columns.pose[k] = (*pose)[k] - first + 1;
   columns.unit = unit_of(names[first - 1]);
+  columns.most = std::max(usual.most, names.size() - first + 1);
   return columns;
 }
 

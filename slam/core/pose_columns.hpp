@@ -18,7 +18,7 @@ struct PoseColumns {
   /// The stamp's unit as a power of ten of a second, -9 for nanoseconds; absent: no name tells it.
   std::optional<int> unit = {};
   std::array<std::size_t, 7> pose = {1, 2, 3, 4, 5, 6, 7};  ///< of x y z qx qy qz qw
-  std::size_t count = 8;                                    ///< values that a line must have
+  std::size_t least = 8, most = 8;                          ///< values in a line
 };
 
 /// The words of a line: between blanks, or between commas or semicolons, without blanks and quotes
@@ -26,9 +26,9 @@ struct PoseColumns {
 /// @param separator  ' ' for blanks of any kind
 std::vector<std::string_view> words_of_line(std::string_view line, char separator);
 
-/// The columns that a line of names states. As many names as values: each names its column, and
-/// columns of other meaning may stand among them. Otherwise, in a comment, seven names of a pose
-/// state only the order of what follows the stamp.
+/// The columns that a line of names states. As many names as values, maybe after other words: each
+/// names its column, and columns of other meaning may stand among them. Otherwise, seven names of a
+/// pose state only the order of what follows the stamp. Lines may end after the last value in use.
 /// @param line     with or without a leading # or %
 /// @param usual    what is not named
 /// @param values   number of values in a line of data

@@ -76,7 +76,7 @@ struct Layout {
   char separator = ' ';
   PoseColumns columns;
   int first_line = std::numeric_limits<int>::max();  ///< of data
-  bool more_may_follow = false;                      ///< values behind those of the pose
+  bool is_table = false;                             ///< between commas or semicolons
 };
 
 /// The first line that is neither a comment nor names; what the lines before it say of columns
@@ -100,8 +100,11 @@ Layout layout_of(const std::string& text, const std::string& name) {
     first = std::move(words);
     return false;
   });
-  layout.more_may_follow = layout.separator != ' ';
-  if (layout.more_may_follow) layout.columns.pose = {1, 2, 3, 5, 6, 7, 4};  // EuRoC's
+  layout.is_table = layout.separator != ' ';
+  if (layout.is_table) {  // EuRoC's
+    layout.columns.pose = {1, 2, 3, 5, 6, 7, 4};
+    layout.columns.most = std::numeric_limits<std::size_t>::max();
+  }
   for (const auto& [line, number] : before) {
     try {
       if (const auto columns =
@@ -118,13 +121,13 @@ Layout layout_of(const std::string& text, const std::string& name) {
 
 Words words_of_pose(std::string_view line, const Layout& layout, const LinePlace& place) {
   Words words = words_of_data(line, layout.separator);
-  const std::size_t count = layout.columns.count;
-  if (!words.empty() && (words.size() < count || (words.size() > count && !layout.more_may_follow)))
-    place.fail(fmt::format("pose: {}, expected {}{}", counted(words.size(), "value"),
-                           layout.more_may_follow ? "at least " : "", count) +
-               (count == 8 ? layout.more_may_follow ? " (timestamp p_x p_y p_z q_w q_x q_y q_z)"
-                                                    : " (stamp tx ty tz qx qy qz qw)"
-                           : ""));
+  const auto& [least, most] = std::pair(layout.columns.least, layout.columns.most);
+  if (!words.empty() && (words.size() < least || words.size() > most))
+    place.fail(fmt::format("pose: {}, expected {}{}{}", counted(words.size(), "value"),
+                           least == most ? "" : "at least ", least,
+                           least != 8        ? ""
+                           : layout.is_table ? " (timestamp p_x p_y p_z q_w q_x q_y q_z)"
+                                             : " (stamp tx ty tz qx qy qz qw)"));
   return words;
 }
 
@@ -140,7 +143,7 @@ StampRange range_of_stamps(const std::string& text, const Layout& layout) {
   for_each_line(text, [&](std::string_view line, int number) {
     if (number < layout.first_line) return true;
     const Words words = words_of_data(line, layout.separator);
-    if (words.size() < layout.columns.count) return true;
+    if (words.size() < layout.columns.least) return true;
     const std::string_view word = words[layout.columns.stamp];
     const auto stamp = number_in(without_plus(word));
     if (!stamp || !std::isfinite(*stamp) || *stamp < 0) return true;
@@ -208,8 +211,8 @@ Trajectory parse(const std::string& text, const std::string& name, std::vector<s
   Layout layout = layout_of(text, name);
   if (!layout.columns.unit) {
     const StampRange range = range_of_stamps(text, layout);
-    layout.columns.unit = likely_unit(range, layout.more_may_follow);
-    const bool usual = *layout.columns.unit == (layout.more_may_follow && range.whole ? -9 : 0);
+    layout.columns.unit = likely_unit(range, layout.is_table);
+    const bool usual = *layout.columns.unit == (layout.is_table && range.whole ? -9 : 0);
     if (!usual && notes != nullptr)
       notes->push_back(
           fmt::format("{}: its stamps are taken for {}", name, unit_name(*layout.columns.unit)));

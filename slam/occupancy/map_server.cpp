@@ -158,6 +158,24 @@ GrayPicture read_picture(const std::filesystem::path& file, std::vector<std::str
   }
 }
 
+/// x, y (m), yaw (rad). map_saver writes a yaw of -nan where a mapper gave no valid quaternion.
+std::vector<double> read_origin(const YamlReader& node, const std::filesystem::path& yaml_file,
+                                std::vector<std::string>* warnings) {
+  const auto warn = [&](const std::string& what) {
+    if (warnings != nullptr)
+      warnings->push_back(fmt::format("{}:{}: origin: {}", yaml_file.string(), node.line(), what));
+  };
+  const std::vector<YamlReader> items = node.items();
+  if (items.size() == 3 && items[2].is_scalar() && items[2].as_string().ends_with("nan")) {
+    warn(fmt::format("its turn '{}' is taken for 0", items[2].as_string()));
+    return {items[0].as_double(), items[1].as_double(), 0};
+  }
+  std::vector<double> origin = node.as_numbers(3);
+  if (std::abs(origin[2]) > 2 * std::numbers::pi)
+    warn(fmt::format("its turn of {} is read in radians", origin[2]));
+  return origin;
+}
+
 std::filesystem::path image_named(YamlReader& yaml, const std::filesystem::path& yaml_file) {
   return yaml_file.parent_path() / yaml.string("image");  // an absolute path stays one
 }
@@ -227,12 +245,9 @@ MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file
   const std::filesystem::path file = image_named(yaml, yaml_file);
   MapImage map;
   map.resolution_m = yaml.number("resolution", 1e-4, 100.0);
-  const std::vector<double> origin = yaml.at("origin").as_numbers(3);
+  const std::vector<double> origin = read_origin(yaml.at("origin"), yaml_file, warnings);
   map.origin_m = {origin[0], origin[1]};
   map.yaw_rad = origin[2];
-  if (std::abs(map.yaw_rad) > 2 * std::numbers::pi && warnings != nullptr)
-    warnings->push_back(fmt::format("{}:{}: origin: its turn of {} is read in radians",
-                                    yaml_file.string(), yaml.at("origin").line(), map.yaw_rad));
   if (map.origin_m.cwiseAbs().maxCoeff() > kFurthest_m)
     yaml.at("origin").fail(
         fmt::format("({}, {}) m is farther than {} m", origin[0], origin[1], kFurthest_m));

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -20,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/protocol/config.hpp"
+#include "scenes/image_file.hpp"
 #include "sim/sensors/config.hpp"
 #include "slam/core/files.hpp"
 #include "slam/core/settings_io.hpp"
@@ -848,6 +850,84 @@ TEST_F(CommandLine, EvaluatesATrajectoryAgainstItself) {
   expect_refused("evaluate " + poses.string() + " " + other.string(), "no pose is within");
   expect_refused("evaluate " + poses.string() + " " + write("bad.tum", "0 0 0\n").string(),
                  "bad.tum:1");
+}
+
+TEST_F(CommandLine, EvaluateShiftsStampsAndTellsBothSpansOfTime) {
+  const std::string poses = "0.5 0 0 0 0 0 0 1\n0.6 1 0 0 0 0 0 1\n0.7 1 1 0 0 0 0 1\n";
+  const fs::path estimate = write("zero.tum", poses);
+  const fs::path truth = write("epoch.tum",
+                               "1305031100.5 0 0 0 0 0 0 1\n1305031100.6 1 0 0 0 0 0 1\n"
+                               "1305031100.7 1 1 0 0 0 0 1\n");
+  const std::string command = "evaluate " + truth.string() + " " + estimate.string();
+  expect_refused(command,
+                 "its stamps are from 0.500 to 0.700 s, those of the truth from 1305031100.500 to "
+                 "1305031100.700 s (--offset adds to its stamps)");
+  ASSERT_EQ(run(command + " --json --max-difference 0 --offset 1305031100"), 0) << err_;
+  EXPECT_EQ(nlohmann::json::parse(out_)["pairs"], 3) << "exact to the nanosecond";
+  ASSERT_EQ(run("evaluate " + estimate.string() + " " + truth.string() +
+                " --json --max-difference 0 --offset -1305031100"),
+            0)
+      << err_;
+  EXPECT_EQ(nlohmann::json::parse(out_)["pairs"], 3);
+  expect_refused(command + " --offset 1s", "--offset: '1s' is no time in seconds");
+  expect_refused(command + " --offset 9.2e9", "--offset: leads to stamps that are not");
+  expect_refused("evaluate --format kitti --offset 1 a b",
+                 "--offset: KITTI's poses have no stamps");
+}
+
+TEST_F(CommandLine, EvaluateLeavesOutWhatIsLostAndSaysSo) {
+  const fs::path truth = write("lost.tum",
+                               "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n"
+                               "3 1 1 0 0 0 0 1\n4 1 1 1 0 0 0 1\n5 nan nan nan 0 0 0 1\n");
+  const fs::path estimate = write("ids.txt",
+                                  "#timestamp x y z qx qy qz qw id\n1 0 0 0 0 0 0 1 1\n"
+                                  "2 1 0 0 0 0 0 1 2\n3 1 1 0 0 0 0 1 3\n5 1 1 1 0 0 0 1 4\n");
+  ASSERT_EQ(run("evaluate --json " + truth.string() + " " + estimate.string()), 0) << err_;
+  EXPECT_EQ(nlohmann::json::parse(out_)["pairs"], 3);
+  EXPECT_NE(err_.find("evaluate: warning: " + truth.string() +
+                      ": 2 of 6 poses are left out: 1 is not finite, 1 repeats a stamp; the first "
+                      "in line 3: stamp: 2 does not come after 2.000000000"),
+            std::string::npos)
+      << err_;
+}
+
+TEST_F(CommandLine, EvaluateKeepsItsDigitsInUtm) {
+  std::string local, utm, estimate;
+  for (int i = 0; i < 60; ++i) {
+    const double a = 0.1 * i, x = std::cos(a), y = std::sin(2 * a), z = 0.01 * i;
+    local += fmt::format("{} {:.4f} {:.4f} {:.4f} 0 0 0 1\n", i, x, y, z);
+    utm +=
+        fmt::format("{} {:.4f} {:.4f} {:.4f} 0 0 0 1\n", i, 458076.1 + x, 5429380.2 + y, 163.9 + z);
+    estimate += fmt::format("{} {:.4f} {:.4f} {:.4f} 0 0 0 1\n", i, x + 0.01 * std::sin(9.0 * i),
+                            y + 0.01 * std::cos(7.0 * i), z);
+  }
+  const fs::path e = write("e.tum", estimate);
+  std::array<double, 2> ate{};
+  for (const bool far : {false, true}) {
+    const fs::path truth = write(far ? "utm.tum" : "local.tum", far ? utm : local);
+    ASSERT_EQ(run("evaluate --json " + truth.string() + " " + e.string()), 0) << err_;
+    ate[far ? 1 : 0] = nlohmann::json::parse(out_)["ape_translation_m"]["rmse"];
+  }
+  EXPECT_GT(ate[0], 0.005);
+  // A coordinate of 5e6 m has steps of 1e-9 m.
+  EXPECT_NEAR(ate[1], ate[0], 1e-8);
+}
+
+TEST_F(CommandLine, MapCostReadsPngAndKeepsTheTurn) {
+  Grid2d<std::uint8_t> gray(4, 3, 254);
+  gray(1, 0) = 0;
+  write("g.png", encode_png(gray));
+  const fs::path yaml = write("g.yaml",
+                              "image: g.png\nmode: scale\nresolution: 0.5\norigin: [1, 2, 0.3]\n"
+                              "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  const std::string out = (folder_ / "cost").string();
+  ASSERT_EQ(run("map cost " + yaml.string() + " --out " + out + " --inflation 0.3"), 0) << err_;
+  EXPECT_NE(out_.find("4 x 3 cells of 0.5 m"), std::string::npos) << out_;
+  EXPECT_NE(read_file(out + ".yaml").find("origin: [1, 2, 0.3]\n"), std::string::npos);
+  EXPECT_NE(read_file(out + "_published.yaml").find("origin: [1, 2, 0.3]\n"), std::string::npos);
+  const std::string pgm = read_file(out + ".pgm");
+  EXPECT_EQ(pgm.substr(0, 13), std::string("P5\n4 3\n255\n") + '\0');
+  EXPECT_EQ(static_cast<unsigned char>(pgm[13]), 254) << "the obstacle, upper row, second column";
 }
 
 TEST_F(CommandLine, EvaluatesKittiFilesByLine) {

@@ -144,7 +144,7 @@ TEST_F(Openloris, WhatCannotBeUsedIsCounted) {
   EXPECT_EQ(opened.sequence->truth()->size(), 2U);
   ASSERT_EQ(opened.notes.size(), 2U);
   EXPECT_NE(opened.notes[0].find("2 of 3 color images have no depth image"), std::string::npos);
-  EXPECT_NE(opened.notes[1].find("groundtruth.txt: 3 lines are left out"), std::string::npos)
+  EXPECT_NE(opened.notes[1].find("groundtruth.txt: 3 of 5 poses are left out"), std::string::npos)
       << opened.notes[1];
   fs::remove(folder_ / "trans_matrix.yaml");
   EXPECT_EQ(open().sequence->truth(), nullptr);

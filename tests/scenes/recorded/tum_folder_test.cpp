@@ -195,6 +195,16 @@ TEST_F(TumFolder, WhatHasNoUseIsTold) {
   std::ofstream(folder_ / "c.png", std::ios::binary) << encode_jpeg(Grid2d<Rgb8>(4, 4), 90);
   EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
   std::ofstream(folder_ / "c.png", std::ios::binary) << encode_png(ids);
+  std::ofstream(folder_ / "groundtruth.txt")
+      << "0.1 0 0 0 0 0 0 1\n0.2 nan nan nan nan nan nan nan\n0.3 0 0 0 0 0 0 0\n"
+         "0.4 0 0 0 0 0 0 1\n0.4 1 0 0 0 0 0 1\n";
+  EXPECT_NE(notes("").find("groundtruth.txt: 3 of 5 poses are left out: 1 is not finite, 1 has no "
+                           "rotation, 1 repeats a stamp; the first in line 2: tx"),
+            std::string::npos)
+      << notes("");
+  std::ofstream(folder_ / "groundtruth.txt") << "0.1 0 0 0 0 0 0 0\n";
+  EXPECT_NE(notes("").find("groundtruth.txt: holds no pose: there is no truth"), std::string::npos)
+      << notes("");
   fs::remove(folder_ / "groundtruth.txt");
   fs::create_directories(folder_ / "groundtruth.txt");
   EXPECT_EQ(notes("").find("its time"), std::string::npos);

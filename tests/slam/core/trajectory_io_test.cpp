@@ -192,6 +192,10 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
   for (const char* text :
        {"#timestamp x y z qx qy qz qw id\n5 1 2 3 0 0 0.6 0.8 7\n",  // rtabmap-export's format 11
         "timestamp tx ty tz qx qy qz qw\n5 1 2 3 0 0 0.6 0.8\n",     // without '#'
+        // of OpenVINS: with words before the names; with covariance from some line on
+        "# format: timestamp tx ty tz qx qy qz qw Pt Pr\n5 1 2 3 0 0 0.6 0.8 9 9\n",
+        "# timestamp(s) tx ty tz qx qy qz qw Pr Pt\n5 1 2 3 0 0 0.6 0.8\n6 1 2 3 0 0 0 1 9 9\n",
+        "num,t,x,y,z,qx,qy,qz,qw\n1,5.0,1,2,3,0,0,0.6,0.8\n",
         "id,time [s],tx,ty,tz,qx,qy,qz,qw\n9,5,1,2,3,0,0,0.6,0.8\n",
         "time_s,qx,qy,qz,qw,x,y,z\n5,0,0,0.6,0.8,1,2,3\n",
         "\"time\";\"px\";\"py\";\"pz\";\"qw\";\"qx\";\"qy\";\"qz\"\n5.0;1;2;3;0.8;0;0;0.6\n",

@@ -384,6 +384,15 @@ TEST(MapServer, DirtyFilesAreReadWithAWarning) {
   EXPECT_EQ(read({"dirty.yaml:7: key 'mdoe' is none of map_server's and is ignored; did you mean "
                   "'mode'?"}),
             right);
+  write("P5\n2 1\n255\n" + pixels, "");
+  const auto turn = [&](const std::string& yaw) {
+    write_atomically(file, "image: dirty.pgm\nresolution: 1\norigin: [0, 0, " + yaw +
+                               "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  };
+  turn("-nan");  // map_saver, where a mapper sent no valid quaternion
+  EXPECT_EQ(read({"dirty.yaml:3: origin: its turn '-nan' is taken for 0"}), right);
+  turn("90");
+  EXPECT_EQ(read({"its turn of 90 is read in radians"}), right);
   write("P5\n2 1\n255\n" + pixels, "mode: raw\n");
   EXPECT_EQ(read({"1 cell is from 101 to 254"}), std::pair(-1, 0));
 }
