@@ -201,8 +201,7 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
   using Json = nlohmann::json;
   const std::string text = read_text(file);
   if (is_nested_too_deep(text))
-    throw InputError(
-        fmt::format("{}: is nested more than {} levels deep", file.string(), kDeepestJson));
+    throw InputError(fmt::format("{}: is nested too deep", file.string()));
   Json json;
   try {
     json = Json::parse(text);
