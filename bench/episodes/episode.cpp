@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/episodes/episode.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <numbers>
 #include <utility>
 
+#include "bench/episodes/judge.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/step_digest.hpp"
 #include "slam/core/error.hpp"
@@ -74,7 +73,13 @@ class Episode {
     session_ = place_.frozen.open_session();
     in_the_dark(simulation);
     drive(simulation, *navigator);
-    judge(simulation, *navigator);
+    const CommandedBase& truth = simulation.truth();
+    judge({.state = navigator->state(),
+           .truth = true_pose(simulation),
+           .belief = believed(*navigator),
+           .length_m = truth.length_m(),
+           .bumps = truth.bumps()},
+          start_, spec_.arrival_m, score_);
     return std::move(score_);
   }
 
@@ -165,11 +170,10 @@ class Episode {
   void note_place(const Simulation& simulation, const Navigator& navigator) {
     const std::optional<Pose2> belief = believed(navigator);
     if (!belief || score_.located_s) return;
-    const Pose2 truth = true_pose(simulation);
+    const PoseError error = error_of(*belief, true_pose(simulation));
     score_.located_s = simulation.time_s();
-    score_.located_error_m = (belief->place_m - truth.place_m).norm();
-    score_.located_error_deg =
-        std::abs(turn_to(belief->heading_rad, truth.heading_rad)) * 180 / std::numbers::pi;
+    score_.located_error_m = error.away_m;
+    score_.located_error_deg = error.turned_rad * 180 / std::numbers::pi;
   }
 
   void tell(const Simulation& simulation, Navigator& navigator, const RobotObservation& seen,
@@ -184,41 +188,6 @@ class Episode {
     moment.navigator = &navigator;
     moment.said = navigator.take_said();
     observe_(moment);
-  }
-
-  void judge(const Simulation& simulation, const Navigator& navigator) {
-    const CommandedBase& truth = simulation.truth();
-    score_.length_m = truth.length_m();
-    score_.end_distance_m = distance_to(start_.boxes, truth.state().position_m);
-    score_.contacts = static_cast<int>(truth.bumps().size());
-    for (const Bump& bump : truth.bumps()) {
-      score_.worst_contact_m_per_s = std::max(score_.worst_contact_m_per_s, bump.speed_m_per_s);
-      if (bump.speed_m_per_s > kCollision_m_per_s) ++score_.collisions;
-    }
-    const std::optional<Pose2> belief = believed(navigator);
-    bool is_false = false;
-    if (belief) {
-      const Pose2 at = true_pose(simulation);
-      score_.last_error_m = (belief->place_m - at.place_m).norm();
-      is_false = *score_.last_error_m > kFalsePose_m ||
-                 std::abs(turn_to(belief->heading_rad, at.heading_rad)) >
-                     kFalsePose_deg * std::numbers::pi / 180;
-    }
-    score_.said_arrived = navigator.state() == NavigatorState::kArrived;
-    score_.success =
-        score_.said_arrived && is_arrival(start_, truth.state().position_m, spec_.arrival_m);
-    score_.wrong_arrival = score_.said_arrived && !score_.success;
-    if (score_.success) {
-      score_.spl = score_.shortest_m / std::max({score_.shortest_m, score_.length_m, 1e-9});
-      return;
-    }
-    score_.reason = is_false                                         ? "false_pose"
-                    : score_.said_arrived                            ? "wrong_arrival"
-                    : navigator.state() == NavigatorState::kNoPath   ? "no_path"
-                    : navigator.state() == NavigatorState::kStuck    ? "stuck"
-                    : navigator.state() == NavigatorState::kCollided ? "collision_stop"
-                    : !score_.located_s                              ? "never_relocalized"
-                                                                     : "time_out";
   }
 
   const EpisodePlace& place_;

@@ -3,6 +3,9 @@
 #include "bench/audit/audit.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +63,14 @@ TEST(AuditRun, FindsEachQuerySolvableThatIsAnsweredRightly) {
       EXPECT_LT(*q.nearest_m, 0.3);
       EXPECT_GE(q.relevant, 1);
       EXPECT_GT(*q.average_precision, 0.5);
+      // Of the first k both count the same.
+      for (const auto& [k, precision, recall] :
+           {std::tuple(1, q.precision_1, q.recall_1), std::tuple(5, q.precision_5, q.recall_5),
+            std::tuple(10, q.precision_10, q.recall_10)})
+        EXPECT_NEAR(k * *precision, q.relevant * *recall, 1e-9) << k;
+      EXPECT_GE(*q.solving_candidate, 1);
+      EXPECT_GE(*q.solving_rank, 1);
+      EXPECT_LE(*q.solving_rank, q.keyframes);
       const StageMatches& words = q.matches[static_cast<std::size_t>(MatchStage::kWords)];
       EXPECT_GE(words.with_xi.kept_right(), 15);
       EXPECT_GT(*words.with_xi.precision(), 0.8) << "the room is sharp and all its patches differ";
@@ -158,6 +169,12 @@ TEST(RequireAuditable, RefusesOutsideSystemsAndRecordings) {
   EXPECT_NE(why_refused(recorded).find("'room' is a recording"), std::string::npos);
 }
 
+std::vector<const QueryAudit*> pointers_to(const std::vector<QueryAudit>& queries) {
+  std::vector<const QueryAudit*> pointers;
+  for (const QueryAudit& q : queries) pointers.push_back(&q);
+  return pointers;
+}
+
 QueryAudit made_up(FirstCause cause, bool solvable) {
   QueryAudit q;
   q.first_correct = q.correct = cause == FirstCause::kNone;
@@ -175,9 +192,7 @@ TEST(AuditSummary, CausesAndSuccessAddUpToAllQueries) {
   for (const FirstCause cause : {kNone, kNone, kNone, kWrongCandidates, kNothingInSight,
                                  kFewMatches, kFalseAnswer, kFewInliers})
     all.push_back(made_up(cause, cause == kNone || cause == kWrongCandidates));
-  std::vector<const QueryAudit*> pointers;
-  for (const QueryAudit& q : all) pointers.push_back(&q);
-  const AuditSummary s = summarize(pointers);
+  const AuditSummary s = summarize(pointers_to(all));
   EXPECT_EQ(s.queries, 8U);
   EXPECT_DOUBLE_EQ(s.first_correct + s.wrong_candidates + s.nothing_in_sight + s.few_matches +
                        s.false_answer + s.few_inliers,
@@ -187,6 +202,179 @@ TEST(AuditSummary, CausesAndSuccessAddUpToAllQueries) {
   EXPECT_DOUBLE_EQ(*s.first_candidate_solves, 0.75);
   EXPECT_DOUBLE_EQ(*s.relevant_candidates, 0.5);
   EXPECT_FALSE(s.average_precision.has_value());
+}
+
+/// Six queries: of the first, second, third and last some keyframe solves it; of the fifth nothing
+/// is in sight.
+std::vector<QueryAudit> six_queries() {
+  std::vector<QueryAudit> all(6);
+  all[0] = {.candidates = 3,
+            .relevant_candidates = 2,
+            .solving_candidate = 1,
+            .average_precision = 0.9,
+            .precision_1 = 1,
+            .precision_5 = 0.8,
+            .precision_10 = 0.4,
+            .recall_1 = 0.1,
+            .recall_5 = 0.5,
+            .recall_10 = 0.6,
+            .solving_rank = 1,
+            .solving_m = 0.2,
+            .solving_deg = 10};
+  all[1] = {.candidates = 2,
+            .average_precision = 0.5,
+            .precision_1 = 0,
+            .precision_5 = 0.4,
+            .precision_10 = 0.3,
+            .recall_1 = 0,
+            .recall_5 = 0.3,
+            .recall_10 = 0.5,
+            .solving_rank = 4,
+            .solving_m = 1.0,
+            .solving_deg = 40};
+  all[2] = {.candidates = 4,
+            .relevant_candidates = 1,
+            .solving_candidate = 1,
+            .average_precision = 0.3,
+            .precision_1 = 0,
+            .precision_5 = 0.2,
+            .precision_10 = 0.1,
+            .recall_1 = 0,
+            .recall_5 = 0.1,
+            .recall_10 = 0.2,
+            .solving_rank = 2,
+            .solving_m = 0.4,
+            .solving_deg = 20};
+  all[3] = {.average_precision = 0.1,
+            .precision_1 = 0,
+            .precision_5 = 0.2,
+            .precision_10 = 0.2,
+            .recall_1 = 0,
+            .recall_5 = 0.2,
+            .recall_10 = 0.3};
+  all[4] = {.candidates = 1};
+  all[5] = {.candidates = 2,
+            .relevant_candidates = 2,
+            .solving_candidate = 3,
+            .average_precision = 0.7,
+            .precision_1 = 1,
+            .precision_5 = 0.6,
+            .precision_10 = 0.5,
+            .recall_1 = 0.2,
+            .recall_5 = 0.65,
+            .recall_10 = 0.8,
+            .solving_rank = 9,
+            .solving_m = 3.0,
+            .solving_deg = 90};
+  const double co_visible[] = {0.9, 0.7, 0.5, 0.3, 0.05, 0.55};
+  const double label_mass[] = {0.3, 0.1, 0.2, 0.0, 0.4, 0.8};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].best_co_visible = co_visible[i];
+    all[i].label_mass = label_mass[i];
+    all[i].by_any = all[i].solving_rank.has_value();
+  }
+  all[0].first_correct = true;
+  return all;
+}
+
+TEST(AuditSummary, OfRetrievalIsOverTheQueriesThatHaveTheValue) {
+  const std::vector<QueryAudit> all = six_queries();
+  const AuditSummary s = summarize(pointers_to(all));
+  EXPECT_DOUBLE_EQ(s.candidates, 2.0);
+  EXPECT_DOUBLE_EQ(*s.relevant_candidates, 5.0 / 12);
+  // Of the four that some keyframe solves.
+  EXPECT_DOUBLE_EQ(*s.first_correct_of_solvable, 0.25);
+  EXPECT_DOUBLE_EQ(*s.candidate_solves, 0.75);
+  EXPECT_DOUBLE_EQ(*s.first_candidate_solves, 0.5);
+  EXPECT_DOUBLE_EQ(*s.most_similar_solves, 0.25);
+  // Of the five that have them.
+  EXPECT_DOUBLE_EQ(*s.average_precision, 0.5);
+  EXPECT_DOUBLE_EQ(*s.precision_1, 0.4);
+  EXPECT_DOUBLE_EQ(*s.precision_5, 0.44);
+  EXPECT_DOUBLE_EQ(*s.precision_10, 0.3);
+  EXPECT_DOUBLE_EQ(*s.recall_1, 0.06);
+  EXPECT_DOUBLE_EQ(*s.recall_5, 0.35);
+  EXPECT_DOUBLE_EQ(*s.recall_10, 0.48);
+  EXPECT_DOUBLE_EQ(s.best_co_visible, 0.5);
+  EXPECT_DOUBLE_EQ(s.label_mass, 0.3);
+}
+
+TEST(AuditSummary, AMedianIsTheMiddleOrTheMeanOfTheMiddleTwo) {
+  std::vector<QueryAudit> all = six_queries();  // ranks 1, 4, 2, 9
+  const AuditSummary even = summarize(pointers_to(all));
+  EXPECT_DOUBLE_EQ(*even.solving_rank, 3);
+  EXPECT_DOUBLE_EQ(*even.solving_m, 0.7);
+  EXPECT_DOUBLE_EQ(*even.solving_deg, 30);
+  all.pop_back();
+  const AuditSummary odd = summarize(pointers_to(all));
+  EXPECT_DOUBLE_EQ(*odd.solving_rank, 2);
+  EXPECT_DOUBLE_EQ(*odd.solving_m, 0.4);
+  EXPECT_DOUBLE_EQ(*odd.solving_deg, 20);
+  all.erase(all.begin(), all.begin() + 3);
+  EXPECT_FALSE(summarize(pointers_to(all)).solving_m.has_value());
+}
+
+/// 21 queries: 1 correct, 2 with wrong candidates, 3 with nothing in sight and so on.
+std::vector<QueryAudit> twenty_one_queries() {
+  using enum FirstCause;
+  std::vector<QueryAudit> all;
+  int count = 0;
+  for (const FirstCause cause :
+       {kNone, kWrongCandidates, kNothingInSight, kFewMatches, kFalseAnswer, kFewInliers}) {
+    ++count;
+    for (int i = 0; i < count; ++i) all.push_back(made_up(cause, false));
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].correct = i < 7;
+    all[i].by_nearest = i < 8;
+    all[i].by_any = i < 9;
+    all[i].without_false = i < 10;
+    all[i].with_true_pose = i < 11;
+  }
+  return all;
+}
+
+TEST(AuditSummary, SharesAreOfAllQueries) {
+  const std::vector<QueryAudit> all = twenty_one_queries();
+  const AuditSummary s = summarize(pointers_to(all));
+  EXPECT_EQ(s.queries, 21U);
+  const double shares[] = {s.first_correct, s.wrong_candidates, s.nothing_in_sight, s.few_matches,
+                           s.false_answer,  s.few_inliers,      s.correct,          s.by_nearest,
+                           s.by_any,        s.without_false,    s.with_true_pose};
+  for (int i = 0; i < 11; ++i) EXPECT_DOUBLE_EQ(shares[i], (i + 1) / 21.0) << i;
+  EXPECT_DOUBLE_EQ(*s.first_correct_of_solvable, 1.0 / 9);
+  EXPECT_FALSE(summarize({}).relevant_candidates.has_value());
+}
+
+/// The words of the row below the headings that begin with some text.
+std::vector<std::string> row_below(const std::string& text, const std::string& title) {
+  std::istringstream in(text.substr(text.find(title)));
+  std::string line;
+  for (int i = 0; i < 3; ++i) std::getline(in, line);
+  std::istringstream words(line);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+TEST(AuditText, EachCellStandsUnderItsHeading) {
+  Suite suite;
+  const auto text_of = [&](const std::vector<QueryAudit>& held_out) {
+    const std::vector<AuditedRun> runs{{spec(), "key", {.points = {{held_out, {}}}}}};
+    return audit_text(suite, runs);
+  };
+  using Words = std::vector<std::string>;
+  const std::string causes = text_of(twenty_one_queries());
+  EXPECT_EQ(row_below(causes, "answers, and the first cause"),
+            (Words{"semantic", "exact", "held-out", "21", "33.3", "4.8", "9.5", "14.3", "19.0",
+                   "23.8", "28.6"}))
+      << causes;
+  EXPECT_EQ(row_below(causes, "ceilings (%)"),
+            (Words{"semantic", "exact", "held-out", "4.8", "38.1", "42.9", "47.6", "52.4", "11.1"}))
+      << causes;
+  const std::string retrieval = text_of(six_queries());
+  EXPECT_EQ(row_below(retrieval, "retrieval:"),
+            (Words{"semantic", "exact", "held-out", "0.500", "0.400", "0.440", "0.300", "0.350",
+                   "0.480", "2.00", "41.7", "50.0", "75.0", "3", "0.70", "30", "30.0"}))
+      << retrieval;
 }
 
 TEST(AuditFiles, HaveOneRowPerQueryAndEveryFigure) {
@@ -212,6 +400,12 @@ TEST(AuditFiles, HaveOneRowPerQueryAndEveryFigure) {
   EXPECT_EQ(json["rows"][0]["queries"], 2);
   EXPECT_EQ(json["rows"][0]["few_matches"], 0.5);
   EXPECT_EQ(json["environments"][0]["environment"], "room");
+  const auto figures = audit_json(
+      suite, std::vector<AuditedRun>{{of, "key", {.points = {{six_queries(), {}}}}}})["rows"][0];
+  EXPECT_EQ(figures["most_similar_solves"], 0.25);
+  EXPECT_NEAR(figures["recall_1"], 0.06, 1e-12);
+  EXPECT_NEAR(figures["recall_5"], 0.35, 1e-12);
+  EXPECT_EQ(figures["solving_rank"], 3);
   const std::string text = audit_text(suite, runs);
   EXPECT_NE(text.find("1.00 s of CPU time per query (2 queries), 25 % of what the run took"),
             std::string::npos)

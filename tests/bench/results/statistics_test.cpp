@@ -230,6 +230,29 @@ TEST(CompareClusters, QueriesOfOneSceneSayLittleMoreThanOne) {
   EXPECT_EQ(ten.p, one.p);
 }
 
+TEST(CompareClusters, ScenesWithoutAnyPairDoNotCount) {
+  // Three scenes decide nothing, however many others have no pair.
+  std::vector<std::vector<PairedDifference>> scenes = scenes_of({1, 1, 1}, 2);
+  scenes.emplace_back();
+  scenes.emplace_back(5);  // queries that only one of the two has a value for
+  const Comparison three = compare_clusters(scenes, true, 1);
+  EXPECT_EQ(three.clusters, 3u);
+  EXPECT_EQ(three.pairs, 6u);
+  EXPECT_EQ(three.p, 1);
+  EXPECT_TRUE(std::isinf(three.high) && std::isinf(three.detectable));
+
+  // Nor do they lower p or what is detectable among enough.
+  scenes = scenes_of({1, 1, 0, 1, 1, 1}, 3);
+  const Comparison six = compare_clusters(scenes, true, 1);
+  scenes.insert(scenes.begin() + 2, 4, std::vector<PairedDifference>(2));
+  const Comparison ten = compare_clusters(scenes, true, 1);
+  EXPECT_EQ(ten.clusters, 6u);
+  EXPECT_EQ(ten.p, six.p);
+  EXPECT_EQ(ten.low, six.low);
+  EXPECT_EQ(ten.high, six.high);
+  EXPECT_EQ(ten.detectable, six.detectable);
+}
+
 TEST(CompareClusters, FewScenesDecideNothing) {
   EXPECT_TRUE(std::isinf(compare_clusters(scenes_of({1, 1, 1}, 50), true, 1).high));
   const Comparison five = compare_clusters(scenes_of({1, 1, 1, 1, 1}, 50), true, 1);

@@ -119,6 +119,25 @@ TEST(ScanGrid, ALaserIsASecondSource) {
   EXPECT_THROW(scans.add_to(other), InputError);
 }
 
+// 8 hits of 0.85 and 17 misses of -0.4 cancel each other: what may be there is not driven over.
+TEST(ScanGrid, HitsAndMissesThatSumToZeroAreAnObstacle) {
+  const SE3 pose(Eigen::Matrix3d::Identity(), {0.025, 0.025, 0.3});
+  const auto ahead = [](float range_m) { return RangeScan{.ranges_m = {range_m}}; };
+  const auto at_half_a_meter = [&](int hits, int misses) {
+    ScanGrid scans;
+    for (int i = 0; i < misses; ++i) scans.add_scan(pose, ahead(1.0F));
+    for (int i = 0; i < hits; ++i) scans.add_scan(pose, ahead(0.5F));
+    OccupancyGrid grid;
+    scans.add_to(grid);
+    const auto cell = grid.cell_of({0.525, 0.025});
+    return grid.cells(cell->x(), cell->y());
+  };
+  EXPECT_EQ(kHitLogOdds * 8.0F + kMissLogOdds * 17.0F, 0.0F);
+  EXPECT_EQ(at_half_a_meter(8, 17), kOccupiedCell);
+  EXPECT_EQ(at_half_a_meter(8, 18), kFreeCell);
+  EXPECT_EQ(at_half_a_meter(7, 17), kFreeCell);
+}
+
 // nav2_costmap_2d: inflation_layer.hpp, computeCost().
 TEST(CostMap, CostsDecayAsNav2PublishesIt) {
   const CostMapConfig config{
@@ -149,6 +168,29 @@ TEST(CostMap, EndsAtWholeCells) {
     const CostMap costs = cost_map(grid, {.inflation_radius_m = radius_m});
     EXPECT_GT(costs.costs(cells, 0), 0) << radius_m;
     EXPECT_EQ(costs.costs(cells + 1, 0), 0) << radius_m;
+  }
+}
+
+// At Nav2's defaults and Pepper's radius, by steps of 5 cm from the obstacle.
+TEST(CostMap, CostsAndWhatIsPublishedOfThemAtStatedDistances) {
+  OccupancyGrid grid{.cells = Grid2d<std::int8_t>(14, 1, kFreeCell)};
+  grid.cells(0, 0) = kOccupiedCell;
+  grid.cells(13, 0) = kUnknownCell;
+  const CostMap costs = cost_map(grid);
+  const std::vector<int> nav2{254, 253, 253, 253, 253, 253, 223, 192, 165, 142, 122, 105, 0, 255};
+  EXPECT_EQ(std::vector<int>(costs.costs.begin(), costs.costs.end()), nav2);
+  const std::vector<int> published{100, 99, 99, 99, 99, 99, 86, 74, 64, 55, 47, 41, 0, -1};
+  const OccupancyGrid shown = as_published(costs);
+  EXPECT_EQ(std::vector<int>(shown.cells.begin(), shown.cells.end()), published);
+}
+
+// costmap_2d_publisher.cpp: 1 to 252 become 1 to 98, cut to integers.
+TEST(CostMap, InflatedCostsArePublishedAsOneToNinetyEight) {
+  const std::vector<std::pair<int, int>> known{{1, 1},    {2, 1},    {3, 1},    {4, 2},   {100, 39},
+                                               {126, 49}, {200, 77}, {251, 97}, {252, 98}};
+  for (const auto& [cost, published] : known) {
+    CostMap costs{.costs = Grid2d<std::uint8_t>(1, 1, static_cast<std::uint8_t>(cost))};
+    EXPECT_EQ(as_published(costs).cells(0, 0), published) << cost;
   }
 }
 
