@@ -18,7 +18,7 @@ enum class PoseFault { kNotFinite, kZero, kRepeated, kNoPose };
 
 class BadPose : public InputError {
  public:
-  BadPose(const std::string& what, PoseFault fault) : InputError(what), fault(fault) {}
+  BadPose(const std::string& what, PoseFault why) : InputError(what), fault(why) {}
   PoseFault fault;
 };
 
