@@ -343,7 +343,7 @@ TEST(AuditSummary, SharesAreOfAllQueries) {
                            s.by_any,        s.without_false,    s.with_true_pose};
   for (int i = 0; i < 11; ++i) EXPECT_DOUBLE_EQ(shares[i], (i + 1) / 21.0) << i;
   EXPECT_DOUBLE_EQ(*s.first_correct_of_solvable, 1.0 / 9);
-  EXPECT_FALSE(summarize({}).relevant_candidates.has_value());
+  EXPECT_FALSE(summarize(std::span<const QueryAudit* const>()).relevant_candidates.has_value());
 }
 
 /// The words of the row below the headings that begin with some text.
