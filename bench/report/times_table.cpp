@@ -9,6 +9,7 @@
 #include "bench/report/table.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/counted.hpp"
 
 namespace mh {
