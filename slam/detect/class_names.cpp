@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <map>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -66,6 +68,49 @@ ClassId class_named(std::string name) {
   return class_by_name(name).value_or(kVoid);
 }
 
+ClassNames with_ids(std::vector<std::string> names) {
+  ClassNames all;
+  for (const std::string& name : names) all.ids.push_back(class_named(name));
+  all.names = std::move(names);
+  return all;
+}
+
+/// A text in quotes at the begin of `rest`, which is moved behind it; nullopt if there is none.
+std::optional<std::string> take_quoted(std::string_view& rest) {
+  const char quote = rest.empty() ? '\0' : rest.front();
+  if (quote != '\'' && quote != '"') return std::nullopt;
+  std::string text;
+  for (std::size_t i = 1; i < rest.size(); ++i) {
+    if (rest[i] == quote) {
+      rest.remove_prefix(i + 1);
+      return text;
+    }
+    if (rest[i] == '\\' && i + 1 < rest.size()) ++i;
+    text += rest[i];
+  }
+  return std::nullopt;
+}
+
+bool take(std::string_view& rest, char expected) {
+  while (!rest.empty() && (rest.front() == ' ' || rest.front() == '\n')) rest.remove_prefix(1);
+  if (rest.empty() || rest.front() != expected) return false;
+  rest.remove_prefix(1);
+  while (!rest.empty() && (rest.front() == ' ' || rest.front() == '\n')) rest.remove_prefix(1);
+  return true;
+}
+
+/// "12:"
+std::optional<std::size_t> take_index(std::string_view& rest) {
+  const bool quoted = !rest.empty() && (rest.front() == '\'' || rest.front() == '"');
+  std::string_view digits = rest.substr(quoted ? 1 : 0);
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  if (error != std::errc()) return std::nullopt;
+  rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  if (quoted && !rest.empty()) rest.remove_prefix(1);
+  return take(rest, ':') ? std::optional(index) : std::nullopt;
+}
+
 }  // namespace
 
 std::string ClassNames::unknown_note(const std::filesystem::path& of) const {
@@ -75,14 +120,7 @@ std::string ClassNames::unknown_note(const std::filesystem::path& of) const {
 }
 
 const ClassNames& coco80() {
-  static const ClassNames kNames = [] {
-    ClassNames all;
-    for (const char* name : kCoco80) {
-      all.names.emplace_back(name);
-      all.ids.push_back(class_named(name));
-    }
-    return all;
-  }();
+  static const ClassNames kNames = with_ids({kCoco80.begin(), kCoco80.end()});
   return kNames;
 }
 
@@ -94,17 +132,34 @@ int coco80_of_category(int category_id) {
 }
 
 ClassNames load_class_names(const std::filesystem::path& file) {
-  ClassNames all;
+  std::vector<std::string> names;
   std::istringstream text(read_text(file));
   for (std::string line; std::getline(text, line);) {
     const auto first = line.find_first_not_of(" \t\r");
     line = first == line.npos ? "" : line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
-    all.names.push_back(std::move(line));
+    names.push_back(std::move(line));
   }
-  while (!all.names.empty() && all.names.back().empty()) all.names.pop_back();
-  if (all.names.empty()) throw InputError(fmt::format("{}: names no class", file.string()));
-  for (const std::string& name : all.names) all.ids.push_back(class_named(name));
-  return all;
+  while (!names.empty() && names.back().empty()) names.pop_back();
+  if (names.empty()) throw InputError(fmt::format("{}: names no class", file.string()));
+  return with_ids(std::move(names));
+}
+
+std::optional<ClassNames> read_class_names(std::string_view python) {
+  const bool by_index = take(python, '{');
+  if (!by_index && !take(python, '[')) return std::nullopt;
+  const char end = by_index ? '}' : ']';
+  std::map<std::size_t, std::string> named;
+  while (!take(python, end)) {
+    const auto index = by_index ? take_index(python) : std::optional(named.size());
+    auto name = take_quoted(python);
+    if (!index || !name || !named.emplace(*index, *std::move(name)).second) return std::nullopt;
+    if (!take(python, ',') && !python.starts_with(end)) return std::nullopt;
+  }
+  if (named.empty() || named.rbegin()->first != named.size() - 1 || !python.empty())
+    return std::nullopt;
+  std::vector<std::string> names;
+  for (auto& [index, name] : named) names.push_back(std::move(name));
+  return with_ids(std::move(names));
 }
 
 }  // namespace mh

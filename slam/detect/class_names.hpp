@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "slam/core/labels.hpp"
@@ -29,5 +31,9 @@ int coco80_of_category(int category_id);
 /// Reads one name per line, as darknet's .names files are; blank lines at the end do not count.
 /// @throws InputError naming the file, also if it has no name.
 ClassNames load_class_names(const std::filesystem::path& file);
+
+/// Reads names as Python prints them in a network's metadata: {0: 'chair', 1: "driver's seat"} or
+/// ['chair', 'table']. nullopt if the text is neither, or does not name each class from 0 once.
+std::optional<ClassNames> read_class_names(std::string_view python);
 
 }  // namespace mh

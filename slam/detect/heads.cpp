@@ -157,8 +157,18 @@ std::string shape_text(const Tensor& tensor) {
   return fmt::format("{}", fmt::join(tensor.shape, " x "));
 }
 
+bool gives_boxes_and_masks(std::span<const Tensor> outputs, const InputSize& input) {
+  const auto boxes = [&](const Tensor& tensor) {
+    const std::optional<Matrix> m = as_matrix(tensor);
+    return m && (!cells_of(m->columns, input).empty() || !cells_of(m->rows, input).empty() ||
+                 (m->rows % 3 == 0 && !cells_of(m->rows / 3, input).empty()));
+  };
+  return std::ranges::any_of(outputs, is_segmentation) && std::ranges::any_of(outputs, boxes);
+}
+
 Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, bool darknet) {
   if (darknet) return rows_of(Head::kDarknet, outputs, input) ? Head::kDarknet : Head::kAuto;
+  if (gives_boxes_and_masks(outputs, input)) return Head::kAuto;
   for (const Tensor& tensor : outputs) {
     if (is_segmentation(tensor)) return Head::kSegmentation;
     const std::optional<Matrix> m = as_matrix(tensor);

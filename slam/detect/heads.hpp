@@ -26,6 +26,10 @@ std::string shape_text(const Tensor& tensor);
 /// @returns kAuto if none fits
 Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, bool darknet);
 
+/// Whether outputs are boxes and the masks of their objects: those of networks that segment
+/// instances, which are no head of ours.
+bool gives_boxes_and_masks(std::span<const Tensor> outputs, const InputSize& input);
+
 /// The number of classes of outputs with that head; 0 if they cannot be its outputs.
 int class_count(Head head, std::span<const Tensor> outputs, const InputSize& input);
 

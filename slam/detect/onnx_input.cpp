@@ -8,80 +8,18 @@
 
 #include <fmt/format.h>
 
+#include "slam/detect/protobuf.hpp"
+
 namespace mh {
 namespace {
-
-/// One field of a Protocol Buffers message: a number, or the bytes of a text or a message.
-struct Field {
-  std::uint64_t tag = 0, number = 0;
-  std::string_view bytes;
-  bool is_number = false;
-};
-
-/// Walks the fields of a message; stops at the first that is not whole.
-class Message {
- public:
-  explicit Message(std::string_view bytes) : rest_(bytes) {}
-
-  std::optional<Field> next() {
-    Field field;
-    const auto key = varint();
-    if (!key) return std::nullopt;
-    field.tag = *key >> 3;
-    std::optional<std::uint64_t> size;
-    switch (*key & 7) {
-      case 0:
-        size = varint();
-        if (!size) return std::nullopt;
-        field.number = *size;
-        field.is_number = true;
-        return field;
-      case 1:
-        size = 8;
-        break;
-      case 2:
-        size = varint();
-        break;
-      case 5:
-        size = 4;
-        break;
-      default:
-        return std::nullopt;
-    }
-    if (!size || *size > rest_.size()) return std::nullopt;
-    field.bytes = rest_.substr(0, *size);
-    rest_.remove_prefix(*size);
-    return field;
-  }
-
- private:
-  std::optional<std::uint64_t> varint() {
-    std::uint64_t value = 0;
-    for (int shift = 0; shift < 64 && !rest_.empty(); shift += 7) {
-      const auto byte = static_cast<unsigned char>(rest_.front());
-      rest_.remove_prefix(1);
-      value |= std::uint64_t{byte & 0x7fU} << shift;
-      if (byte < 0x80) return value;
-    }
-    return std::nullopt;
-  }
-
-  std::string_view rest_;
-};
-
-/// The fields of a message with that tag.
-std::vector<Field> all(std::string_view message, std::uint64_t tag) {
-  std::vector<Field> found;
-  Message walk(message);
-  while (const auto field = walk.next())
-    if (field->tag == tag) found.push_back(*field);
-  return found;
-}
 
 // Tags of onnx.proto (ONNX 1.x): ModelProto.graph, GraphProto.input, ValueInfoProto.type,
 // TypeProto.tensor_type, Tensor.shape, TensorShapeProto.dim, Dimension.dim_value.
 constexpr std::uint64_t kGraph = 7, kInput = 11, kType = 2, kTensor = 1, kShape = 2, kDim = 1,
                         kValue = 1;
+
+// ModelProto.metadata_props, StringStringEntryProto.key, .value.
+constexpr std::uint64_t kMetadata = 14, kMetadataKey = 1, kMetadataValue = 2;
 
 // GraphProto.node and .initializer, NodeProto.attribute, AttributeProto.t; TensorProto.dims,
 // .data_type, .name, .raw_data, .data_location, and the typed lists of values.
@@ -90,34 +28,15 @@ constexpr std::uint64_t kDims = 1, kDataType = 2, kFloats = 4, kInt32s = 5, kInt
                         kRaw = 9, kDoubles = 10, kUint64s = 11, kLocation = 14;
 constexpr std::uint64_t kFloat = 1;  // TensorProto.DataType
 
-/// The varints of a repeated field, packed or one by one.
-std::vector<std::uint64_t> varints(std::string_view message, std::uint64_t tag) {
-  std::vector<std::uint64_t> values;
-  for (const Field& field : all(message, tag)) {
-    if (field.is_number) values.push_back(field.number);
-    std::uint64_t value = 0;
-    int shift = 0;
-    for (const char c : field.bytes) {
-      const auto byte = static_cast<unsigned char>(c);
-      if (shift < 64) value |= std::uint64_t{byte & 0x7fU} << shift;
-      shift += 7;
-      if (byte >= 0x80) continue;
-      values.push_back(value);
-      value = 0, shift = 0;
-    }
-  }
-  return values;
-}
-
 std::size_t bytes_of(std::string_view message, std::uint64_t tag) {
   std::size_t size = 0;
-  for (const Field& field : all(message, tag)) size += field.bytes.size();
+  for (const ProtoField& field : proto_fields(message, tag)) size += field.bytes.size();
   return size;
 }
 
 /// Whether the 32-bit floats of a field hold one that is not a number.
 bool any_nan(std::string_view message, std::uint64_t tag) {
-  for (const Field& field : all(message, tag))
+  for (const ProtoField& field : proto_fields(message, tag))
     for (std::size_t at = 0; at + sizeof(float) <= field.bytes.size(); at += sizeof(float)) {
       float value = 0;
       std::memcpy(&value, field.bytes.data() + at, sizeof value);
@@ -154,22 +73,23 @@ std::size_t value_size(std::uint64_t type) {
 /// What is wrong with a TensorProto; "" = nothing.
 std::string fault_of(std::string_view tensor) {
   std::string name = "a constant";
-  for (const Field& field : all(tensor, kName)) name = fmt::format("'{}'", field.bytes);
-  for (const std::uint64_t where : varints(tensor, kLocation))
+  for (const ProtoField& field : proto_fields(tensor, kName))
+    name = fmt::format("'{}'", field.bytes);
+  for (const std::uint64_t where : proto_varints(tensor, kLocation))
     if (where == 1)
       return fmt::format("weights {} are in another file: export with them inside", name);
   double values = 1;
-  for (const std::uint64_t dim : varints(tensor, kDims)) values *= static_cast<double>(dim);
+  for (const std::uint64_t dim : proto_varints(tensor, kDims)) values *= static_cast<double>(dim);
   std::uint64_t type = 0;
-  for (const std::uint64_t stated : varints(tensor, kDataType)) type = stated;
+  for (const std::uint64_t stated : proto_varints(tensor, kDataType)) type = stated;
   const std::size_t size = value_size(type);
   if (size == 0) return "";
   const std::size_t raw = bytes_of(tensor, kRaw);
   const std::size_t held =
       raw > 0 ? raw / size
               : bytes_of(tensor, kFloats) / 4 + bytes_of(tensor, kDoubles) / 8 +
-                    varints(tensor, kInt32s).size() + varints(tensor, kInt64s).size() +
-                    varints(tensor, kUint64s).size();
+                    proto_varints(tensor, kInt32s).size() + proto_varints(tensor, kInt64s).size() +
+                    proto_varints(tensor, kUint64s).size();
   if (static_cast<double>(held) == values) {
     const bool nan = type == kFloat && (any_nan(tensor, kRaw) || any_nan(tensor, kFloats));
     return nan ? fmt::format("weights {} hold a value that is not a number", name) : "";
@@ -178,8 +98,8 @@ std::string fault_of(std::string_view tensor) {
 }
 
 /// 0 where a dimension is open: by a name, or by -1.
-std::uint64_t size_of(const Field& dim) {
-  for (const Field& value : all(dim.bytes, kValue))
+std::uint64_t size_of(const ProtoField& dim) {
+  for (const ProtoField& value : proto_fields(dim.bytes, kValue))
     if (value.is_number && static_cast<std::int64_t>(value.number) > 0) return value.number;
   return 0;
 }
@@ -187,12 +107,12 @@ std::uint64_t size_of(const Field& dim) {
 }  // namespace
 
 std::optional<OnnxInput> onnx_input(std::string_view model) {
-  for (const Field& graph : all(model, kGraph))
-    for (const Field& input : all(graph.bytes, kInput))
-      for (const Field& type : all(input.bytes, kType))
-        for (const Field& tensor : all(type.bytes, kTensor))
-          for (const Field& shape : all(tensor.bytes, kShape)) {
-            const std::vector<Field> dims = all(shape.bytes, kDim);
+  for (const ProtoField& graph : proto_fields(model, kGraph))
+    for (const ProtoField& input : proto_fields(graph.bytes, kInput))
+      for (const ProtoField& type : proto_fields(input.bytes, kType))
+        for (const ProtoField& tensor : proto_fields(type.bytes, kTensor))
+          for (const ProtoField& shape : proto_fields(tensor.bytes, kShape)) {
+            const std::vector<ProtoField> dims = proto_fields(shape.bytes, kDim);
             // Weights may be listed as inputs: an image has three channels, or leaves them open.
             if (dims.size() != 4 || (size_of(dims[1]) != 3 && size_of(dims[1]) != 0)) continue;
             return OnnxInput{size_of(dims[0]), size_of(dims[3]), size_of(dims[2])};
@@ -201,15 +121,23 @@ std::optional<OnnxInput> onnx_input(std::string_view model) {
 }
 
 std::string onnx_weights_fault(std::string_view model) {
-  for (const Field& graph : all(model, kGraph)) {
-    for (const Field& weights : all(graph.bytes, kInitializer))
+  for (const ProtoField& graph : proto_fields(model, kGraph)) {
+    for (const ProtoField& weights : proto_fields(graph.bytes, kInitializer))
       if (std::string fault = fault_of(weights.bytes); !fault.empty()) return fault;
-    for (const Field& node : all(graph.bytes, kNode))
-      for (const Field& attribute : all(node.bytes, kAttribute))
-        for (const Field& constant : all(attribute.bytes, kAttributeTensor))
+    for (const ProtoField& node : proto_fields(graph.bytes, kNode))
+      for (const ProtoField& attribute : proto_fields(node.bytes, kAttribute))
+        for (const ProtoField& constant : proto_fields(attribute.bytes, kAttributeTensor))
           if (std::string fault = fault_of(constant.bytes); !fault.empty()) return fault;
   }
   return "";
+}
+
+std::map<std::string, std::string> onnx_metadata(std::string_view model) {
+  std::map<std::string, std::string> metadata;
+  for (const ProtoField& entry : proto_fields(model, kMetadata))
+    metadata[std::string(proto_bytes(entry.bytes, kMetadataKey))] =
+        proto_bytes(entry.bytes, kMetadataValue);
+  return metadata;
 }
 
 }  // namespace mh

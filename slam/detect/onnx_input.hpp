@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,5 +29,8 @@ std::optional<OnnxInput> onnx_input(std::string_view model);
 /// another file: OpenCV's importer would read beyond their end. "" = none, or the bytes are no such
 /// model.
 std::string onnx_weights_fault(std::string_view model);
+
+/// What programs that write ONNX models say of them: Ultralytics states `names`, `task`, `imgsz`.
+std::map<std::string, std::string> onnx_metadata(std::string_view model);
 
 }  // namespace mh

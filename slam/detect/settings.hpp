@@ -94,7 +94,7 @@ void fields(C& c, Visit& v) {
 struct DetectorSpec {
   std::filesystem::path network;  ///< ONNX, or Darknet's weights; empty: boxes
   std::filesystem::path config;   ///< Darknet's .cfg
-  std::filesystem::path classes;  ///< names, one per line; empty: COCO's 80
+  std::filesystem::path classes;  ///< names, one per line; empty: the network's, or COCO's 80
   std::filesystem::path boxes;    ///< COCO JSON, MOT CSV, folder of YOLO text; empty: a network
   DetectorSettings settings;
   friend bool operator==(const DetectorSpec&, const DetectorSpec&) = default;

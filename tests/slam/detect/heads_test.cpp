@@ -70,6 +70,29 @@ TEST(Decode, YoloxAddsTheCellAndTakesTheExponent) {
   EXPECT_TRUE(decode(Head::kYolox, {&tensor, 1}, kInput, 0.41).empty());
 }
 
+TEST(RecognizeHead, LeavesBoxesWithMasksAlone) {
+  const Made boxes({1, 39, 42}), masks({1, 32, 8, 16});
+  const std::vector<Tensor> both = {boxes.tensor(), masks.tensor()};
+  EXPECT_TRUE(gives_boxes_and_masks(both, kInput));
+  EXPECT_EQ(recognize_head(both, kInput, false), Head::kAuto);
+  EXPECT_FALSE(gives_boxes_and_masks({both.data(), 1}, kInput));
+  EXPECT_FALSE(gives_boxes_and_masks({both.data() + 1, 1}, kInput));
+}
+
+TEST(Decode, ScoresOfYolov5AreObjectnessTimesProbability) {
+  Made made({1, 126, 7});
+  const std::vector<float> values = {10, 12, 4, 6, 0.5F, 0.25F, 0.75F};
+  std::copy(values.begin(), values.end(), made.values.begin() + 7 * 3);
+  const Tensor tensor = made.tensor();
+  const auto found = decode(Head::kYolov5, {&tensor, 1}, kInput, 0.3);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_FLOAT_EQ(found[0].scores[0], 0.125F);
+  EXPECT_FLOAT_EQ(found[0].scores[1], 0.375F);
+  EXPECT_EQ(found[0].x, 10);
+  EXPECT_EQ(found[0].height, 6);
+  EXPECT_TRUE(decode(Head::kYolov5, {&tensor, 1}, kInput, 0.4).empty());
+}
+
 TEST(Decode, Yolov8IsTransposedAndHasNoObjectness) {
   Made made({1, 7, 42});
   const std::vector<float> values = {10, 12, 4, 6, 0.2F, 0.9F, 0.1F};
@@ -189,6 +212,37 @@ TEST(PlaceImage, ScalesIntoCornerOrCenterAndBack) {
   const Placement stretched = place_image(640, 480, {416, 416}, Letterbox::kStretch);
   EXPECT_EQ(stretched.height, 416);
   EXPECT_DOUBLE_EQ(stretched.image_y(208), 240);
+}
+
+// 333 of 500 rows, at a scale of 0.832, are 277.056; 335 are 278.72.
+TEST(PlaceImage, RoundsInTheCenterAndCutsInTheCorner) {
+  const auto place = [](int height, Letterbox letterbox) {
+    return place_image(500, height, {416, 416}, letterbox);
+  };
+  EXPECT_EQ(place(333, Letterbox::kCorner).height, 277);
+  EXPECT_EQ(place(333, Letterbox::kCenter).height, 277);
+  EXPECT_EQ(place(333, Letterbox::kCenter).top, 69);  // of 139 rows that remain
+  EXPECT_EQ(place(335, Letterbox::kCorner).height, 278);
+  EXPECT_EQ(place(335, Letterbox::kCenter).height, 279);
+  EXPECT_EQ(place(335, Letterbox::kCenter).top, 68);  // of 137
+  EXPECT_EQ(place_image(1000, 1, {416, 416}, Letterbox::kCorner).height, 1);
+}
+
+TEST(ReadClassNames, TakesWhatPythonPrints) {
+  const auto names = [](const char* python) {
+    const auto read = read_class_names(python);
+    return read ? read->names : std::vector<std::string>{};
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names("{0: 'chair', 1: 'potted plant'}"), (Names{"chair", "potted plant"}));
+  EXPECT_EQ(names("{1: \"driver's seat\", 0: 'it\\'s'}"), (Names{"it's", "driver's seat"}));
+  EXPECT_EQ(names("['chair', 'table']"), (Names{"chair", "table"}));
+  EXPECT_EQ(names("{\"0\": \"chair\"}"), (Names{"chair"}));
+  EXPECT_EQ(read_class_names("['chair', 'dragon']")->ids, (std::vector<ClassId>{5, kVoid}));
+  for (const char* wrong :
+       {"", "{}", "[]", "chair", "{0: 'chair'", "{0: 'chair', 2: 'table'}", "{0: 'a', 0: 'b'}",
+        "{0: chair}", "['chair' 'table']", "{0: 'chair'} and more", "{-1: 'chair'}", "['chair"})
+    EXPECT_FALSE(read_class_names(wrong)) << wrong;
 }
 
 TEST(ClassNames, OfCocoFallOnOurs) {

@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -104,6 +105,74 @@ TEST_F(Networks, Yolov5HasThreeBoxesInACell) {
   const Detected found = detector->detect(red_at(64, 32, {{44, 20}}), 0, 0);
   ASSERT_EQ(found.boxes.size(), 1U);  // the other two are the same
   EXPECT_EQ(found.boxes[0].classes.most_probable(), *class_by_name("table"));
+  EXPECT_NEAR(found.boxes[0].score, 1, 1e-6);
+}
+
+/// What onnx_yolov8_export() finds where the pixel (44, 20) is red: the center of the cell (5, 2)
+/// of 8 px.
+void expect_the_red_cell(const Detector& detector, const Grid2d<Rgb8>& image) {
+  const Detected found = detector.detect(image, 0, 0);
+  ASSERT_EQ(found.boxes.size(), 1U);
+  const DetectedBox& box = found.boxes[0];
+  EXPECT_NEAR(box.left, (5.5 - 1) * 8, 1e-3);
+  EXPECT_NEAR(box.top, (2.5 - 2) * 8, 1e-3);
+  EXPECT_NEAR(box.right, (5.5 + 2) * 8, 1e-3);
+  EXPECT_NEAR(box.bottom, (2.5 + 4) * 8, 1e-3);
+  EXPECT_NEAR(box.score, 1 / (1 + std::exp(-10.0)), 1e-5);
+  EXPECT_EQ(box.classes.most_probable(), *class_by_name("chair"));
+}
+
+TEST_F(Networks, Yolov8RunsAsUltralyticsExportsIt) {
+  for (const test::MadeExport& as :
+       {test::MadeExport{.opset = 12}, {.opset = 17}, {.opset = 17, .open_sides = true}}) {
+    DetectorSpec spec = two_classes("v8.onnx", test::onnx_yolov8_export(64, 96, as));
+    if (as.open_sides) spec.settings.width_px = 64, spec.settings.height_px = 96;
+    const auto detector = open_detector(spec);
+    EXPECT_EQ(detector->description(), "yolov8, 2 classes, input 64 x 96");
+    expect_the_red_cell(*detector, red_at(64, 96, {{44, 20}}));
+  }
+}
+
+TEST_F(Networks, TakeTheClassesAndTheSizeThatTheirMetadataState) {
+  const std::string names = test::metadata("names", "{0: 'chair', 1: \"driver's seat\"}") +
+                            test::metadata("imgsz", "[96, 64]") + test::metadata("task", "detect");
+  DetectorSpec spec = two_classes(
+      "v8.onnx", test::onnx_yolov8_export(64, 96, {.open_sides = true, .metadata = names}));
+  spec.classes.clear();
+  const auto detector = open_detector(spec);
+  EXPECT_EQ(detector->description(), "yolov8, 2 classes, input 64 x 96");
+  EXPECT_EQ(detector->names().names, (std::vector<std::string>{"chair", "driver's seat"}));
+  expect_the_red_cell(*detector, red_at(64, 96, {{44, 20}}));
+  const std::uint64_t digest = detector->digest();
+  spec.classes = write("other.names", "chair\nbed\n");
+  EXPECT_EQ(open_detector(spec)->names().names[1], "bed");
+  EXPECT_NE(open_detector(spec)->digest(), digest);
+}
+
+TEST_F(Networks, WhoseMetadataSayThatTheyAreNotReadAreRefused) {
+  const auto says = [&](const std::string& metadata) {
+    DetectorSpec spec = two_classes("v8.onnx", test::onnx_yolov8_export(64, 96, {}) + metadata);
+    spec.classes.clear();
+    return refusal(spec);
+  };
+  for (const char* task : {"segment", "pose", "obb", "classify"})
+    EXPECT_SAYS(says(test::metadata("task", task)),
+                std::string("v8.onnx: is of the task '") + task + "'");
+  EXPECT_SAYS(says(test::metadata("names", "{0: 'chair'}")),
+              "has 2 classes, and its metadata names 1");
+  EXPECT_SAYS(says(test::metadata("names", "chair, table")),
+              "its metadata's `names` is no list of classes: 'chair, table'");
+}
+
+TEST_F(Networks, ThatOpencvLacksAnOperatorForSayWhatToExport) {
+  const auto of = [&](const std::string& op) {
+    return refusal(two_classes("a.onnx", test::model(test::node(op, {"image"}, {"output"}) +
+                                                     test::value(11, "image", {1, 3, 32, 32}) +
+                                                     test::value(12, "output", {1, 3, 32, 32}))));
+  };
+  EXPECT_SAYS(of("NonMaxSuppression"),
+              "it selects its boxes itself ([NonMaxSuppression]): export it without (nms=False");
+  EXPECT_SAYS(of("Levitate"), "`yolo export format=onnx opset=12 simplify=True`");
 }
 
 TEST_F(Networks, SegmentationGivesPixelsTheirClass) {
@@ -236,6 +305,9 @@ TEST_F(Networks, CutShortAnywhereNeverCrash) {
   for (const std::size_t size :
        {1UL, 5UL, 30UL, whole.size() / 2, whole.size() - 20, whole.size() - 1})
     EXPECT_SAYS(refusal(two_classes("cut.onnx", whole.substr(0, size))), "cut.onnx: ");
+  const std::string rewritten = test::onnx_yolov8_export(64, 96, {});
+  for (const std::size_t size : {rewritten.size() / 3, rewritten.size() - 20, rewritten.size() - 1})
+    EXPECT_SAYS(refusal(two_classes("cut.onnx", rewritten.substr(0, size))), "cut.onnx: ");
   const std::string weights = test::darknet_weights();
   DetectorSpec spec = two_classes("cut.weights", "");
   spec.config = write("a.cfg", test::darknet_config(64, 32));

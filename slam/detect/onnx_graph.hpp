@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mh {
+
+using OnnxShape = std::vector<std::int64_t>;
+
+/// A constant: its values row-major. Truth values and whole numbers of all widths are whole.
+struct OnnxTensor {
+  OnnxShape shape;
+  bool is_float = true;
+  std::vector<double> values;
+};
+
+/// How many values a tensor of that shape has; nullopt beyond what is computed with here, or where
+/// a side is negative.
+std::optional<std::size_t> value_count(const OnnxShape& shape);
+
+/// nullopt if the bytes are no TensorProto with as many values as its shape states.
+std::optional<OnnxTensor> read_onnx_tensor(std::string_view bytes);
+OnnxShape onnx_tensor_shape(std::string_view bytes);
+bool is_half_precision(std::string_view tensor_bytes);
+/// As 32-bit floats, or 64-bit whole numbers.
+std::string write_onnx_tensor(const std::string& name, const OnnxTensor& tensor);
+
+/// An operation of a graph.
+struct OnnxNode {
+  std::string op;
+  std::vector<std::string> inputs, outputs;
+  std::map<std::string, std::string, std::less<>> attributes;  ///< bytes of each AttributeProto
+  std::string others;                                          ///< the other fields as they are
+
+  std::int64_t integer(std::string_view name, std::int64_t otherwise) const;
+  std::optional<OnnxShape> integers(std::string_view name) const;
+  std::vector<float> floats(std::string_view name) const;
+  std::string text(std::string_view name) const;
+  std::optional<OnnxTensor> tensor(std::string_view name) const;
+  void set(const std::string& name, std::int64_t value);
+  void set(const std::string& name, const OnnxShape& values);
+  void set(const std::string& name, float value);
+};
+
+/// A network's graph. Views the bytes that it was read from.
+struct OnnxGraph {
+  std::int64_t opset = 0;
+  std::vector<OnnxNode> nodes;  ///< in an order in which they can be computed
+  std::map<std::string, std::string_view, std::less<>> weights;  ///< by name: TensorProto
+  std::map<std::string, OnnxTensor> constants;                   ///< more of them
+  std::map<std::string, OnnxShape> inputs;                       ///< without weights
+  std::vector<std::string_view> outputs;                         ///< ValueInfoProto, as they are
+  std::string_view model;                                        ///< what it was read from
+};
+
+/// nullopt if the bytes are not a whole model.
+std::optional<OnnxGraph> read_onnx_graph(std::string_view model);
+/// The same model with this graph.
+std::string write_onnx_graph(const OnnxGraph& graph);
+
+}  // namespace mh
