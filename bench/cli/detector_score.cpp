@@ -32,7 +32,6 @@
 #include "slam/core/counted.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/files.hpp"
-#include "slam/core/read_record.hpp"
 
 namespace mh::cli {
 namespace {
