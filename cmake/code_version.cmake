@@ -33,7 +33,7 @@ digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/
           bench/plan/outside_program.* bench/provenance/digest.*
           bench/provenance/input_digest.hpp bench/provenance/place_facts.hpp
           bench/results/call_times.* bench/results/placed.* bench/results/run_result.hpp
-          bench/run/run_one.* include/modelhouse/*.h
+          bench/run/hidden.* bench/run/run_one.* include/modelhouse/*.h
           CMakeLists.txt)
 digest_of(AUDIT bench/audit/*.cpp bench/audit/*.hpp)
 digest_of(EPISODES bench/episodes/*.cpp bench/episodes/*.hpp bench/plan/episodes_spec.*

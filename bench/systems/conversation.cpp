@@ -42,18 +42,18 @@ std::string shortened(std::string_view line) {
 Request json_of(const Camera& camera) {
   const Distortion& d = camera.distortion;
   Request json = {{"width", camera.width_px},
-               {"height", camera.height_px},
-               {"fx", camera.fx_px},
-               {"fy", camera.fy_px},
-               {"cx", camera.cx_px},
-               {"cy", camera.cy_px},
-               {"k1", d.k1},
-               {"k2", d.k2},
-               {"p1", d.p1},
-               {"p2", d.p2},
-               {"k3", d.k3},
-               {"fps", camera.rate_hz},
-               {"bf", camera.baseline_m * camera.fx_px}};
+                  {"height", camera.height_px},
+                  {"fx", camera.fx_px},
+                  {"fy", camera.fy_px},
+                  {"cx", camera.cx_px},
+                  {"cy", camera.cy_px},
+                  {"k1", d.k1},
+                  {"k2", d.k2},
+                  {"p1", d.p1},
+                  {"p2", d.p2},
+                  {"k3", d.k3},
+                  {"fps", camera.rate_hz},
+                  {"bf", camera.baseline_m * camera.fx_px}};
   if (d.is_rational()) json.update({{"k4", d.k4}, {"k5", d.k5}, {"k6", d.k6}});
   return json;
 }
