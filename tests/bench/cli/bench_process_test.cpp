@@ -292,9 +292,9 @@ TEST(BenchProcess, CtrlCEndsEverythingAndKeepsWhatIsFinished) {
 TEST(BenchProcess, AHangupIsAnInterruptUnlessItIsIgnored) {
   for (const bool ignored : {false, true}) {
     ASSERT_TRUE(fs::exists(test_folder()));
-    const auto before = std::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL);  // as nohup does
+    const auto before = ::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL);  // as nohup does
     Command command("scene statistics model_house");
-    std::signal(SIGHUP, before);
+    ::signal(SIGHUP, before);
     std::this_thread::sleep_for(std::chrono::seconds(3));  // its work takes longer
     command.signal(SIGHUP);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));

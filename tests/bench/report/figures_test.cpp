@@ -426,15 +426,19 @@ TEST_F(Figures, OfTheLatexTableStandUnderTheirHeadings) {
 }
 
 TEST_F(Figures, OfALatexTableHaveNamesThatLatexCanTypeset) {
-  Suite named = made_up_suite(folder_, {"den_\\~^<|> 45° Bürö 漢&%$#{}"});
-  named.labels[0].called = "confused_25";
-  std::vector<RunResult> runs;
-  for (const RunSpec& spec : expand(named)) runs.push_back(made_up_run(spec, kPlain));
-  const std::string text = export_latex(stored(folder_, named, runs));
-  EXPECT_NE(text.find("den\\_\\textbackslash{}\\textasciitilde{}\\textasciicircum{}\\textless{}"
-                      "\\textbar{}\\textgreater{} 45$^\\circ$ Bürö [U+6F22]\\&\\%\\$\\#\\{\\} & "),
-            std::string::npos)
-      << text;
+  const fs::path file = folder_ / "made_up.yaml";
+  made_up_suite(folder_, {"den_\\~^<|> 45° Bürö 漢&%$#"});
+  std::string text = read_file(file);
+  const std::string_view labels = "[exact]";
+  text.replace(text.find(labels), labels.size(),
+               "[{of: exact, name: confused_25, confusion: 0.25}]");
+  const Suite named = parse_suite(text, file, {}, false);
+  const std::string table = export_latex(stored(folder_, named, runs_of(named)));
+  const std::string row =
+      "den\\_\\textbackslash{}\\textasciitilde{}\\textasciicircum{}\\textless{}\\textbar{}"
+      "\\textgreater{} 45$^\\circ$ Bürö [U+6F22]\\&\\%\\$\\# & pepper & confused\\_25 & semantic "
+      "& ";
+  EXPECT_NE(table.find(row), std::string::npos) << table;
 }
 
 }  // namespace
