@@ -107,7 +107,7 @@ class StoreFile : public testing::Test {
     Suite s;
     s.name = "s";
     s.file = folder_ / "suite.yaml";
-    std::ofstream(s.file) << "name: s\n";
+    s.text = whole_suite().text;
     return s;
   }
 

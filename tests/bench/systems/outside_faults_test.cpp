@@ -183,8 +183,7 @@ TEST_F(OutsideFaults, AFailureReadsTheSameInAnyFolder) {
 }
 
 TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
-  EXPECT_HOLDS(trajectory_error(writes("what is this\\n")),
-               "trajectory.txt:1: pose: 3 values, expected 8");
+  EXPECT_HOLDS(trajectory_error(writes("what is this\\n")), "trajectory.txt: contains no poses");
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 nan 0 0 0 0 0 1\\n")),
                "trajectory.txt:2: tx: 'nan' is not finite");
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2.5 0 0 0 0 0 0 1\\n")),
@@ -401,7 +400,7 @@ TEST_F(OutsideFaults, ATrajectoryIsAFileOfItsFolderOfABearableSize) {
   EXPECT_HOLDS(error("ln -s trajectory.txt {trajectory}"), "wrote no trajectory");
   const std::string endless =
       error("head -c 30000000 /dev/zero | tr '\\0' 'a' > {trajectory}; echo >> {trajectory}");
-  EXPECT_HOLDS(endless, "trajectory.txt:1: pose: 1 value, expected 8");
+  EXPECT_HOLDS(endless, "trajectory.txt: contains no poses");
   EXPECT_LT(error("printf '1 ' > {trajectory}; head -c 3000000 /dev/zero | tr '\\0' 'a' >> "
                   "{trajectory}; echo ' 0 0 0 0 0 1' >> {trajectory}")
                 .size(),
@@ -456,6 +455,7 @@ TEST_F(OutsideFaults, AProgramDoesNotSeeWhatIsHiddenFromIt) {
     return read_file(folder_ / "out" / "outside.log");
   };
   EXPECT_HOLDS(look({}), "the truth");
+  ASSERT_TRUE(fs::remove(secret / "x")) << "nothing was hidden";
   const std::string log = look({secret, other, folder_ / "nowhere", secret / "run"});
   if (log.starts_with("modelhouse: nothing is hidden from the program: no mount namespace here: "))
     GTEST_SKIP() << log;

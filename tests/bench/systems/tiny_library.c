@@ -59,7 +59,7 @@ static int track(void* self, const mh_frame* frame, mh_reply* reply) {
   t->stamps_ns[t->seen++ % 16] = frame->stamp_ns;
   reply->keypoints = frame->color[0] + 1000 * frame->depth[0];
   reply->inliers = told(t, "count") ? -2 : frame->labels != NULL ? frame->labels[0] : MH_UNKNOWN;
-  reply->keyframe_added = t->seen == 1;
+  reply->keyframe_added = t->seen == 1 && !told(t, "lost");
   return stand_still(t, reply);
 }
 
