@@ -93,7 +93,16 @@ std::vector<RecordedFrame> read_associations(const fs::path& list, FirstImage ot
 
 void sort_frames(std::vector<RecordedFrame>& frames, const fs::path& list,
                  std::vector<std::string>* notes) {
-  if (std::ranges::is_sorted(frames, {}, &RecordedFrame::stamp_ns)) return;
+  // The longest sequence of stamps that never go back: the smallest that ends one of each length.
+  std::vector<Stamp> ends;
+  for (const RecordedFrame& frame : frames) {
+    const auto place = std::ranges::upper_bound(ends, frame.stamp_ns);
+    if (place == ends.end())
+      ends.push_back(frame.stamp_ns);
+    else
+      *place = frame.stamp_ns;
+  }
+  if (4 * (frames.size() - ends.size()) < frames.size()) return;
   std::ranges::stable_sort(frames, {}, &RecordedFrame::stamp_ns);
   if (notes != nullptr)
     notes->push_back(

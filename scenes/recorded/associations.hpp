@@ -19,8 +19,10 @@ enum class FirstImage { kColor, kDepth };
 std::vector<RecordedFrame> read_associations(const std::filesystem::path& list,
                                              FirstImage otherwise = FirstImage::kColor);
 
-/// Sorts frames by stamp, those of one stamp as listed.
-/// @param notes  receives a line if they were in another order; may be null
+/// Sorts frames by stamp, those of one stamp as listed, if they are in no order: if a quarter or
+/// more would have to be left out for the others to be. A clock that was wrong for a while is no
+/// other order.
+/// @param notes  receives a line if they were sorted; may be null
 void sort_frames(std::vector<RecordedFrame>& frames, const std::filesystem::path& list,
                  std::vector<std::string>* notes);
 
