@@ -93,21 +93,21 @@ OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
 }
 
 /// Gray is the mean of a pixel's colors, as in map_server.
-GrayPicture gray_picture(const std::string& bytes) {
-  cv::Mat image = decode_image(bytes);
-  if (image.depth() != CV_8U && image.depth() != CV_16U)
+GrayImage decode_gray_image(const std::string& bytes) {
+  cv::Mat decoded = decode_image(bytes);
+  if (decoded.depth() != CV_8U && decoded.depth() != CV_16U)
     throw InputError("its pixels are neither of 8 nor of 16 bits");
-  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
-  const int channels = image.channels(), colors = std::min(channels, 3);
-  GrayPicture picture{Grid2d<std::uint8_t>(image.cols, image.rows), {}};
-  for (int y = 0; y < image.rows; ++y)
-    for (int x = 0; x < image.cols; ++x) {
-      const std::uint8_t* pixel = image.ptr<std::uint8_t>(y) + channels * x;
+  if (decoded.depth() == CV_16U) decoded.convertTo(decoded, CV_8U, 1.0 / 257);
+  const int channels = decoded.channels(), colors = std::min(channels, 3);
+  GrayImage image{Grid2d<std::uint8_t>(decoded.cols, decoded.rows), {}};
+  for (int y = 0; y < decoded.rows; ++y)
+    for (int x = 0; x < decoded.cols; ++x) {
+      const std::uint8_t* pixel = decoded.ptr<std::uint8_t>(y) + channels * x;
       const int sum = std::accumulate(pixel, pixel + colors, 0);
-      picture.levels(x, y) = static_cast<std::uint8_t>((sum + colors / 2) / colors);
-      if (channels == 4) picture.clear.push_back(pixel[3] < 255);
+      image.levels(x, y) = static_cast<std::uint8_t>((sum + colors / 2) / colors);
+      if (channels == 4) image.clear.push_back(pixel[3] < 255);
     }
-  return picture;
+  return image;
 }
 
 /// Checks before the work that a pair of map image files can be written.
@@ -141,7 +141,7 @@ void run(const MapCostArguments& options) {
         fmt::format("--inflation: {} m is less than the robot's radius, {} m (--radius)",
                     options.config.inflation_radius_m, options.config.inscribed_radius_m));
   std::vector<std::string> warnings;
-  const OccupancyGrid grid = load_map_server(options.grid, &warnings, gray_picture);
+  const OccupancyGrid grid = load_map_server(options.grid, &warnings, decode_gray_image);
   const std::vector<std::filesystem::path> read{options.grid, image_of_map(options.grid)};
   require_writable_map_image(options.out, read);
   require_writable_map_image(published, read);

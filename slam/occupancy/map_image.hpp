@@ -45,6 +45,6 @@ std::filesystem::path image_of_map(const std::filesystem::path& yaml_file);
 /// @throws InputError naming file, line, field and value.
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
                         std::vector<std::string>* warnings = nullptr,
-                        const PictureDecoder& decode = nullptr);
+                        const ImageDecoder& decode = nullptr);
 
 }  // namespace mh

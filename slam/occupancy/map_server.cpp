@@ -126,27 +126,27 @@ std::vector<int> binary_pixels(const std::string& content, const PgmHeader& head
 }
 
 /// Reads a PGM, binary or text, its levels scaled to 0 to 255.
-GrayPicture read_pgm(const std::string& content, const std::string& file,
-                     std::vector<std::string>* warnings) {
+GrayImage read_pgm(const std::string& content, const std::string& file,
+                   std::vector<std::string>* warnings) {
   const PgmHeader header = read_pgm_header(content, file);
-  GrayPicture picture{Grid2d<std::uint8_t>(), {}};
+  GrayImage image{Grid2d<std::uint8_t>(), {}};
   const std::size_t size =
       static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   const std::vector<int> pixels =
       header.is_text ? text_pixels(std::string_view(content).substr(header.end), size, file)
                      : binary_pixels(content, header, file, warnings);
-  picture.levels = Grid2d<std::uint8_t>(header.width, header.height);
-  std::ranges::transform(pixels, picture.levels.begin(), [&](int value) {
+  image.levels = Grid2d<std::uint8_t>(header.width, header.height);
+  std::ranges::transform(pixels, image.levels.begin(), [&](int value) {
     if (value < 0 || value > header.brightest)
       throw InputError(
           fmt::format("{}: a pixel is {}, its maximum {}", file, value, header.brightest));
     return static_cast<std::uint8_t>((255 * value + header.brightest / 2) / header.brightest);
   });
-  return picture;
+  return image;
 }
 
-GrayPicture read_picture(const std::filesystem::path& file, std::vector<std::string>* warnings,
-                         const PictureDecoder& decode) {
+GrayImage read_image_levels(const std::filesystem::path& file, std::vector<std::string>* warnings,
+                            const ImageDecoder& decode) {
   const std::string content = read_file(file);
   if (content.starts_with("P5") || content.starts_with("P2"))
     return read_pgm(content, file.string(), warnings);
@@ -241,7 +241,7 @@ void write_map_image(const MapImage& map, const std::filesystem::path& stem, con
 }
 
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
-                        std::vector<std::string>* warnings, const PictureDecoder& decode) {
+                        std::vector<std::string>* warnings, const ImageDecoder& decode) {
   const std::filesystem::path file = image_named(yaml, yaml_file);
   MapImage map;
   map.resolution_m = yaml.number("resolution", 1e-4, 100.0);
@@ -251,20 +251,20 @@ MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file
   if (map.origin_m.cwiseAbs().maxCoeff() > kFurthest_m)
     yaml.at("origin").fail(
         fmt::format("({}, {}) m is farther than {} m", origin[0], origin[1], kFurthest_m));
-  const GrayPicture picture = read_picture(file, warnings, decode);
-  const int width = picture.levels.width(), height = picture.levels.height();
+  const GrayImage image = read_image_levels(file, warnings, decode);
+  const int width = image.levels.width(), height = image.levels.height();
   map.levels = Grid2d<std::uint8_t>(width, height);
   for (int y = height - 1; y >= 0; --y) {
-    for (int x = 0; x < width; ++x) map.levels(x, height - 1 - y) = picture.levels(x, y);
-    if (picture.clear.empty()) continue;
-    const auto row = picture.clear.begin() + static_cast<std::ptrdiff_t>(y) * width;
+    for (int x = 0; x < width; ++x) map.levels(x, height - 1 - y) = image.levels(x, y);
+    if (image.clear.empty()) continue;
+    const auto row = image.clear.begin() + static_cast<std::ptrdiff_t>(y) * width;
     map.clear.insert(map.clear.end(), row, row + width);
   }
   return map;
 }
 
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
-                              std::vector<std::string>* warnings, const PictureDecoder& decode) {
+                              std::vector<std::string>* warnings, const ImageDecoder& decode) {
   YamlReader yaml = YamlReader::load(yaml_file);
   for (const auto& [key, value] : yaml.entries())
     if (warnings != nullptr && std::ranges::find(kKeys, key) == kKeys.end())

@@ -51,12 +51,12 @@ void save_map_server(const OccupancyGrid& grid, const std::filesystem::path& ste
                      GridMode mode = GridMode::kTrinary);
 
 /// Gray levels of an image, upper row first, and which pixels are not fully opaque.
-struct GrayPicture {
+struct GrayImage {
   Grid2d<std::uint8_t> levels;
   std::vector<bool> clear;  ///< empty: all are opaque
 };
 /// Decodes the bytes of an image that is no PGM. @throws InputError stating what is wrong with it
-using PictureDecoder = std::function<GrayPicture(const std::string& bytes)>;
+using ImageDecoder = std::function<GrayImage(const std::string& bytes)>;
 
 /// Reads a map by its YAML file as nav2_map_server does: in mode trinary, scale or raw (which it
 /// documents), turned or not; pixels that are not opaque are unknown but in mode raw.
@@ -66,6 +66,6 @@ using PictureDecoder = std::function<GrayPicture(const std::string& bytes)>;
 /// @throws InputError naming file, line, field and value.
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
                               std::vector<std::string>* warnings = nullptr,
-                              const PictureDecoder& decode = nullptr);
+                              const ImageDecoder& decode = nullptr);
 
 }  // namespace mh

@@ -307,7 +307,7 @@ TEST(MapServer, RefusesWhatItCannotRead) {
 
 /// Writes a map of that image and of further keys, and loads it.
 OccupancyGrid loaded(const std::string& image, const std::string& keys,
-                     const PictureDecoder& decode = nullptr) {
+                     const ImageDecoder& decode = nullptr) {
   write_atomically(testing::TempDir() + "made.pgm", image);
   const std::string file = testing::TempDir() + "made.yaml";
   write_atomically(file, "image: made.pgm\nresolution: 0.5\nnegate: 0\n" + keys);
@@ -339,9 +339,9 @@ TEST(MapServer, ModeScaleKeepsWhatIsBetweenTheThresholds) {
 TEST(MapServer, PixelsThatAreNotOpaqueAreUnknown) {
   const auto decode = [](const std::string& bytes) {
     EXPECT_EQ(bytes, "\x89PNG");
-    GrayPicture picture{Grid2d<std::uint8_t>(2, 2, 255), {false, true, false, false}};
-    picture.levels(0, 1) = 0;
-    return picture;
+    GrayImage image{Grid2d<std::uint8_t>(2, 2, 255), {false, true, false, false}};
+    image.levels(0, 1) = 0;
+    return image;
   };
   const std::string keys = "origin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
   EXPECT_EQ(cells_of(loaded("\x89PNG", keys, decode)), (std::vector<int>{100, 0, 0, -1}));

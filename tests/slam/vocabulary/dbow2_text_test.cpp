@@ -111,7 +111,8 @@ TEST(Dbow2Text, LeavesMayStandAtAnyLevelAndLinesEndAsInDos) {
 
 TEST(Dbow2Text, IsWrittenAsItsReadersExpectIt) {
   // By hand: a root with a word and a node of two words, as DBoW2's TemplatedVocabulary has it.
-  VocabularyTree tree{.branching = 2, .depth = 2};
+  VocabularyTree tree;
+  tree.branching = tree.depth = 2;
   const Descriptor a{1, 0, 0, 0}, b{0x0201, 0, 0, 0}, c{0, 0, 0, 0xffULL << 56U}, d{2, 0, 0, 0};
   tree.centers = {Descriptor{}, a, b, c, d};
   tree.child_counts = {2, 0, 2, 0, 0};
