@@ -90,7 +90,8 @@ std::optional<Matrix> rows_of(Head head, std::span<const Tensor> outputs, const 
     std::optional<Matrix> m = as_matrix(tensor);
     if (!m) continue;
     if (head == Head::kYolov8) {
-      if (m->rows < m->columns) *m = {m->columns, m->rows, m->values, true};
+      if (m->rows < m->columns || !cells_of(m->columns, input).empty())
+        *m = {m->columns, m->rows, m->values, true};
       if (m->columns > 4) return m;
     } else if (m->columns > 5 && (head != Head::kYolox || !cells_of(m->rows, input).empty())) {
       return m;
@@ -174,7 +175,8 @@ Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, boo
     const std::optional<Matrix> m = as_matrix(tensor);
     if (!m) continue;
     const std::vector<Cell> by_row = cells_of(m->rows, input);
-    if (!by_row.empty() && m->columns > 5)
+    // A square one, as of COCO's classes at 64 x 64, is YOLOv8's: no other has 80 there.
+    if (!by_row.empty() && m->columns > 5 && m->rows != m->columns)
       return is_decoded(*m, by_row) ? Head::kYoloxDecoded : Head::kYolox;
     if (m->rows > 4 && !cells_of(m->columns, input).empty()) return Head::kYolov8;
     // Three anchors in each cell.

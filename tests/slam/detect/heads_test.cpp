@@ -106,6 +106,25 @@ TEST(Decode, Yolov8IsTransposedAndHasNoObjectness) {
   EXPECT_FLOAT_EQ(found[0].scores[1], 0.9F);
 }
 
+TEST(Decode, Yolov8MayBeAsWideAsItIsLong) {
+  const InputSize input{64, 64};  // 64 + 16 + 4 boxes of 4 + 80 values
+  Made made({1, 84, 84});
+  const auto put = [&](int row, float value) {
+    made.values[static_cast<std::size_t>(row * 84 + 3)] = value;
+  };
+  for (const auto& [row, value] : {std::pair(0, 30.0F), {1, 20.0F}, {2, 10.0F}, {3, 8.0F}})
+    put(row, value);
+  put(4 + 7, 0.9F);
+  const Tensor tensor = made.tensor();
+  EXPECT_EQ(recognize_head({&tensor, 1}, input, false), Head::kYolov8);
+  EXPECT_EQ(class_count(Head::kYolov8, {&tensor, 1}, input), 80);
+  const auto found = decode(Head::kYolov8, {&tensor, 1}, input, 0.5);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].best, 7);
+  EXPECT_EQ(found[0].x, 30);
+  EXPECT_EQ(found[0].height, 8);
+}
+
 TEST(Decode, DarknetsBoxesAreSharesOfTheInputOfAllScales) {
   Made coarse({6, 7}), fine({24, 7});
   const std::vector<float> values = {0.5F, 0.25F, 0.125F, 0.5F, 0.9F, 0.6F, 0};
