@@ -166,7 +166,6 @@ void run(RenderArguments options) {
   resolve(options.scene, Shipped::kScene);
   resolve(options.robot, Shipped::kRobot);
   resolve(options.level, Shipped::kLevel);
-  options.motion.read();
   const fs::path out = options.out;
   for (const LabelMode mode :
        {LabelMode::kExact, LabelMode::kAnnotated, LabelMode::kBoxes, LabelMode::kDetector})
@@ -175,6 +174,7 @@ void run(RenderArguments options) {
   options.ros.check(options.format);
   make_renderer(options.renderer, Scene{});  // fails at once if the machine lacks it
   const OutputFolder folder(out, "render", names_written(out));
+  options.motion.read();
   std::vector<InputDigest> inputs;
   const Robot robot =
       noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot); });
