@@ -926,8 +926,11 @@ TEST_F(CommandLine, MapCostReadsPngAndKeepsTheTurn) {
   EXPECT_NE(read_file(out + ".yaml").find("origin: [1, 2, 0.3]\n"), std::string::npos);
   EXPECT_NE(read_file(out + "_published.yaml").find("origin: [1, 2, 0.3]\n"), std::string::npos);
   const std::string pgm = read_file(out + ".pgm");
-  EXPECT_EQ(pgm.substr(0, 13), std::string("P5\n4 3\n255\n") + '\0');
-  EXPECT_EQ(static_cast<unsigned char>(pgm[13]), 254) << "the obstacle, upper row, second column";
+  const std::string head = "P5\n4 3\n255\n";
+  ASSERT_EQ(pgm.substr(0, head.size()), head);
+  ASSERT_EQ(pgm.size(), head.size() + 12);
+  EXPECT_EQ(static_cast<unsigned char>(pgm[head.size() + 1]), 254)
+      << "the obstacle, upper row, second column";
 }
 
 TEST_F(CommandLine, EvaluatesKittiFilesByLine) {
