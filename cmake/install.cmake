@@ -7,8 +7,8 @@ install(TARGETS modelhouse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Data keep the layout of the sources: suites name their files relative to their own folder.
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)
-foreach(folder assets bench/pages/bundle bench/scenarios bench/suites robots/pepper scenes/model_house scenes/rooms
-               sim/sensors/levels)
+foreach(folder assets bench/pages/bundle bench/scenarios bench/suites robots/pepper robots/turtlebot3
+               scenes/model_house scenes/rooms sim/sensors/levels)
   install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder})
 endforeach()
 install(DIRECTORY examples/ DESTINATION ${data_dir}/examples PATTERN "__pycache__" EXCLUDE)

@@ -64,11 +64,11 @@ void run(DriveArguments options) {
     if (writes_ros) names.push_back(ros_file(options.format, out).filename().string());
     folder.emplace(out, "drive", std::move(names));
   }
-  const Robot robot = load_robot(options.robot);
+  std::vector<std::string> warnings;
+  const Robot robot = load_robot(options.robot, &warnings);
   const std::optional<Pedestrian> pedestrian =
       options.pedestrian.empty() ? std::nullopt
                                  : std::optional(load_pedestrian(options.pedestrian));
-  std::vector<std::string> warnings;
   const Scene scene = load_scene(options.scene, &warnings, options.frame.frame());
   print_warnings(warnings);
   std::vector<MovingObstacle> others;
@@ -82,7 +82,14 @@ void run(DriveArguments options) {
         fmt::format("robot '{}' has no sensors: its file has no 'equipment'", robot.name));
   if (options.sensors || writes_ros) {
     const DriveRecord record = record_drive(scene, robot, path, path.camera, options.seed, others);
-    if (options.sensors) write_readings(out, robot, *record.readings);
+    if (options.sensors) {
+      write_readings(out, robot, *record.readings);
+      if (!robot.equipment->wheels)
+        fmt::print(stderr,
+                   "modelhouse: note: robot '{}' has no wheels (its file: equipment.wheels): no "
+                   "odometry.tum\n",
+                   robot.name);
+    }
     if (writes_ros) {
       const auto file = options.ros.open(options.format, out);
       write_log(*file, robot_messages(file->wire(), record));

@@ -147,9 +147,9 @@ Trajectory path_of(const MountedCamera& mounted, const Equipment& e, const Drive
   for (std::size_t i = 0; i < path.base.size(); ++i) {
     std::map<std::string, double> joints;
     if (!path.head.empty())
-      joints = {{e.head_yaw, path.head[i][0]}, {e.head_pitch, path.head[i][1]}};
+      joints = {{e.head->yaw, path.head[i][0]}, {e.head->pitch, path.head[i][1]}};
     camera[i].world_from_camera =
-        path.base[i].world_from_camera * e.tree.root_from(mounted.link, joints);
+        path.base[i].world_from_camera * e.base_from(mounted.link, joints);
   }
   return camera;
 }
@@ -176,8 +176,9 @@ void run(RenderArguments options) {
   const OutputFolder folder(out, "render", names_written(out));
   options.motion.read();
   std::vector<InputDigest> inputs;
+  std::vector<std::string> warnings;
   const Robot robot =
-      noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot); });
+      noted(inputs, "robot", options.robot, [&] { return load_robot(options.robot, &warnings); });
   std::shared_ptr<const Detector> detector;
   if (const auto spec = options.detector.spec()) {
     detector = noted(inputs, "detector", source_of(*spec), [&] { return open_detector(*spec); });
@@ -197,7 +198,6 @@ void run(RenderArguments options) {
 
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));
-  std::vector<std::string> warnings;
   const Scene scene = [&] {
     Progress light("light");
     Scene loaded = load_scene(options.scene, &warnings, options.frame.frame());

@@ -95,7 +95,11 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
     scene(file, e.frame);
   };
   const auto read_motion = [](const fs::path& motion) { check_motion(motion); };
-  add("robot", "robot", e.robot, [](const fs::path& file) { load_robot(file); });
+  add("robot", "robot", e.robot, [&](const fs::path& file) {
+    std::vector<std::string> warnings;
+    load_robot(file, &warnings);
+    for (const std::string& warning : warnings) warn(warning);
+  });
   add("sensors", "level", e.sensors, [](const fs::path& file) { load_sensor_config(file); });
   add("mapping_tour", "motion", e.mapping_tour, read_motion);
   add("query_tour", "motion", e.query_tour, read_motion);

@@ -16,6 +16,7 @@
 #include "robots/navigation/floor_grid.hpp"
 #include "scenes/floor.hpp"
 #include "scenes/load.hpp"
+#include "sim/motion/motors.hpp"
 #include "sim/physics/planar_world.hpp"
 #include "slam/core/random.hpp"
 
@@ -41,18 +42,17 @@ Outcome drive_about(PlanarWorld& world, const Robot& robot,
     const auto k = static_cast<std::uint64_t>(d);
     const double heading = draw.uniform(4 * k + 1, -M_PI, M_PI);
     world.place(starts[draw.below(4 * k, starts.size())], heading);
-    JerkLimiter limiter(commandable(robot.limits), kStep_s,
-                        robot.equipment ? &robot.equipment->wheels : nullptr);
-    const JerkLimiter::Velocity command{
-        .m_per_s = robot.limits.max_velocity_m_per_s *
-                   Eigen::Vector2d(std::cos(heading), std::sin(heading)),
-        .turn_rad_per_s = draw.uniform(4 * k + 2, -1.0, 1.0)};
+    JerkLimiter limiter(commandable(robot.limits), kStep_s, robot.wheels());
+    const Motors motors(robot.differential());
+    const JerkLimiter::Velocity command = motors.commanded(
+        robot.limits.max_velocity_m_per_s * Eigen::Vector2d(std::cos(heading), std::sin(heading)),
+        draw.uniform(4 * k + 2, -1.0, 1.0), heading);
     Eigen::Vector2d v_before = Eigen::Vector2d::Zero(), a_before = v_before;
     bool touched = false;
     for (int i = 0; i < static_cast<int>(kDrive_s / kStep_s); ++i) {
       const JerkLimiter::Velocity next = limiter.step(command);
       const Contact contact =
-          world.step({.velocity_m_per_s = next.m_per_s, .turn_rad_per_s = next.turn_rad_per_s});
+          world.step(motors.over_floor(next, world.state().heading_rad, kStep_s));
       outcome.deepest_m = std::max(outcome.deepest_m, contact.penetration_m);
       const BaseState state = world.state();
       if (contact.touching) {

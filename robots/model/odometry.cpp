@@ -3,14 +3,15 @@
 
 #include <cmath>
 
-#include "robots/model/wheel_base.hpp"
-
 namespace mh {
 
-WheelOdometer::WheelOdometer(const OmniWheels& wheels, const OdometryErrors& errors,
+WheelOdometer::WheelOdometer(const WheelBase& wheels, const OdometryErrors& errors,
                              std::uint64_t seed)
-    : wheels_(wheels), errors_(errors), stream_(RandomStream(seed).fork(0x6f646f6d)) {
-  for (int w = 0; w < 3; ++w)
+    : wheels_(wheels),
+      errors_(errors),
+      stream_(RandomStream(seed).fork(0x6f646f6d)),
+      scale_(wheels.wheels.size()) {
+  for (Eigen::Index w = 0; w < scale_.size(); ++w)
     scale_[w] = (1 + errors.scale) *
                 (1 + errors.scale_spread * stream_.fork(0).normal(static_cast<std::uint64_t>(w)));
 }
@@ -21,9 +22,9 @@ const SE3& WheelOdometer::drive_to(const SE3& world_from_base) {
   } else {
     // tangent: translation, then rotation; the base moves in the plane.
     const Vector6d moved = (before_->inverse() * world_from_base).log();
-    Eigen::Vector3d rims_m =
+    PerWheel rims_m =
         rim_speeds_m_per_s(wheels_, {moved[0], moved[1], moved[5]});  // of a step that lasts 1 s
-    for (int w = 0; w < 3; ++w) {
+    for (Eigen::Index w = 0; w < rims_m.size(); ++w) {
       const double slip = errors_.slip_per_sqrt_m * std::sqrt(std::abs(rims_m[w])) *
                           stream_.fork(1 + step_).normal(static_cast<std::uint64_t>(w));
       rims_m[w] = rims_m[w] * scale_[w] + slip;
@@ -40,7 +41,7 @@ const SE3& WheelOdometer::drive_to(const SE3& world_from_base) {
   return odom_from_base_;
 }
 
-Trajectory wheel_odometry(const Trajectory& base, const OmniWheels& wheels,
+Trajectory wheel_odometry(const Trajectory& base, const WheelBase& wheels,
                           const OdometryErrors& errors, std::uint64_t seed) {
   WheelOdometer odometer(wheels, errors, seed);
   Trajectory odometry;

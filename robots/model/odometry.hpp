@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "robots/model/robot.hpp"
+#include "robots/model/wheel_base.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/trajectory.hpp"
 
@@ -19,7 +20,7 @@ namespace mh {
 /// system", ICRA 2002.
 class WheelOdometer {
  public:
-  WheelOdometer(const OmniWheels& wheels, const OdometryErrors& errors, std::uint64_t seed);
+  WheelOdometer(const WheelBase& wheels, const OdometryErrors& errors, std::uint64_t seed);
 
   /// Drives to the next pose. @returns odom_from_base; at first it is world_from_base itself
   const SE3& drive_to(const SE3& world_from_base);
@@ -27,10 +28,10 @@ class WheelOdometer {
   void lift_to(const SE3& world_from_base) { before_ = world_from_base; }
 
  private:
-  OmniWheels wheels_;
+  WheelBase wheels_;
   OdometryErrors errors_;
   RandomStream stream_;
-  Eigen::Vector3d scale_;
+  PerWheel scale_;
   std::optional<SE3> before_;
   SE3 odom_from_base_;
   std::uint64_t step_ = 0;
@@ -39,7 +40,7 @@ class WheelOdometer {
 /// The same along a whole path.
 /// @param base  world_from_base
 /// @returns odom_from_base at the same stamps, the first one as it is in `base`
-Trajectory wheel_odometry(const Trajectory& base, const OmniWheels& wheels,
+Trajectory wheel_odometry(const Trajectory& base, const WheelBase& wheels,
                           const OdometryErrors& errors, std::uint64_t seed);
 
 }  // namespace mh

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "robots/model/robot_fields.hpp"
+#include "robots/model/wheel_base.hpp"
 #include "slam/core/angles.hpp"
 #include "slam/core/settings_io.hpp"
 #include "slam/core/yaml.hpp"
@@ -92,56 +92,65 @@ Camera read_calibrated(YamlReader& yaml) {
 /// Reads what is mounted on the links of a URDF.
 class EquipmentReader {
  public:
-  EquipmentReader(YamlReader yaml, const std::filesystem::path& robot_file)
-      : yaml_(std::move(yaml)), tree_(load_urdf(robot_file.parent_path() / yaml_.string("urdf"))) {}
+  EquipmentReader(YamlReader yaml, const std::filesystem::path& robot_file,
+                  std::vector<std::string>* warnings)
+      : yaml_(std::move(yaml)), warnings_(warnings) {
+    e_.tree = load_urdf(robot_file.parent_path() / yaml_.string("urdf"), warnings);
+  }
 
   Equipment read() {
-    Equipment e;
-    e.wheels = read_wheels(yaml_.at("wheels"));
-    YamlReader head = yaml_.at("head");
-    e.head_yaw = joint(head, "yaw").name;
-    e.head_pitch = joint(head, "pitch").name;
-    head.finish();
-    e.depth_camera_link = yaml_.string("depth_camera_link");
-    base_from(yaml_.at("depth_camera_link"), e.depth_camera_link);
-    for (auto& [name, camera] : yaml_.at("cameras").entries()) {
+    if (const auto base = yaml_.find("base_link"))
+      e_.base_from_root = base_from(*base, base->as_string()).inverse();
+    if (const auto wheels = yaml_.find("wheels")) e_.wheels = read_wheels(*wheels);
+    if (auto head = yaml_.find("head")) {
+      e_.head = {.yaw = joint(head->at("yaw")).name, .pitch = joint(head->at("pitch")).name};
+      head->finish();
+    }
+    if (const auto link = yaml_.find("depth_camera_link")) {
+      e_.depth_camera_link = link->as_string();
+      base_from(*link, e_.depth_camera_link);
+    }
+    for (auto& [name, camera] : entries("cameras")) {
       MountedCamera mounted{.name = name, .link = camera.string("link")};
       base_from(camera.at("link"), mounted.link);
       mounted.camera = read_calibrated(camera);
       camera.finish();
-      e.cameras.push_back(std::move(mounted));
+      e_.cameras.push_back(std::move(mounted));
     }
-    for (const YamlReader& bumper : yaml_.at("bumpers").items()) {
-      e.bumpers.push_back(bumper.as_string());
-      base_from(bumper, e.bumpers.back());
-    }
-    for (auto& [name, laser] : yaml_.at("lasers").entries())
-      e.lasers.push_back(read_laser(name, laser));
-    for (auto& [name, sonar] : yaml_.at("sonars").entries())
-      e.sonars.push_back(read_sonar(name, sonar));
-    const YamlReader imu = yaml_.at("imu_link");
-    e.base_from_imu = base_from(imu, imu.as_string());
-    e.odometry = read_all<OdometryErrors>(yaml_.at("odometry"));
-    e.reflex = read_all<CollisionReflex>(yaml_.at("collision_reflex"));
+    if (const auto bumpers = yaml_.find("bumpers"))
+      for (const YamlReader& bumper : bumpers->items()) {
+        e_.bumpers.push_back(bumper.as_string());
+        base_from(bumper, e_.bumpers.back());
+      }
+    for (auto& [name, laser] : entries("lasers")) e_.lasers.push_back(read_laser(name, laser));
+    for (auto& [name, sonar] : entries("sonars")) e_.sonars.push_back(read_sonar(name, sonar));
+    if (const auto imu = yaml_.find("imu_link"))
+      e_.base_from_imu = base_from(*imu, imu->as_string());
+    if (const auto errors = yaml_.find("odometry")) e_.odometry = read_all<OdometryErrors>(*errors);
+    if (const auto zone = yaml_.find("collision_reflex"))
+      e_.reflex = read_all<CollisionReflex>(*zone);
     yaml_.finish();
-    e.tree = std::move(tree_);
-    return e;
+    return std::move(e_);
   }
 
  private:
+  /// The entries of a mapping, none if it is absent.
+  std::vector<std::pair<std::string, YamlReader>> entries(const std::string& key) {
+    auto found = yaml_.find(key);
+    return found ? found->entries() : std::vector<std::pair<std::string, YamlReader>>{};
+  }
   SE3 base_from(const YamlReader& place, const std::string& link) const {
     try {
-      return tree_.root_from(link);
+      return e_.base_from(link);
     } catch (const InputError& e) {
       place.fail(e.what());
     }
   }
-  const Joint& joint(YamlReader& yaml, const std::string& key) const {
-    const YamlReader node = yaml.at(key);
+  const Joint& joint(const YamlReader& name) const {
     try {
-      return tree_.joint(node.as_string());
+      return e_.tree.joint(name.as_string());
     } catch (const InputError& e) {
-      node.fail(e.what());
+      name.fail(e.what());
     }
   }
   SE3 read_link(YamlReader& yaml) const {
@@ -149,30 +158,40 @@ class EquipmentReader {
     return base_from(link, link.as_string());
   }
 
-  OmniWheels read_wheels(YamlReader yaml) const {
-    OmniWheels wheels;
+  WheelBase read_wheels(YamlReader yaml) const {
+    WheelBase wheels;
     MappingReader reader(yaml);
     wheel_fields(wheels, reader);
     const YamlReader joints = yaml.at("joints");
-    const std::vector<YamlReader> names = joints.items();
-    if (names.size() != wheels.wheels.size())
-      joints.fail(fmt::format("has {} joints: an omnidirectional base has three", names.size()));
-    double slowest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const std::string name = names[i].as_string();
-      const auto found = std::ranges::find(tree_.joints, name, &Joint::name);
-      if (found == tree_.joints.end())
-        names[i].fail(fmt::format("the URDF has no joint '{}'", name));
-      const SE3 base_from_wheel = tree_.root_from(found->child);
-      const Eigen::Vector3d axle = base_from_wheel.rotation() * found->axis;
-      wheels.wheels[i] = {.joint = name,
-                          .place_m = base_from_wheel.translation().head<2>(),
-                          .axle_rad = std::atan2(axle.y(), axle.x())};
-      slowest = std::min(slowest, found->velocity);
+    double highest_m = 0;  // from the floor
+    for (const YamlReader& name : joints.items()) {
+      const Joint& wheel = joint(name);
+      if (std::ranges::find(wheels.wheels, wheel.name, &WheelBase::Wheel::joint) !=
+          wheels.wheels.end())
+        name.fail(fmt::format("'{}' stands here twice", wheel.name));
+      const SE3 base_from_wheel = e_.base_from(wheel.child);
+      const Eigen::Vector3d axle = base_from_wheel.rotation() * wheel.axis;
+      constexpr double kSteep = 0.5;  // 30 degrees: cambered wheels roll, a steered axis does not
+      if (wheel.kind != Joint::Kind::kTurning || std::abs(axle.z()) > kSteep)
+        name.fail(fmt::format(
+            "joint '{}' is no wheel's: it {}", wheel.name,
+            wheel.kind == Joint::Kind::kTurning ? "turns about an upright axis" : "does not turn"));
+      if (!(wheel.velocity > 0))
+        name.fail(fmt::format("the URDF limits the velocity of joint '{}' to 0", wheel.name));
+      wheels.wheels.push_back({.joint = wheel.name,
+                               .place_m = base_from_wheel.translation().head<2>(),
+                               .axle_rad = std::atan2(axle.y(), axle.x())});
+      wheels.max_rim_m_per_s = std::min(wheels.max_rim_m_per_s, wheel.velocity * wheels.radius_m);
+      const double bottom_m = base_from_wheel.translation().z() - wheels.radius_m;
+      if (std::abs(bottom_m) > std::abs(highest_m)) highest_m = bottom_m;
     }
-    wheels.max_rim_m_per_s = slowest * wheels.radius_m;
-    if (!(wheels.max_rim_m_per_s > 0) || std::isinf(wheels.max_rim_m_per_s))
-      joints.fail("the URDF limits the velocity of none of these joints");
+    if (const std::string wrong = find_kind(wheels); !wrong.empty()) joints.fail(wrong);
+    constexpr double kSunk_m = 0.02;
+    if (warnings_ != nullptr && std::abs(highest_m) > kSunk_m)
+      warnings_->push_back(fmt::format(
+          "{}:{}: wheels of this radius would stand {:.3f} m {} the floor, where the base's frame "
+          "is: does the URDF have a link there to name as base_link?",
+          joints.file(), joints.line(), std::abs(highest_m), highest_m > 0 ? "above" : "below"));
     yaml.finish();
     return wheels;
   }
@@ -206,12 +225,13 @@ class EquipmentReader {
   }
 
   YamlReader yaml_;
-  KinematicTree tree_;
+  std::vector<std::string>* warnings_;
+  Equipment e_;
 };
 
 }  // namespace
 
-Robot load_robot(const std::filesystem::path& file) {
+Robot load_robot(const std::filesystem::path& file, std::vector<std::string>* warnings) {
   YamlReader yaml = YamlReader::load(file);
   Robot robot;
   robot.name = yaml.string("name");
@@ -227,7 +247,8 @@ Robot load_robot(const std::filesystem::path& file) {
   robot.base_from_camera = read_mount(camera);
   camera.finish();
   if (const auto equipment = yaml.find("equipment"))
-    robot.equipment = std::make_shared<const Equipment>(EquipmentReader(*equipment, file).read());
+    robot.equipment =
+        std::make_shared<const Equipment>(EquipmentReader(*equipment, file, warnings).read());
   yaml.finish();
   try {
     validate(robot.camera);

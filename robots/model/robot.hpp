@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,8 @@
 
 namespace mh {
 
-/// Limits of a holonomic base.
+/// Limits of a base. Those of velocity, acceleration and jerk are in any direction for an
+/// omnidirectional base; a differential one drives ahead and back alone.
 struct BaseLimits {
   double max_velocity_m_per_s = 0.35;
   double max_acceleration_m_per_s2 = 0.3;
@@ -26,16 +28,25 @@ struct BaseLimits {
   std::optional<double> max_jerk_m_per_s3 = {}, max_turn_jerk_rad_per_s3 = {};
 };
 
-/// Three wheels that drive along the floor and roll freely along their axles.
-struct OmniWheels {
+/// The wheels that drive a base. See wheel_base.hpp.
+struct WheelBase {
   struct Wheel {
     std::string joint;
     Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< its position, base frame
     double axle_rad = 0;                                ///< direction of its axle from base x
   };
-  std::array<Wheel, 3> wheels;
+  enum class Kind {
+    kOmnidirectional,  ///< three wheels that roll freely along their axles
+    kDifferential,     ///< wheels on parallel axles, as many on the left as on the right
+  };
+  Kind kind = Kind::kOmnidirectional;
+  std::vector<Wheel> wheels = {};
   double radius_m = 0.07;
-  double max_rim_m_per_s = 0.44;  ///< the joints' velocity limit times the radius
+  /// The joints' velocity limit times the radius; infinite if they have none.
+  double max_rim_m_per_s = std::numeric_limits<double>::infinity();
+  /// Base frame: what a differential base turns about and where it never moves sideways, the middle
+  /// of its wheels.
+  Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
 };
 
 /// Errors of wheel odometry. See odometry.hpp.
@@ -75,19 +86,30 @@ struct MountedCamera {
   Camera camera = {};
 };
 
-/// Equipment other than base and camera, for a robot with a URDF.
+/// Joints that move the head, by name.
+struct HeadJoints {
+  std::string yaw, pitch;
+};
+
+/// Equipment other than base and camera, for a robot with a URDF. Each part is optional.
 struct Equipment {
   KinematicTree tree;
-  OmniWheels wheels;
-  std::string head_yaw, head_pitch;  ///< names of joints
-  std::string depth_camera_link;     ///< which the camera of Robot is mounted on
+  SE3 base_from_root;                    ///< of the tree
+  std::optional<WheelBase> wheels = {};  ///< without: omnidirectional, without odometry
+  std::optional<HeadJoints> head = {};
+  std::string depth_camera_link;  ///< which the camera of Robot is mounted on; empty: the base
   std::vector<MountedCamera> cameras;
   std::vector<std::string> bumpers;  ///< links where the shell makes contact first
   std::vector<LaserScanner> lasers;
   std::vector<Sonar> sonars;
-  SE3 base_from_imu;
+  std::optional<SE3> base_from_imu = {};
   OdometryErrors odometry;
-  CollisionReflex reflex;
+  std::optional<CollisionReflex> reflex = {};
+
+  /// The pose of a link with these joints moved (KinematicTree::root_from).
+  SE3 base_from(std::string_view link, const std::map<std::string, double>& positions = {}) const {
+    return base_from_root * tree.root_from(link, positions);
+  }
 };
 
 /// A robot as the simulator needs it. Base frame: on the floor, x forward, z up.
@@ -100,9 +122,20 @@ struct Robot {
   Camera camera;                               ///< the RGB-D camera
   SE3 base_from_camera;                        ///< optical frame: x right, y down, z forward
   std::shared_ptr<const Equipment> equipment;  ///< null if the file names no URDF
+
+  /// Null if it has none.
+  const WheelBase* wheels() const {
+    return equipment && equipment->wheels ? &*equipment->wheels : nullptr;
+  }
+  /// Its wheels if they keep it from moving sideways, else null.
+  const WheelBase* differential() const {
+    const WheelBase* found = wheels();
+    return found != nullptr && found->kind == WheelBase::Kind::kDifferential ? found : nullptr;
+  }
 };
 
 /// Reads robots/<name>/<name>.yaml. @throws InputError naming file, line, field and value.
-Robot load_robot(const std::filesystem::path& file);
+/// @param warnings  what is odd in its files, a line each
+Robot load_robot(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr);
 
 }  // namespace mh

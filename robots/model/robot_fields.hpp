@@ -28,7 +28,8 @@ template <Either<BaseLimits> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [max_velocity_m_per_s, max_acceleration_m_per_s2, max_turn_rad_per_s,
          max_turn_acceleration_rad_per_s2, max_jerk_m_per_s3, max_turn_jerk_rad_per_s3] = c;
-  v("max_velocity_m_per_s", max_velocity_m_per_s, setting::required({0.01, 5}), "in any direction");
+  v("max_velocity_m_per_s", max_velocity_m_per_s, setting::required({0.01, 5}),
+    "in any direction; of a differential base: ahead and back");
   v("max_acceleration_m_per_s2", max_acceleration_m_per_s2, setting::required({0.01, 20}), "");
   v("max_turn_rad_per_s", max_turn_rad_per_s, setting::required({0.01, 10}), "");
   v("max_turn_acceleration_rad_per_s2", max_turn_acceleration_rad_per_s2,
@@ -67,7 +68,7 @@ void rate_fields(C& camera, Visit& v) {
 }
 
 /// Of `wheels`, without their joints.
-template <Either<OmniWheels> C, class Visit>
+template <Either<WheelBase> C, class Visit>
 void wheel_fields(C& wheels, Visit& v) {
   v("radius_m", wheels.radius_m, setting::required({0.005, 1}), "");
 }

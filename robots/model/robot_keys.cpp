@@ -32,7 +32,7 @@ class KeyLister {
 std::vector<RobotKey> robot_keys() {
   const Robot robot;
   const Camera camera;
-  const OmniWheels wheels;
+  const WheelBase wheels;
   const LensFields lens;
   const FanFields fan;
   const ConeFields cone;
@@ -58,20 +58,27 @@ std::vector<RobotKey> robot_keys() {
            "of the camera's body (x forward, z up) about fixed axes, as in URDF");
 
   list.mapping("equipment");
+  const auto add_part = [&](const char* key, const char* value, const char* meaning) {
+    list.add(key, value, meaning, false);
+  };
   list.add("urdf", "file", "relative to the robot's file");
-  list.add("wheels", "mapping", "three omnidirectional wheels");
-  list.add("head", "mapping", "joints that move the camera");
-  list.add("depth_camera_link", "link", "optical frame of the RGB-D camera");
-  list.add("cameras", "mapping", "further color cameras by name");
-  list.add("bumpers", "list of links", "where the shell is felt");
-  list.add("lasers", "mapping", "laser scanners by name");
-  list.add("sonars", "mapping", "sonars by name");
-  list.add("imu_link", "link", "where the IMU sits");
-  list.add("odometry", "mapping", "how wheel odometry errs");
-  list.add("collision_reflex", "mapping", "where the robot stops by itself");
+  add_part("base_link", "link", "the base's frame, on the floor; without: the URDF's root");
+  add_part("wheels", "mapping", "without: drives in any direction, without odometry");
+  add_part("head", "mapping", "joints that move the camera");
+  add_part("depth_camera_link", "link",
+           "optical frame of the RGB-D camera; without: no head moves it");
+  add_part("cameras", "mapping", "further color cameras by name");
+  add_part("bumpers", "list of links", "where the shell is felt");
+  add_part("lasers", "mapping", "laser scanners by name");
+  add_part("sonars", "mapping", "sonars by name");
+  add_part("imu_link", "link", "where the IMU sits");
+  add_part("odometry", "mapping", "how wheel odometry errs; without: not at all");
+  add_part("collision_reflex", "mapping", "where the robot stops by itself");
 
   list.mapping("equipment.wheels");
-  list.add("joints", "3 joints", "of the URDF, which limits their velocity");
+  list.add("joints", "list of joints",
+           "of the URDF, which limits their velocity; three: omnidirectional; two (or 4, 6, 8) on "
+           "parallel axles: differential");
   wheel_fields(wheels, list);
   list.mapping("equipment.head");
   list.add("yaw", "joint", "");

@@ -16,6 +16,7 @@
 #include <urdf_parser/urdf_parser.h>
 #include <Eigen/Eigenvalues>
 
+#include "robots/model/xacro.hpp"
 #include "slam/core/error.hpp"
 #include "slam/core/text_file.hpp"
 
@@ -77,10 +78,13 @@ class Places {
   }
 
   [[noreturn]] void fail_at_link(const std::string& name, const std::string& what) const {
-    fail("link", name, line_of_link_, what);
+    throw InputError(at_link(name, what));
   }
   [[noreturn]] void fail_at_joint(const std::string& name, const std::string& what) const {
-    fail("joint", name, line_of_joint_, what);
+    throw InputError(at("joint", name, line_of_joint_, what));
+  }
+  std::string at_link(const std::string& name, const std::string& what) const {
+    return at("link", name, line_of_link_, what);
   }
   /// Throws urdfdom's message, with the first link or joint that it applies to.
   [[noreturn]] void fail_somewhere(const std::string& what) const {
@@ -149,12 +153,12 @@ class Places {
     leads_up_.merge(passed);
   }
 
-  [[noreturn]] void fail(const char* kind, const std::string& name,
-                         const std::map<std::string, int>& lines, const std::string& what) const {
+  std::string at(const char* kind, const std::string& name, const std::map<std::string, int>& lines,
+                 const std::string& what) const {
     const auto line = lines.find(name);
-    throw InputError(fmt::format("{}{}: {} '{}': {}", file_,
-                                 line == lines.end() ? "" : fmt::format(":{}", line->second), kind,
-                                 name, what));
+    return fmt::format("{}{}: {} '{}': {}", file_,
+                       line == lines.end() ? "" : fmt::format(":{}", line->second), kind, name,
+                       what);
   }
 
   std::string file_;
@@ -190,7 +194,20 @@ std::string wrong_size(const urdf::GeometrySharedPtr& shape) {
   return "";
 }
 
-Link read_link(const urdf::Link& from, const Places& places) {
+/// Describes moments that no body has; "" if one may.
+std::string wrong_moments(const urdf::Inertial& body) {
+  Eigen::Matrix3d inertia;
+  inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz,
+      body.izz;
+  // Principal moments of a body are not negative, and none exceeds the sum of the other two.
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
+  if (moments[0] >= 0 && moments[2] <= (moments[0] + moments[1]) * (1 + 1e-6)) return "";
+  return fmt::format("no body has the principal moments of inertia {:.6g}, {:.6g}, {:.6g} kg m2",
+                     moments[0], moments[1], moments[2]);
+}
+
+Link read_link(const urdf::Link& from, const Places& places, std::vector<std::string>* warnings) {
   Link link{.name = from.name};
   const auto check = [&](const urdf::GeometrySharedPtr& shape) {
     if (const std::string wrong = wrong_size(shape); !wrong.empty())
@@ -200,22 +217,11 @@ Link read_link(const urdf::Link& from, const Places& places) {
   for (const auto& collision : from.collision_array) check(collision->geometry);
   if (!from.inertial) return link;
   const urdf::Inertial& body = *from.inertial;
-  const auto fail = [&](const std::string& what) { places.fail_at_link(from.name, what); };
   if (!(body.mass >= 0) || std::isinf(body.mass))
-    fail(fmt::format("its mass {} kg is not positive", body.mass));
-  const SE3 link_from_body = to_se3(body.origin);
-  Eigen::Matrix3d inertia;
-  inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz,
-      body.izz;
-  // Principal moments of a body are not negative, and none exceeds the sum of the other two.
-  const Eigen::Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
-  if (!(moments[0] >= 0) || moments[2] > (moments[0] + moments[1]) * (1 + 1e-6))
-    fail(fmt::format("no body has the principal moments of inertia {:.6g}, {:.6g}, {:.6g} kg m2",
-                     moments[0], moments[1], moments[2]));
+    places.fail_at_link(from.name, fmt::format("its mass {} kg is not positive", body.mass));
+  if (const std::string wrong = wrong_moments(body); warnings != nullptr && !wrong.empty())
+    warnings->push_back(places.at_link(from.name, wrong + "; not used here"));
   link.mass_kg = body.mass;
-  link.center_m = link_from_body.translation();
-  link.inertia_kg_m2 = link_from_body.rotation() * inertia * link_from_body.rotation().transpose();
   return link;
 }
 
@@ -321,13 +327,14 @@ SE3 KinematicTree::root_from(std::string_view link,
   return link_from_wanted;
 }
 
-KinematicTree load_urdf(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
+KinematicTree load_urdf(const std::filesystem::path& file, std::vector<std::string>* warnings) {
+  const std::string text = with_xacro_names(read_text(file), file);
   const Places places(text, file);
   const auto [model, wrong] = try_urdf(text);
   if (!model) places.fail_somewhere(wrong);
   KinematicTree tree{.name = model->getName(), .root = model->getRoot()->name};
-  for (const auto& [name, link] : model->links_) tree.links.push_back(read_link(*link, places));
+  for (const auto& [name, link] : model->links_)
+    tree.links.push_back(read_link(*link, places, warnings));
   for (const auto& [name, joint] : model->joints_)
     tree.joints.push_back(read_joint(*joint, places));
   tree.joints = from_root(std::move(tree.joints), tree.root);

@@ -16,9 +16,7 @@ namespace mh {
 /// A rigid part of a robot.
 struct Link {
   std::string name;
-  double mass_kg = 0;                                       ///< 0 = a frame without a body
-  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();       ///< of mass, in the link's frame
-  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about it, the link's axes
+  double mass_kg = 0;  ///< 0 = a frame without a body
 };
 
 /// How a link moves relative to its parent.
@@ -48,8 +46,10 @@ struct KinematicTree {
 };
 
 /// Reads a URDF with urdfdom. @throws InputError naming file and link or joint: not XML or not a
-/// URDF, a joint to a missing link, a link with two parents, a cycle of joints, a negative mass, an
-/// inertia that no body has, reversed limits.
-KinematicTree load_urdf(const std::filesystem::path& file);
+/// URDF, a joint to a missing link, a link with two parents, a cycle of joints, a negative mass,
+/// reversed limits.
+/// @param warnings  of inertias that no body has: nothing here uses them
+KinematicTree load_urdf(const std::filesystem::path& file,
+                        std::vector<std::string>* warnings = nullptr);
 
 }  // namespace mh

@@ -5,16 +5,22 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include <fmt/format.h>
 #include <Eigen/LU>
 
 namespace mh {
 namespace {
 
-Eigen::Matrix3d rims_from_twist(const OmniWheels& wheels) {
+/// Of axles that count as parallel, and as across the base: 1 degree, since URDFs round pi / 2.
+constexpr double kAskew = 0.0175;
+
+/// @pre three wheels
+Eigen::Matrix3d rims_from_twist(const WheelBase& wheels) {
   Eigen::Matrix3d rows;
   for (int i = 0; i < 3; ++i) {
-    const OmniWheels::Wheel& wheel = wheels.wheels[static_cast<std::size_t>(i)];
+    const WheelBase::Wheel& wheel = wheels.wheels[static_cast<std::size_t>(i)];
     // Perpendicular to the axle; as the base turns, the wheel's place moves by turn x place.
     const Eigen::Vector2d drive(-std::sin(wheel.axle_rad), std::cos(wheel.axle_rad));
     rows.row(i) << drive.x(), drive.y(),
@@ -39,19 +45,89 @@ Vector limited(const Vector& v, double size, double limit) {
 
 }  // namespace
 
-Eigen::Vector3d rim_speeds_m_per_s(const OmniWheels& wheels, const Twist2d& twist) {
-  return rims_from_twist(wheels) * twist;
+std::string find_kind(WheelBase& base) {
+  const std::vector<WheelBase::Wheel>& wheels = base.wheels;
+  const auto parallel = [&](const WheelBase::Wheel& wheel) {
+    return std::abs(std::sin(wheel.axle_rad - wheels.front().axle_rad)) < kAskew;
+  };
+  if (wheels.empty() || !std::ranges::all_of(wheels, parallel)) {
+    if (wheels.size() != 3)
+      return fmt::format(
+          "has {} joints: an omnidirectional base has three, a differential one two (or more) on "
+          "parallel axles",
+          wheels.size());
+    base.kind = WheelBase::Kind::kOmnidirectional;
+    // Meters. If all wheels point at one place, for example, the base turns about it unhindered.
+    if (std::abs(rims_from_twist(base).determinant()) < 1e-6)
+      return "the axles of these wheels leave a direction in which no rim moves";
+    return "";
+  }
+  if (std::abs(std::cos(wheels.front().axle_rad)) > kAskew)
+    return "the axles of these wheels are parallel, but not to the base's y: it would not drive "
+           "ahead";
+  if (wheels.size() > kMostWheels)
+    return fmt::format("has {} joints: at most {} drive a base", wheels.size(), kMostWheels);
+  base.kind = WheelBase::Kind::kDifferential;
+  base.middle_m.setZero();
+  for (const WheelBase::Wheel& wheel : wheels)
+    base.middle_m += wheel.place_m / static_cast<double>(wheels.size());
+  const auto on_side = [&](double side) {
+    constexpr double kLeast_m = 0.005;  // beside the middle
+    return std::ranges::count_if(wheels, [&](const WheelBase::Wheel& wheel) {
+      return side * (wheel.place_m.y() - base.middle_m.y()) > kLeast_m;
+    });
+  };
+  if (const auto left = on_side(1), right = on_side(-1);
+      left != right || 2 * left != std::ssize(wheels))
+    return fmt::format(
+        "has {} joints on parallel axles, {} on the left and {} on the right: a differential base "
+        "has as many on either side",
+        wheels.size(), left, right);
+  return "";
 }
 
-Twist2d twist_of_rims(const OmniWheels& wheels, const Eigen::Vector3d& rims_m_per_s) {
-  return rims_from_twist(wheels).inverse() * rims_m_per_s;
+PerWheel rim_speeds_m_per_s(const WheelBase& base, const Twist2d& twist) {
+  PerWheel rims(base.wheels.size());
+  if (base.kind == WheelBase::Kind::kOmnidirectional) {
+    const Eigen::Vector3d three = rims_from_twist(base) * twist;
+    rims << three.x(), three.y(), three.z();
+    return rims;
+  }
+  for (std::size_t i = 0; i < base.wheels.size(); ++i)
+    rims[static_cast<Eigen::Index>(i)] = twist.x() - twist.z() * base.wheels[i].place_m.y();
+  return rims;
 }
 
-JerkLimiter::JerkLimiter(const BaseLimits& limits, double step_s, const OmniWheels* wheels)
+Twist2d twist_of_rims(const WheelBase& base, const PerWheel& rims_m_per_s) {
+  if (base.kind == WheelBase::Kind::kOmnidirectional)
+    return rims_from_twist(base).inverse() * Eigen::Vector3d(rims_m_per_s);
+  double turned = 0, squares = 0;
+  for (std::size_t i = 0; i < base.wheels.size(); ++i) {
+    const double right_m = base.middle_m.y() - base.wheels[i].place_m.y();
+    turned += right_m * rims_m_per_s[static_cast<Eigen::Index>(i)];
+    squares += right_m * right_m;
+  }
+  return twist_of(base, rims_m_per_s.mean(), turned / squares);
+}
+
+Twist2d twist_of(const WheelBase& base, double ahead_m_per_s, double turn_rad_per_s) {
+  return {ahead_m_per_s + turn_rad_per_s * base.middle_m.y(), -turn_rad_per_s * base.middle_m.x(),
+          turn_rad_per_s};
+}
+
+double ahead_of(const WheelBase& base, const Twist2d& twist) {
+  return twist.x() - twist.z() * base.middle_m.y();
+}
+
+JerkLimiter::JerkLimiter(const BaseLimits& limits, double step_s, const WheelBase* wheels)
     : limits_(limits), step_s_(step_s) {
   if (wheels == nullptr) return;
   most_m_per_s_ = wheels->max_rim_m_per_s;
-  reach_m_ = rims_from_twist(*wheels).col(2).cwiseAbs().maxCoeff();
+  // At rest and turning by 1 rad/s, a rim moves as fast as it is far from the middle.
+  const bool ahead_only = wheels->kind == WheelBase::Kind::kDifferential;
+  reach_m_ = rim_speeds_m_per_s(*wheels, ahead_only ? twist_of(*wheels, 0, 1) : Twist2d(0, 0, 1))
+                 .cwiseAbs()
+                 .maxCoeff();
 }
 
 JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
@@ -92,17 +168,25 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
   // Turning the acceleration aside takes time in which the speed keeps growing: it starts only if
   // reducing the acceleration directly would still end within the limits. Otherwise it is reduced
   // now; the previous step made sure that there is enough time for that.
-  const auto gained = [this](double acceleration, double j) {  // while it is reduced
+  const auto gained = [this](double acceleration, double j,
+                             bool has_limit) {  // while it is reduced
+    if (!has_limit) return 0.0;
     return std::max(
         0.0, 0.5 * acceleration * (acceleration / j - step_s_) + 0.125 * j * step_s_ * step_s_);
   };
   const auto peak = [&](const Eigen::Vector2d& a) {
     const Eigen::Vector2d v = velocity_.m_per_s + a * step_s_;
-    return std::max(v.norm(), (v + a.stableNormalized() * gained(a.norm(), jerk)).norm());
+    return std::max(
+        v.norm(),
+        (v + a.stableNormalized() * gained(a.norm(), jerk, limits_.max_jerk_m_per_s3.has_value()))
+            .norm());
   };
   const auto turn_peak = [&](double a) {
     const double w = velocity_.turn_rad_per_s + a * step_s_;
-    return std::max(std::abs(w), std::abs(w + std::copysign(gained(std::abs(a), turn_jerk), a)));
+    return std::max(std::abs(w),
+                    std::abs(w + std::copysign(gained(std::abs(a), turn_jerk,
+                                                      limits_.max_turn_jerk_rad_per_s3.has_value()),
+                                               a)));
   };
   const double now = acceleration_m_per_s2_.norm();
   const Eigen::Vector2d shed = now > unit

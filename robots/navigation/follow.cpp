@@ -71,12 +71,15 @@ Steering follow(const std::vector<Vector2d>& path, const Pose2& at,
     steering.arrived = true;
     return steering;
   }
-  const Vector2d direction = to_aim.normalized();
+  const bool ahead_only = robot.differential() != nullptr;
+  const Vector2d direction = ahead_only
+                                 ? Pose2{Vector2d::Zero(), at.heading_rad}.turned(Vector2d::UnitX())
+                                 : Vector2d(to_aim.normalized());
   const double off_rad = turn_to(at.heading_rad, std::atan2(to_aim.y(), to_aim.x()));
   const double braking = config.braking * robot.limits.max_acceleration_m_per_s2;
   steering.command = turn_in_place(off_rad, robot.limits, config, 0.01);
-  // Near the end it slides the last decimeter instead of turning for it.
-  const bool faces = std::abs(off_rad) < config.face_rad || steering.left_m < 0.15;
+  // Near the end it slides the last decimeter, if it can, instead of turning for it.
+  const bool faces = std::abs(off_rad) < config.face_rad || (!ahead_only && steering.left_m < 0.15);
   const double radius_m = robot.footprint_radius_m + config.shell_margin_m;
   const double before_m_per_s = speed_before(obstacles_m, at.place_m, direction, radius_m, braking);
   steering.blocked = before_m_per_s < kSlowest_m_per_s;
@@ -86,8 +89,9 @@ Steering follow(const std::vector<Vector2d>& path, const Pose2& at,
        robot.limits.max_velocity_m_per_s,
        std::max(0.05, std::sqrt(2 * braking * std::max(0.0, steering.left_m - 0.02))),
        before_m_per_s});
-  const Vector2d in_base = Pose2{Vector2d::Zero(), -at.heading_rad}.turned(speed * direction);
-  steering.command.head<2>() = in_base;
+  steering.command.head<2>() =
+      ahead_only ? Vector2d(speed, 0)
+                 : Pose2{Vector2d::Zero(), -at.heading_rad}.turned(speed * direction);
   return steering;
 }
 

@@ -25,8 +25,9 @@ struct FollowConfig {
 double speed_before(std::span<const Eigen::Vector2d> obstacles_m, const Eigen::Vector2d& place_m,
                     const Eigen::Vector2d& direction, double radius_m, double braking_m_per_s2);
 
-/// Steering of a holonomic base along a path: pure pursuit (Coulter, 1992) of a place ahead, facing
-/// it, slower before the end, in turns, and before what the sensors show.
+/// Steering of a base along a path: pure pursuit (Coulter, 1992) of a place ahead, facing it,
+/// slower before the end, in turns, and before what the sensors show. A differential base drives
+/// only where it faces.
 struct Steering {
   Twist2d command = Twist2d::Zero();
   double left_m = 0;     ///< of the path

@@ -97,7 +97,7 @@ std::optional<Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>&
 
 const char* lacking_to_drive(const Robot& robot) {
   if (!robot.equipment || robot.equipment->lasers.empty()) return "lasers";
-  return robot.equipment->bumpers.empty() ? "bumpers" : nullptr;
+  return robot.equipment->wheels ? nullptr : "wheels";
 }
 
 Navigator::Navigator(const KnownMap& map, const Robot& robot, std::vector<NavigatorGoal> goals,
@@ -163,11 +163,12 @@ bool Navigator::touched(const Perception& now) {
   Vector2d toward = Vector2d::Zero();
   for (std::size_t b = 0; b < std::min(now.bumpers.size(), equipment.bumpers.size()); ++b)
     if (now.bumpers[b])
-      toward += equipment.tree.root_from(equipment.bumpers[b]).translation().head<2>().normalized();
+      toward += equipment.base_from(equipment.bumpers[b]).translation().head<2>().normalized();
   if (toward.norm() < 1e-6) return false;
   toward.normalize();
   local_.add_contact(now.odom_from_base * Vector2d((robot_.footprint_radius_m + 0.02) * toward));
   away_ = -toward;
+  if (robot_.differential() != nullptr) away_ = {std::copysign(1.0, away_.x()), 0};
   ++bumps_;
   say(fmt::format("touched something: bump {}", bumps_));
   enter(bumps_ > config_.most_bumps ? NavigatorState::kCollided : NavigatorState::kBacking,

@@ -76,7 +76,8 @@ inline bool is_end(NavigatorState state) {
   return state >= NavigatorState::kArrived;
 }
 
-/// What a robot lacks to drive on its own: "lasers" or "bumpers"; nullptr if it lacks neither.
+/// What a robot lacks to drive on its own: "lasers" or "wheels" (odometry); nullptr if it lacks
+/// neither. Without bumpers it does not notice what it touches.
 const char* lacking_to_drive(const Robot& robot);
 
 /// Drives a robot to a place of its own map, from wherever it was put: looks around until it knows
@@ -89,7 +90,7 @@ class Navigator {
   /// @param robot  outlives it
   /// @param goals  at least one, named differently; it drives to the first that a path leads to,
   ///               and tries the others before one that it could not get to
-  /// @throws InputError if the robot has no lasers or bumpers, or no goal is within reach of any
+  /// @throws InputError if the robot has no lasers or wheels, or no goal is within reach of any
   /// free place of the map.
   Navigator(const KnownMap& map, const Robot& robot, std::vector<NavigatorGoal> goals,
             const NavigatorConfig& config = {});

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -24,8 +23,7 @@ constexpr double kLeastStray_m = 0.015;  // the limit in narrow places
 constexpr double kSmallestFloor_m2 = 0.1;
 constexpr double kSurvey_m_per_s = 0.35, kSurvey_rad_per_s = 0.6;  // as the navigator drives
 
-bool keeps_clear(const FloorGrid& grid, std::span<const Vector2d> corners, double clearance_m) {
-  const RoundedPath path(corners);
+bool keeps_clear(const FloorGrid& grid, const RoundedPath& path, double clearance_m) {
   for (double s = 0; s < path.length_m(); s += 0.5 * grid.resolution_m)
     if (grid.clearance_at(path.at(s).position_m) < clearance_m) return false;
   return true;
@@ -48,14 +46,18 @@ std::vector<Vector2d> narrowed(const std::vector<Vector2d>& way, double cut_m) {
 /// Returns a path that the robot can drive with its corners rounded, with as much clearance as
 /// possible.
 std::optional<std::vector<Vector2d>> drivable_way(const FloorGrid& grid, const Vector2d& from_m,
-                                                  const Vector2d& to_m, double radius_m) {
+                                                  const Vector2d& to_m, const Robot& robot) {
+  const double radius_m = robot.footprint_radius_m;
   for (const double stray_m : {kStray_m, kLeastStray_m}) {
     const auto way = plan_way(grid, from_m, to_m, radius_m + stray_m);
     if (!way) continue;
     // The ends may be nearer to obstacles than a path should be: they are the tour's own.
     for (const double cut_m : {1.0, 0.2, 0.1}) {
       const auto rounded = cut_m >= 1.0 ? *way : narrowed(*way, cut_m);
-      if (way->size() < 3 || keeps_clear(grid, rounded, radius_m)) return rounded;
+      if (way->size() < 3 ||
+          keeps_clear(grid, RoundedPath(rounded, {.eased = robot.differential() != nullptr}),
+                      radius_m))
+        return rounded;
     }
     return narrowed(*way, 0.05);
   }
@@ -106,7 +108,7 @@ Tour planned(const Scene& scene, const Robot& robot, const Tour& tour) {
   for (std::size_t i = 0; i < tour.waypoints.size(); ++i) {
     const Waypoint& goal = tour.waypoints[i];
     if ((goal.position_m - here_m).norm() > grid.resolution_m) {
-      const auto way = drivable_way(grid, here_m, goal.position_m, robot.footprint_radius_m);
+      const auto way = drivable_way(grid, here_m, goal.position_m, robot);
       if (!way) {
         const std::string outside = outside_rooms(scene, goal.position_m);
         throw InputError(fmt::format(

@@ -17,26 +17,24 @@ Eigen::Vector2d turned(const Eigen::Vector2d& v, double angle_rad) {
           std::sin(angle_rad) * v.x() + std::cos(angle_rad) * v.y()};
 }
 
-const Robot& steerable(const Robot& robot) {
-  if (!robot.equipment || !robot.limits.max_jerk_m_per_s3 || !robot.limits.max_turn_jerk_rad_per_s3)
-    throw InputError(fmt::format(
-        "robot '{}' has no jerk limits or no equipment: its file lacks them", robot.name));
-  return robot;
-}
-
 }  // namespace
 
 CommandedBase::CommandedBase(const Scene& scene, const Robot& robot, const Eigen::Vector2d& start_m,
                              double start_heading_rad, bool reflex)
-    : robot_(steerable(robot)),
+    : robot_(robot),
       steps_per_frame_(static_cast<int>(std::ceil(kStepRate_hz / robot.camera.rate_hz))),
       world_(scene, robot_, start_m, start_heading_rad,
              1.0 / (robot.camera.rate_hz * steps_per_frame_)),
-      limiter_(commandable(robot.limits), world_.step_s(), &robot_.equipment->wheels),
+      motors_(robot.differential()),
+      limiter_(commandable(robot.limits), world_.step_s(), robot.wheels()),
       meter_(world_.step_s()),
       state_(world_.state()),
       reflex_m_per_s_(robot.limits.max_velocity_m_per_s) {
-  if (reflex) reflex_.emplace(scene, robot_);
+  if (!reflex) return;
+  if (!robot.equipment || !robot.equipment->reflex)
+    throw InputError(
+        fmt::format("robot '{}' has no reflex (its file: equipment.collision_reflex)", robot.name));
+  reflex_.emplace(scene, robot_);
 }
 
 void CommandedBase::add(MovingObstacle other) {
@@ -45,8 +43,8 @@ void CommandedBase::add(MovingObstacle other) {
 }
 
 void CommandedBase::step(const Twist2d& command) {
-  const OmniWheels& wheels = robot_.equipment->wheels;
   Twist2d twist = command;
+  if (robot_.differential() != nullptr) twist.y() = 0;
   const double limit = robot_.limits.max_velocity_m_per_s;
   if (twist.head<2>().norm() > limit) twist.head<2>() *= limit / twist.head<2>().norm();
   twist.z() =
@@ -65,18 +63,20 @@ void CommandedBase::step(const Twist2d& command) {
     }
   }
   const JerkLimiter::Velocity next =
-      limiter_.step({.m_per_s = wanted, .turn_rad_per_s = twist.z()});
+      limiter_.step(motors_.commanded(wanted, twist.z(), state_.heading_rad));
   const BaseState before = state_;
   const bool touched = contact_.touching;
-  contact_ = world_.step({.velocity_m_per_s = next.m_per_s, .turn_rad_per_s = next.turn_rad_per_s});
+  const BaseCommand driven = motors_.over_floor(next, state_.heading_rad, world_.step_s());
+  contact_ = world_.step(driven);
   state_ = world_.state();
   ++steps_;
 
-  if (contact_.touching && (state_.velocity_m_per_s - next.m_per_s).norm() > kPushed_m_per_s) {
-    limiter_.stopped_at({state_.velocity_m_per_s, state_.turn_rad_per_s});
+  if (contact_.touching &&
+      (state_.velocity_m_per_s - driven.velocity_m_per_s).norm() > kPushed_m_per_s) {
+    limiter_.stopped_at(motors_.measured(state_));
     meter_.pushed(state_);
   } else {
-    meter_.add(state_, &wheels);
+    meter_.add(state_, robot_.wheels());
   }
   if (contact_.touching && !touched)
     bumps_.push_back(
@@ -96,7 +96,7 @@ void CommandedBase::carry_to(const Eigen::Vector2d& place_m, double heading_rad)
   state_ = world_.state();
   contact_ = {};
   driven_m_per_s_ = 0;
-  limiter_.stopped_at({state_.velocity_m_per_s, state_.turn_rad_per_s});
+  limiter_.stopped_at(motors_.measured(state_));
   meter_.pushed(state_);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robots/model/wheel_base.hpp"
+#include "sim/motion/motors.hpp"
 #include "sim/motion/peaks.hpp"
 #include "sim/motion/reflex.hpp"
 #include "sim/physics/planar_world.hpp"
@@ -27,12 +28,13 @@ struct Bump {
 class CommandedBase {
  public:
   /// @param reflex  whether the external-collision reflex is awake
-  /// @throws InputError if the robot has no equipment or no jerk limits.
+  /// @throws InputError if the robot has no reflex to be awake.
   CommandedBase(const Scene& scene, const Robot& robot, const Eigen::Vector2d& start_m,
                 double start_heading_rad, bool reflex);
 
   void add(MovingObstacle other);
-  /// One physics step. @param command  base frame
+  /// One physics step. @param command  base frame; a differential base does not obey its second
+  ///                                   component
   void step(const Twist2d& command);
   /// Lifts the robot to another place, where it stands at rest.
   void carry_to(const Eigen::Vector2d& place_m, double heading_rad);
@@ -62,6 +64,7 @@ class CommandedBase {
   PlanarWorld world_;
   std::vector<MovingObstacle> others_;
   std::optional<Reflex> reflex_;
+  Motors motors_;
   JerkLimiter limiter_;
   PeakMeter meter_;
   BaseState state_;

@@ -34,6 +34,36 @@ struct HeadJoint {
   }
 };
 
+bool has_reflex(const Robot& robot) {
+  return robot.equipment && robot.equipment->reflex;
+}
+
+/// @throws InputError if the script asks for what the robot does not have.
+void require_obeyed(const CommandScript& script, const Robot& robot) {
+  const auto refuse = [&](int line, const std::string& what) {
+    throw InputError(
+        fmt::format("{}: robot '{}' {}", file_and_line(script.file, line), robot.name, what));
+  };
+  if (script.reflex == true && !has_reflex(robot))
+    refuse(0, "has no reflex to be awake (its file: equipment.collision_reflex)");
+  for (const VelocityCommand& command : script.commands) {
+    if (command.left_m_per_s != 0 && robot.differential() != nullptr)
+      refuse(command.line, fmt::format("has a differential drive: it cannot go sideways "
+                                       "(left_m_per_s: {:g})",
+                                       command.left_m_per_s));
+    if ((command.head_yaw_rad || command.head_pitch_rad) &&
+        !(robot.equipment && robot.equipment->head))
+      refuse(command.line, "has no head to move (its file: equipment.head)");
+  }
+}
+
+/// How the head's joints move the RGB-D camera, in the base's frame.
+SE3 camera_moved_by(const Equipment& e, const HeadJoints& head, double yaw_rad, double pitch_rad) {
+  if (e.depth_camera_link.empty()) return SE3();
+  return e.base_from(e.depth_camera_link, {{head.yaw, yaw_rad}, {head.pitch, pitch_rad}}) *
+         e.base_from(e.depth_camera_link).inverse();
+}
+
 }  // namespace
 
 CommandScript load_commands(const std::filesystem::path& file) {
@@ -45,7 +75,7 @@ CommandScript load_commands(const std::filesystem::path& file) {
   script.start_m = start.place_m;
   script.start_heading_rad = start.heading_rad;
   script.start_line = start.line;
-  script.reflex = yaml.boolean("reflex", true);
+  if (yaml.has("reflex")) script.reflex = yaml.boolean("reflex", true);
   YamlReader list = yaml.at("commands");
   for (YamlReader& item : list.items()) {
     VelocityCommand command{.line = item.line()};
@@ -67,20 +97,18 @@ CommandScript load_commands(const std::filesystem::path& file) {
 
 CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript& script,
                      const std::vector<MovingObstacle>& others) {
-  if (!robot.equipment || !robot.limits.max_jerk_m_per_s3 || !robot.limits.max_turn_jerk_rad_per_s3)
-    throw InputError(
-        fmt::format("{}: robot '{}' has no jerk limits or no equipment: its file lacks "
-                    "them",
-                    script.file.string(), robot.name));
-  const Equipment& equipment = *robot.equipment;
-  CommandedBase base(scene, robot, script.start_m, script.start_heading_rad, script.reflex);
+  const std::optional<HeadJoints> head = robot.equipment ? robot.equipment->head : std::nullopt;
+  require_obeyed(script, robot);
+  CommandedBase base(scene, robot, script.start_m, script.start_heading_rad,
+                     script.reflex.value_or(has_reflex(robot)));
   for (const MovingObstacle& other : others) base.add(other);
   check_start(base.world(), scene, script.start_m, file_and_line(script.file, script.start_line));
 
-  HeadJoint yaw{.joint = &equipment.tree.joint(equipment.head_yaw)};
-  HeadJoint pitch{.joint = &equipment.tree.joint(equipment.head_pitch)};
-  const SE3 camera_from_base_at_rest =
-      equipment.tree.root_from(equipment.depth_camera_link).inverse();
+  HeadJoint yaw, pitch;
+  if (head) {
+    yaw.joint = &robot.equipment->tree.joint(head->yaw);
+    pitch.joint = &robot.equipment->tree.joint(head->pitch);
+  }
   CommandedDrive result;
 
   const auto record = [&] {
@@ -89,19 +117,19 @@ CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript
     const SE3 world_from_base = base.world_from_base();
     SE3 base_from_camera = robot.base_from_camera;
     if (yaw.now_rad != 0 || pitch.now_rad != 0)
-      base_from_camera = equipment.tree.root_from(equipment.depth_camera_link,
-                                                  {{equipment.head_yaw, yaw.now_rad},
-                                                   {equipment.head_pitch, pitch.now_rad}}) *
-                         camera_from_base_at_rest * robot.base_from_camera;
+      base_from_camera = camera_moved_by(*robot.equipment, *head, yaw.now_rad, pitch.now_rad) *
+                         robot.base_from_camera;
     result.path.base.push_back({stamp_ns, world_from_base});
     result.path.camera.push_back({stamp_ns, world_from_base * base_from_camera});
-    result.path.head.push_back({yaw.now_rad, pitch.now_rad});
+    if (head) result.path.head.push_back({yaw.now_rad, pitch.now_rad});
   };
 
   const auto step = [&](const VelocityCommand& command) {
     base.step({command.forward_m_per_s, command.left_m_per_s, command.turn_rad_per_s});
-    yaw.step(base.step_s());
-    pitch.step(base.step_s());
+    if (head) {
+      yaw.step(base.step_s());
+      pitch.step(base.step_s());
+    }
     if (base.steps() % base.steps_per_frame() == 0) record();
   };
 

@@ -28,7 +28,8 @@ struct CommandScript {
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0;
   int start_line = 0;  ///< in the file, for messages; 0 = none
-  bool reflex = true;  ///< the external-collision reflex is active
+  /// Whether the external-collision reflex is active; nullopt: if the robot has one.
+  std::optional<bool> reflex = {};
   std::vector<VelocityCommand> commands;
 };
 
@@ -47,8 +48,9 @@ struct CommandedDrive {
 /// stay within its limits, the head's joints within theirs. Unlike a tour, a script has no
 /// destination: if something is in the way, the robot stops before it (reflex) or against it.
 /// @param others  moving obstacles
-/// @throws InputError if the robot has no jerk limit, the start is inside something, or a head
-/// angle is out of the joint's range (naming file and line).
+/// @throws InputError, naming file and line, if the start is inside something, a head angle is out
+/// of the joint's range, or the script asks for what the robot cannot do: move its head or wake a
+/// reflex without having one, go sideways on a differential base.
 CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript& script,
                      const std::vector<MovingObstacle>& others = {});
 

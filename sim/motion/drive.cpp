@@ -4,10 +4,12 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "robots/model/wheel_base.hpp"
 #include "sim/motion/automatic.hpp"
 #include "sim/motion/motion.hpp"
+#include "sim/motion/motors.hpp"
 #include "sim/motion/peaks.hpp"
 #include "sim/motion/reference.hpp"
 #include "sim/motion/start.hpp"
@@ -20,6 +22,9 @@ namespace {
 // Drift from single precision is corrected gently; a push, firmly.
 constexpr double kDriftGain_per_s = 0.2, kPushGain_per_s = 2.0;
 constexpr double kDrift_m = 0.005;
+// A differential base steers back to its path within about a meter: the error aside fades like that
+// of a critically damped swing over the way, kSteer_per_m per meter.
+constexpr double kSteer_per_m = 2.0;
 constexpr double kStuck_m = 0.15;  // if this far behind the plan, something is in the way
 constexpr double kArrived_m = 0.01, kTurned_rad = 0.005;
 constexpr double kAtRest_m_per_s = 0.01;
@@ -38,6 +43,7 @@ class Driver {
                1.0 / (robot.camera.rate_hz * steps_per_frame_)),
         state_(world_.state()),
         heading_rad_(tour.start_heading_rad),
+        motors_(robot.differential()),
         correction_(robot.limits, world_.step_s()),
         meter_(world_.step_s()) {
     for (const MovingObstacle& other : others) world_.add(other);
@@ -47,7 +53,8 @@ class Driver {
 
   DrivenPath run() {
     Goal rest{tour_.start_m, tour_.start_heading_rad};
-    for (const Stretch& stretch : reference_motion(tour_, robot_.limits, world_.step_s()))
+    for (const Stretch& stretch :
+         reference_motion(tour_, robot_.limits, world_.step_s(), robot_.differential()))
       rest = follow(stretch);
     while (steps_ % steps_per_frame_ != 0) step(rest, {});
     path_.peaks = meter_.peaks();
@@ -85,8 +92,7 @@ class Driver {
     }
     const Goal end = goal(last);
     const double give_up_s = time_s() + kPatience_s;
-    while ((end.position_m - state_.position_m).norm() > kArrived_m ||
-           state_.velocity_m_per_s.norm() > kAtRest_m_per_s ||
+    while (off_m(end) > kArrived_m || state_.velocity_m_per_s.norm() > kAtRest_m_per_s ||
            std::abs(end.heading_rad - heading_rad_) > kTurned_rad) {
       if (time_s() > give_up_s) fail(stretch.waypoint[last], end.position_m);
       step(end, {});
@@ -94,17 +100,50 @@ class Driver {
     return end;
   }
 
+  /// How far from the goal it is, as far as it can get nearer without turning.
+  double off_m(const Goal& goal) const {
+    const Eigen::Vector2d error_m = goal.position_m - state_.position_m;
+    return robot_.differential() == nullptr
+               ? error_m.norm()
+               : std::abs((Eigen::Rotation2Dd(-heading_rad_) * error_m).x());
+  }
+
+  /// What the motors do for a velocity of the base on its reference.
+  JerkLimiter::Velocity plan_of(const Goal& reference, const BaseCommand& velocity) const {
+    const double middle_rad =
+        reference.heading_rad + 0.5 * velocity.turn_rad_per_s * world_.step_s();
+    return motors_.commanded(velocity.velocity_m_per_s, velocity.turn_rad_per_s, middle_rad);
+  }
+
+  /// The correction that is wanted to bring the base back to its reference: straight there, or (a
+  /// differential base) ahead, back, and by steering, as in Kanayama et al., "A stable tracking
+  /// control method for an autonomous mobile robot", ICRA 1990.
+  JerkLimiter::Velocity toward(const Goal& reference, const JerkLimiter::Velocity& plan) const {
+    const double turn_rad = reference.heading_rad - heading_rad_;
+    Eigen::Vector2d error_m = reference.position_m - state_.position_m;
+    double turn_rad_per_s = kDriftGain_per_s * turn_rad;
+    if (robot_.differential() != nullptr) {
+      const Eigen::Vector2d in_base = Eigen::Rotation2Dd(-heading_rad_) * error_m;
+      const double speed = plan.m_per_s.x();
+      turn_rad_per_s += speed * kSteer_per_m * kSteer_per_m * in_base.y() +
+                        2 * std::abs(speed) * kSteer_per_m * turn_rad;
+      error_m = {in_base.x(), 0};
+    }
+    const double pushed_m = std::max(0.0, error_m.norm() - kDrift_m);
+    return {.m_per_s = kDriftGain_per_s * error_m +
+                       kPushGain_per_s * pushed_m * error_m.stableNormalized(),
+            .turn_rad_per_s = turn_rad_per_s};
+  }
+
   /// One physics step with the reference's velocity plus a correction toward the reference's
   /// position.
   void step(const Goal& reference, const BaseCommand& velocity) {
-    const Eigen::Vector2d error_m = reference.position_m - state_.position_m;
-    const double pushed_m = std::max(0.0, error_m.norm() - kDrift_m);
-    const JerkLimiter::Velocity correction = correction_.step(
-        {.m_per_s =
-             kDriftGain_per_s * error_m + kPushGain_per_s * pushed_m * error_m.stableNormalized(),
-         .turn_rad_per_s = kDriftGain_per_s * (reference.heading_rad - heading_rad_)});
-    const BaseCommand command{velocity.velocity_m_per_s + correction.m_per_s,
-                              velocity.turn_rad_per_s + correction.turn_rad_per_s};
+    const JerkLimiter::Velocity plan = plan_of(reference, velocity);
+    const JerkLimiter::Velocity correction = correction_.step(toward(reference, plan));
+    const BaseCommand command =
+        motors_.over_floor({.m_per_s = plan.m_per_s + correction.m_per_s,
+                            .turn_rad_per_s = plan.turn_rad_per_s + correction.turn_rad_per_s},
+                           state_.heading_rad, world_.step_s());
     const BaseState before = state_;
     const Contact contact = world_.step(command);
     state_ = world_.state();
@@ -112,11 +151,12 @@ class Driver {
 
     if (contact.touching &&
         (state_.velocity_m_per_s - command.velocity_m_per_s).norm() > kPushed_m_per_s) {
-      correction_.stopped_at({state_.velocity_m_per_s - velocity.velocity_m_per_s,
-                              state_.turn_rad_per_s - velocity.turn_rad_per_s});
+      const JerkLimiter::Velocity now = motors_.measured(state_);
+      correction_.stopped_at(
+          {now.m_per_s - plan.m_per_s, now.turn_rad_per_s - plan.turn_rad_per_s});
       meter_.pushed(state_);
     } else {
-      meter_.add(state_, robot_.equipment ? &robot_.equipment->wheels : nullptr);
+      meter_.add(state_, robot_.wheels());
     }
     const double turned_rad = std::remainder(state_.heading_rad - before.heading_rad, 2 * M_PI);
     heading_rad_ += turned_rad;
@@ -149,7 +189,8 @@ class Driver {
   int steps_per_frame_;
   PlanarWorld world_;
   BaseState state_;
-  double heading_rad_;      // as state_.heading_rad, but including full turns
+  double heading_rad_;  // as state_.heading_rad, but including full turns
+  Motors motors_;
   JerkLimiter correction_;  // velocity added to the reference's
   PeakMeter meter_;
   long steps_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,9 @@ struct PathConfig {
   /// An arc starts and ends at most this far from its corner, m; so a right angle is rounded with
   /// this radius and passes the corner at 0.41 of it.
   double cut_m = 0.45;
+  /// The curvature grows and shrinks smoothly along a bend instead of jumping at its ends, as a
+  /// base needs that turns only with its way. Such a bend lies between the corner and its arc.
+  bool eased = false;
 };
 
 struct PathPoint {
@@ -20,8 +24,8 @@ struct PathPoint {
   double curvature_per_m = 0;  ///< positive to the left
 };
 
-/// A planar curve along given corners: straight lines joined by tangent arcs. Starts and ends
-/// exactly at the first and last corner.
+/// A planar curve along given corners: straight lines joined by tangent arcs or eased bends. Starts
+/// and ends exactly at the first and last corner.
 class RoundedPath {
  public:
   /// @param corners_m  at least two, each distinct from the next; no corner reverses direction.
@@ -30,6 +34,12 @@ class RoundedPath {
   double length_m() const { return length_m_; }
   /// The point at arc length s; beyond either end the path continues straight.
   PathPoint at(double s_m) const;
+  /// The most of an arc or bend, without its sign; 0 on straight lines and beyond the ends.
+  struct Bend {
+    double curvature_per_m = 0;
+    double change_per_m2 = 0, second_change_per_m3 = 0;  ///< of the curvature: its derivatives
+  };
+  Bend bend_at(double s_m) const;
   /// Arc length of the point that represents corner i (the middle of its arc).
   double corner_s_m(std::size_t i) const { return corner_s_m_[i]; }
 
@@ -38,8 +48,11 @@ class RoundedPath {
     double start_s_m;
     Eigen::Vector2d start_m;
     double heading_rad;
-    double curvature_per_m;
+    double curvature_per_m = 0;              // of an arc
+    double bend_rad = 0, bend_length_m = 0;  // of an eased bend
   };
+  static PathPoint on_bend(const Piece& piece, double ds_m);
+  const Piece& piece_at(double s_m) const;
   std::vector<Piece> pieces_;
   std::vector<double> corner_s_m_;
   double length_m_ = 0;
@@ -49,6 +62,8 @@ struct SpeedLimits {
   double velocity_m_per_s = 0;
   double along_m_per_s2 = 0;   ///< speeding up and slowing down
   double across_m_per_s2 = 0;  ///< v^2 * curvature
+  /// The fastest through an arc or bend, m/s; null: only the above limits it.
+  std::function<double(const RoundedPath::Bend&)> through = {};
 };
 
 /// The highest speed at each arc length, from rest at the start of the path to rest at its end,

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-void PeakMeter::add(const BaseState& state, const OmniWheels* wheels) {
+void PeakMeter::add(const BaseState& state, const WheelBase* wheels) {
   const Eigen::Vector2d a = (state.velocity_m_per_s - before_.velocity_m_per_s) / step_s_;
   const double turn_a = (state.turn_rad_per_s - before_.turn_rad_per_s) / step_s_;
   const auto raise = [](double& peak, double value) { peak = std::max(peak, std::abs(value)); };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/motion/differential_motion.hpp"
 #include "sim/motion/path.hpp"
 
 namespace mh {
@@ -17,7 +18,7 @@ constexpr double kSharpTurn_rad = 2.1;  // beyond 120 degrees a corner is a stop
 constexpr double kLookAhead_m = 0.7;    // on the way, the robot faces this far ahead
 constexpr double kFaceFirst_rad = 0.8;  // if more than this off the path: turn before driving
 constexpr double kHeadingGain_per_s = 3.0;
-constexpr double kNoWay_m = 0.01, kNoTurn_rad = 0.005;  // smaller moves are skipped
+constexpr double kNoTurn_rad = 0.005;  // a smaller turn is skipped
 // Of the limits: the rest is left to the controller that keeps the base on its reference, and to
 // the physics' single precision.
 constexpr double kVelocityShare = 0.999, kAccelerationShare = 0.99, kJerkShare = 0.95;
@@ -94,9 +95,10 @@ double turn_rate(double error_rad, const BaseLimits& limits) {
 }
 
 /// The robot stops at the end, to turn, to pause, and where the path reverses.
-bool stops_at(const Tour& tour, std::size_t i) {
+bool stops_at(const Tour& tour, std::size_t i, bool turns_at_stops) {
   const Waypoint& here = tour.waypoints[i];
   if (i + 1 == tour.waypoints.size() || here.turn_rad != 0 || here.pause_s > 0) return true;
+  if (turns_at_stops && here.heading_rad) return true;
   const Vector2d before = i == 0 ? tour.start_m : tour.waypoints[i - 1].position_m;
   const Vector2d in = here.position_m - before;
   const Vector2d out = tour.waypoints[i + 1].position_m - here.position_m;
@@ -110,33 +112,21 @@ class Planner {
  public:
   Planner(const Tour& tour, const BaseLimits& limits, double step_s)
       : tour_(tour),
-        limits_(limits),
+        limits_(planned_limits(limits)),
         step_s_(step_s),
         position_m_(tour.start_m),
-        heading_rad_(tour.start_heading_rad) {
-    limits_.max_velocity_m_per_s *= kVelocityShare;
-    limits_.max_turn_rad_per_s *= kVelocityShare;
-    limits_.max_acceleration_m_per_s2 *= kAccelerationShare;
-    limits_.max_turn_acceleration_rad_per_s2 *= kAccelerationShare;
-  }
+        heading_rad_(tour.start_heading_rad) {}
 
   std::vector<Stretch> plan() {
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < tour_.waypoints.size(); ++i) {
-      if (!stops_at(tour_, i)) continue;
-      run(first, i);
-      first = i + 1;
-    }
+    for (const TourRun& part : runs_of(tour_, false)) run(part);
     return std::move(stretches_);
   }
 
  private:
-  /// Drives through waypoints [first, last]; stops at the last and turns or pauses there.
-  void run(std::size_t first, std::size_t last) {
+  /// Drives through the waypoints; stops at the last and turns or pauses there.
+  void run(const TourRun& part) {
+    const auto& [first, last, corners] = part;
     const Waypoint& stop = tour_.waypoints[last];
-    std::vector<Vector2d> corners{first == 0 ? tour_.start_m
-                                             : tour_.waypoints[first - 1].position_m};
-    for (std::size_t i = first; i <= last; ++i) corners.push_back(tour_.waypoints[i].position_m);
     if ((corners[1] - corners[0]).norm() > kNoWay_m) follow(RoundedPath(corners), first);
     if (stop.heading_rad) turn(wrapped(*stop.heading_rad - heading_rad_), last);
     if (stop.turn_rad != 0) turn(stop.turn_rad, last);
@@ -208,20 +198,12 @@ class Planner {
     return wrapped(heading_of(goal - position_m_) - heading_rad_);
   }
 
-  /// Turns in place: accelerates up to the turn rate and back down.
   void turn(double angle_rad, std::size_t waypoint) {
-    const double size = std::abs(angle_rad), start_rad = heading_rad_;
-    if (size <= kNoTurn_rad) return;
-    const double a = limits_.max_turn_acceleration_rad_per_s2;
-    const double top = std::min(limits_.max_turn_rad_per_s, std::sqrt(size * a));
-    const double ramp_s = top / a, duration_s = size / top + ramp_s;
+    const double start_rad = heading_rad_;
+    if (std::abs(angle_rad) <= kNoTurn_rad) return;
     begin(waypoint);
-    for (double t = step_s_; t < duration_s + step_s_; t += step_s_) {
-      const double left_s = std::max(0.0, duration_s - t);
-      const double turned = t < ramp_s        ? 0.5 * a * t * t
-                            : left_s < ramp_s ? size - 0.5 * a * left_s * left_s
-                                              : top * (t - 0.5 * ramp_s);
-      heading_rad_ = start_rad + std::copysign(turned, angle_rad);
+    for (const double turned_rad : turn_profile(angle_rad, limits_, step_s_)) {
+      heading_rad_ = start_rad + turned_rad;
       note(waypoint);
     }
   }
@@ -255,8 +237,48 @@ Stretch smoothed(const Stretch& stretch, const BaseLimits& limits, double step_s
   return result;
 }
 
-std::vector<Stretch> reference_motion(const Tour& tour, const BaseLimits& limits, double step_s) {
+std::vector<TourRun> runs_of(const Tour& tour, bool turns_at_stops) {
+  std::vector<TourRun> runs;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < tour.waypoints.size(); ++i) {
+    if (!stops_at(tour, i, turns_at_stops)) continue;
+    TourRun run{.first = first,
+                .last = i,
+                .corners_m = {first == 0 ? tour.start_m : tour.waypoints[first - 1].position_m}};
+    for (; first <= i; ++first) run.corners_m.push_back(tour.waypoints[first].position_m);
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+BaseLimits planned_limits(BaseLimits limits) {
+  limits.max_velocity_m_per_s *= kVelocityShare;
+  limits.max_turn_rad_per_s *= kVelocityShare;
+  limits.max_acceleration_m_per_s2 *= kAccelerationShare;
+  limits.max_turn_acceleration_rad_per_s2 *= kAccelerationShare;
+  return limits;
+}
+
+std::vector<double> turn_profile(double angle_rad, const BaseLimits& limits, double step_s) {
+  const double size = std::abs(angle_rad);
+  const double a = limits.max_turn_acceleration_rad_per_s2;
+  const double top = std::min(limits.max_turn_rad_per_s, std::sqrt(size * a));
+  const double ramp_s = top / a, duration_s = size / top + ramp_s;
+  std::vector<double> angles;
+  for (double t = step_s; t < duration_s + step_s; t += step_s) {
+    const double left_s = std::max(0.0, duration_s - t);
+    const double turned = t < ramp_s        ? 0.5 * a * t * t
+                          : left_s < ramp_s ? size - 0.5 * a * left_s * left_s
+                                            : top * (t - 0.5 * ramp_s);
+    angles.push_back(std::copysign(turned, angle_rad));
+  }
+  return angles;
+}
+
+std::vector<Stretch> reference_motion(const Tour& tour, const BaseLimits& limits, double step_s,
+                                      const WheelBase* differential) {
   assert(!tour.waypoints.empty());
+  if (differential != nullptr) return differential_motion(tour, limits, step_s, *differential);
   std::vector<Stretch> stretches = Planner(tour, limits, step_s).plan();
   for (Stretch& stretch : stretches) stretch = smoothed(stretch, limits, step_s);
   return stretches;

@@ -23,7 +23,28 @@ Stretch smoothed(const Stretch& stretch, const BaseLimits& limits, double step_s
 
 /// Returns the motion that a tour prescribes: velocity, acceleration and jerk, as differences of
 /// neighboring poses, stay within the limits. The base stops at the end of each stretch.
+/// @param differential  wheels of a differential base, else null. The middle of such a base drives
+/// through the waypoints and always faces its way: it turns to a heading where it stops, and never
+/// looks aside.
 /// @pre the tour has waypoints
-std::vector<Stretch> reference_motion(const Tour& tour, const BaseLimits& limits, double step_s);
+std::vector<Stretch> reference_motion(const Tour& tour, const BaseLimits& limits, double step_s,
+                                      const WheelBase* differential = nullptr);
+
+// What both kinds of bases share.
+
+/// Waypoints `first` to `last` that are passed without a stop, which is at the last.
+struct TourRun {
+  std::size_t first, last;
+  std::vector<Eigen::Vector2d> corners_m;  ///< from the place before
+};
+/// @param turns_at_stops  a waypoint with a heading is a stop
+std::vector<TourRun> runs_of(const Tour& tour, bool turns_at_stops);
+/// Less than this is not driven.
+inline constexpr double kNoWay_m = 0.01;
+/// The limits without what is left to the controller that keeps the base on its reference.
+BaseLimits planned_limits(BaseLimits limits);
+/// Angles of a turn in place, one step apart from the first step to rest: accelerates up to the
+/// turn rate and back down.
+std::vector<double> turn_profile(double angle_rad, const BaseLimits& limits, double step_s);
 
 }  // namespace mh

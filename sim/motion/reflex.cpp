@@ -26,7 +26,7 @@ Reflex::Reflex(const Scene& scene, const Robot& robot)
     : outline_(floor_outline(scene, static_cast<float>(scene.floor.rough_m),
                              static_cast<float>(robot.height_m))),
       radius_m_(robot.footprint_radius_m),
-      zone_(robot.equipment->reflex),
+      zone_(*robot.equipment->reflex),
       brake_m_per_s2_(kBraking * robot.limits.max_acceleration_m_per_s2),
       // The distance at which the fastest robot has to slow down.
       reach_m_(radius_m_ + zone_.aside_m + zone_.ahead_m + soft_m() +

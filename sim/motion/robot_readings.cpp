@@ -43,8 +43,8 @@ void write_readings(const std::filesystem::path& folder, const Robot& robot,
   write_atomically(folder / "lasers.csv", lasers);
   write_atomically(folder / "sonars.csv", sonars);
   write_atomically(folder / "bumpers.csv", bumpers);
-  write_atomically(folder / "imu.csv", imu);
-  write_tum(folder / "odometry.tum", readings.odometry);
+  if (e.base_from_imu) write_atomically(folder / "imu.csv", imu);
+  if (e.wheels) write_tum(folder / "odometry.tum", readings.odometry);
 }
 
 }  // namespace mh

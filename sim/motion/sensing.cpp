@@ -71,7 +71,7 @@ std::vector<bool> pressed_bumpers(const Contact& contact, const Equipment& equip
                                   const SE3& world_from_base) {
   std::vector<bool> pressed;
   for (const std::string& link : equipment.bumpers) {
-    const Vector3d at = equipment.tree.root_from(link).translation();
+    const Vector3d at = equipment.base_from(link).translation();
     const Vector3d out = world_from_base.rotation() * Vector3d(at.x(), at.y(), 0.0).normalized();
     pressed.push_back(contact.touching && contact.direction.norm() > 0 &&
                       std::acos(std::clamp(contact.direction.dot(out.head<2>()), -1.0, 1.0)) <
@@ -109,7 +109,8 @@ RobotReadings read_sensors(const Scene& scene, const Robot& robot, const Traject
   RobotReadings readings;
   if (base.empty()) return readings;
   const Equipment& equipment = *robot.equipment;
-  readings.odometry = wheel_odometry(base, equipment.wheels, equipment.odometry, seed);
+  if (equipment.wheels)
+    readings.odometry = wheel_odometry(base, *equipment.wheels, equipment.odometry, seed);
   const Vector2d start_m = base.front().world_from_camera.translation().head<2>();
   PlanarWorld world(scene, robot, start_m, 0.0);
   for (const MovingObstacle& other : others) world.add(other);
@@ -122,8 +123,9 @@ RobotReadings read_sensors(const Scene& scene, const Robot& robot, const Traject
     RobotReading reading = read_ranges(world, equipment, world_from_base);
     reading.stamp_ns = base[i].stamp_ns;
     reading.bumpers = pressed_bumpers(world.contact(), equipment, world_from_base);
-    feel(reading, base[i == 0 ? 0 : i - 1], base[i], base[std::min(i + 1, base.size() - 1)],
-         equipment.base_from_imu);
+    if (equipment.base_from_imu)
+      feel(reading, base[i == 0 ? 0 : i - 1], base[i], base[std::min(i + 1, base.size() - 1)],
+           *equipment.base_from_imu);
     readings.moments.push_back(std::move(reading));
   }
   return readings;

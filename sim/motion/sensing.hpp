@@ -17,13 +17,13 @@ struct RobotReading {
   std::vector<float> sonars_m;               ///< by sonar; 0 = nothing in range
   std::vector<bool> bumpers;                 ///< by bumper: pressed
   /// Specific force (accelerometer) and angular rate (gyroscope), IMU frame: the exact mean over
-  /// the time between two frames.
+  /// the time between two frames. Without an IMU: 0.
   Eigen::Vector3d specific_force_m_per_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d turn_rad_per_s = Eigen::Vector3d::Zero();
 };
 
 struct RobotReadings {
-  Trajectory odometry;  ///< odom_from_base (see wheel_odometry)
+  Trajectory odometry;  ///< odom_from_base (see wheel_odometry); empty without wheels
   std::vector<RobotReading> moments;
 };
 

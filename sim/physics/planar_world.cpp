@@ -25,11 +25,25 @@ Eigen::Vector2d limited(const Eigen::Vector2d& v, double limit) {
   return norm > limit ? Eigen::Vector2d(v * (limit / norm)) : v;
 }
 
+/// The change of velocity of a base whose wheels roll ahead and back alone: the motors' limits hold
+/// along its way, and across it the wheels' grip does what the command asks.
+Eigen::Vector2d gripped_change(const BaseCommand& command, const BaseState& now,
+                               double max_velocity_m_per_s, double max_change_m_per_s,
+                               double step_s) {
+  const double heading_rad = now.heading_rad + 0.5 * command.turn_rad_per_s * step_s;
+  const Eigen::Vector2d ahead(std::cos(heading_rad), std::sin(heading_rad));
+  const Eigen::Vector2d change = command.velocity_m_per_s - now.velocity_m_per_s;
+  const double speed = ahead.dot(now.velocity_m_per_s);
+  const double asked = limited(ahead.dot(command.velocity_m_per_s), max_velocity_m_per_s) - speed;
+  return change + (limited(asked, max_change_m_per_s) - ahead.dot(change)) * ahead;
+}
+
 }  // namespace
 
 // Members are destroyed in reverse order: the world before what it refers to.
 struct PlanarWorld::Impl {
   BaseLimits limits;
+  bool grips;  // its wheels hold it sideways: see step()
   double radius_m, height_m;
   double step_s;
   std::unique_ptr<Obstacles> seen, felt;
@@ -53,6 +67,7 @@ struct PlanarWorld::Impl {
   Impl(const Scene& scene, const Robot& model, const Eigen::Vector2d& start_m, double heading_rad,
        double step)
       : limits(model.limits),
+        grips(model.differential() != nullptr),
         radius_m(model.footprint_radius_m),
         height_m(model.height_m),
         step_s(step),
@@ -225,9 +240,13 @@ BaseState PlanarWorld::state() const {
 Contact PlanarWorld::step(const BaseCommand& command) {
   const BaseLimits& limits = impl_->limits;
   const BaseState now = state();
+  const double most_m_per_s = limits.max_acceleration_m_per_s2 * impl_->step_s;
   const Eigen::Vector2d change_m_per_s =
-      limited(limited(command.velocity_m_per_s, limits.max_velocity_m_per_s) - now.velocity_m_per_s,
-              limits.max_acceleration_m_per_s2 * impl_->step_s);
+      impl_->grips
+          ? gripped_change(command, now, limits.max_velocity_m_per_s, most_m_per_s, impl_->step_s)
+          : limited(limited(command.velocity_m_per_s, limits.max_velocity_m_per_s) -
+                        now.velocity_m_per_s,
+                    most_m_per_s);
   const double turn_change_rad_per_s =
       limited(limited(command.turn_rad_per_s, limits.max_turn_rad_per_s) - now.turn_rad_per_s,
               limits.max_turn_acceleration_rad_per_s2 * impl_->step_s);

@@ -56,8 +56,9 @@ BaseLimits commandable(BaseLimits limits);
 /// A robot's base in a scene, moved by Bullet: a rigid upright cylinder that slides on the floor
 /// and turns about its axis; walls and furniture stop it by their outline from above. It is driven
 /// by impulses limited by BaseLimits, so that its velocity and (except in contacts) acceleration
-/// never exceed them. What is entirely within the floor's roughness (3 cm) or above the robot's
-/// head is not an obstacle. Deterministic: the same steps give the same bits.
+/// never exceed them; those of a differential base ahead and back, since its wheels' grip, not its
+/// motors, holds it on its bend. What is entirely within the floor's roughness (3 cm) or above the
+/// robot's head is not an obstacle. Deterministic: the same steps give the same bits.
 class PlanarWorld {
  public:
   /// @pre the scene's floor is z = 0 (LevelScene)

@@ -33,10 +33,8 @@ class RobotMessages {
   MessageLog collect() {
     add_tf();
     add_truth();
-    if (drive_.readings) {
-      add_odometry();
-      add_sensors();
-    }
+    if (has_odometry()) add_odometry();
+    if (drive_.readings) add_sensors();
     if (drive_.grid) add_grid();
     log_.sort();
     return std::move(log_);
@@ -49,8 +47,9 @@ class RobotMessages {
     return {static_cast<std::uint32_t>(i), {stamp_ns(i)}, frame};
   }
   const SE3& world_from_base(std::size_t i) const { return path_.base[i].world_from_camera; }
+  bool has_odometry() const { return drive_.readings && !drive_.readings->odometry.empty(); }
   SE3 odom_from_base(std::size_t i) const {
-    return drive_.readings ? drive_.readings->odometry[i].world_from_camera : world_from_base(i);
+    return has_odometry() ? drive_.readings->odometry[i].world_from_camera : world_from_base(i);
   }
   SE3 base_from_link(std::size_t i) const {
     return world_from_base(i).inverse() * drive_.camera[i].world_from_camera *
@@ -70,14 +69,14 @@ class RobotMessages {
     fix(ros::kFootprintFrame, ros::kBaseFrame, SE3());
     fix(ros::kCameraFrame, ros::kOpticalFrame, ros::link_from_optical());
     if (!head_moves) fix(ros::kBaseFrame, ros::kCameraFrame, base_from_link(0));
-    if (!drive_.readings) fix(ros::kMapFrame, ros::kOdomFrame, SE3());
+    if (!has_odometry()) fix(ros::kMapFrame, ros::kOdomFrame, SE3());
     if (drive_.robot.equipment) {
       const Equipment& e = *drive_.robot.equipment;
       for (const LaserScanner& laser : e.lasers)
         fix(ros::kBaseFrame, "laser_" + laser.name, laser.base_from_laser);
       for (const Sonar& sonar : e.sonars)
         fix(ros::kBaseFrame, "sonar_" + sonar.name, sonar.base_from_sonar);
-      fix(ros::kBaseFrame, "imu_link", e.base_from_imu);
+      if (e.base_from_imu) fix(ros::kBaseFrame, "imu_link", *e.base_from_imu);
     }
     log_.add(fixed, first_ns, once);
     for (std::size_t i = 0; i < count(); ++i) {
@@ -86,7 +85,7 @@ class RobotMessages {
         message.transforms.push_back(ros::transform_message(stamp_ns(i), parent, child, pose));
       };
       const SE3 odom_from = odom_from_base(i);
-      if (drive_.readings)
+      if (has_odometry())
         move(ros::kMapFrame, ros::kOdomFrame, world_from_base(i) * odom_from.inverse());
       move(ros::kOdomFrame, ros::kFootprintFrame, odom_from);
       if (head_moves) move(ros::kBaseFrame, ros::kCameraFrame, base_from_link(i));
@@ -139,6 +138,7 @@ class RobotMessages {
       for (std::size_t i = 0; i < moments.size(); ++i)
         log_.add(topic, stamp_ns(i), ros::Bool{moments[i].bumpers[k]});
     }
+    if (!e.base_from_imu) return;
     const std::size_t imu = log_.add_topic<ros::Imu>("/imu/data");
     for (std::size_t i = 0; i < moments.size(); ++i) {
       ros::Imu message;

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "sim/motion/start.hpp"
 #include "sim/world/sequence.hpp"
 #include "sim/world/travel.hpp"
+#include "slam/core/error.hpp"
 
 namespace mh {
 namespace {
@@ -21,16 +24,23 @@ Shutter::SceneAt moment_of_scene(const SimulatedScene& scene) {
   return [renderer = scene.renderer](Stamp) { return renderer; };
 }
 
+const Robot& with_odometry(const Robot& robot) {
+  if (robot.wheels() == nullptr)
+    throw InputError(fmt::format(
+        "robot '{}' has no wheels: it has no odometry (its file: equipment.wheels)", robot.name));
+  return robot;
+}
+
 }  // namespace
 
 Simulation::Simulation(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
                        const SimulationConfig& config)
     : scene_(std::move(scene)),
-      robot_(robot),
+      robot_(with_odometry(robot)),
       level_(level),
       config_(config),
       base_(*scene_.scene, robot, config.start_m, config.start_heading_rad, config.reflex),
-      odometer_(robot.equipment->wheels, robot.equipment->odometry, config.seed) {
+      odometer_(*robot.equipment->wheels, robot.equipment->odometry, config.seed) {
   robot_.camera = with_lens(robot_.camera, level_);
   if (scene_.pedestrian) base_.add(as_obstacle(*scene_.scene, scene_.pedestrian->pedestrian()));
   check_start(base_.world(), *scene_.scene, config_.start_m, "start");
@@ -88,8 +98,9 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
   seen.stamp_ns = seen.reading.stamp_ns = recent_.back().stamp_ns;
   seen.reading.bumpers = std::move(pressed);
   const std::size_t n = recent_.size(), here = n < 2 ? 0 : n - 2;
-  feel(seen.reading, recent_[here == 0 ? 0 : here - 1], recent_[here], recent_[n - 1],
-       robot_.equipment->base_from_imu);
+  if (robot_.equipment->base_from_imu)
+    feel(seen.reading, recent_[here == 0 ? 0 : here - 1], recent_[here], recent_[n - 1],
+         *robot_.equipment->base_from_imu);
   seen.odom_from_base = odom_from_base_;
   return seen;
 }

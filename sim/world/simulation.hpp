@@ -53,12 +53,12 @@ struct RobotObservation {
 class Simulation {
  public:
   /// @param level  sensor settings
-  /// @throws InputError if the robot has no equipment or no jerk limits, or cannot stand at the
-  /// start.
+  /// @throws InputError if the robot has no wheels, or cannot stand at the start.
   Simulation(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
              const SimulationConfig& config);
 
-  /// Drives by a velocity in the base's frame and returns what is sensed at the end.
+  /// Drives by a velocity in the base's frame and returns what is sensed at the end. A differential
+  /// base does not obey the second component.
   /// @param dt_s  rounded to whole ticks of the camera, at least one
   RobotObservation step(const Twist2d& command, double dt_s);
 

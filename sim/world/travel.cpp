@@ -142,9 +142,18 @@ std::string note_on(const std::string& motion, const Robot& robot) {
             slower("speed_m_per_s", *tour.max_velocity_m_per_s, robot.limits.max_velocity_m_per_s);
         !note.empty())
       return note;
-  if (!tour.max_turn_rad_per_s) return "";
-  return slower("turn_deg_per_s", kDegreesPerRad * *tour.max_turn_rad_per_s,
-                kDegreesPerRad * robot.limits.max_turn_rad_per_s);
+  if (tour.max_turn_rad_per_s)
+    if (const std::string note = slower("turn_deg_per_s", kDegreesPerRad * *tour.max_turn_rad_per_s,
+                                        kDegreesPerRad * robot.limits.max_turn_rad_per_s);
+        !note.empty())
+      return note;
+  if (robot.differential() != nullptr)
+    for (const Waypoint& waypoint : tour.waypoints)
+      if (waypoint.look_at_m)
+        return fmt::format(
+            "{}:{}: robot '{}' has a differential drive: it faces its way, not the place of 'face'",
+            parsed.file.string(), waypoint.line, robot.name);
+  return "";
 }
 
 MovingObstacle as_obstacle(const Scene& scene, const Pedestrian& pedestrian, double from_s) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -175,12 +176,44 @@ TEST(Navigator, AGoalInAWallOrBeyondTheMapIsRefused) {
     }
 }
 
-TEST(Navigator, ARobotWithoutLasersOrBumpersIsRefused) {
+TEST(Navigator, ATwoWheeledRobotWithoutBumpersArrivesToo) {
+  const Flat flat;
+  const Robot robot = test::turtlebot();
+  const KnownMap map = flat.map();
+  Navigator navigator(map, robot, {box_at(5.0, 0.6)});
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  driven.wheels = [](Twist2d& command) { EXPECT_EQ(command.y(), 0); };
+  driven.run(navigator, 180);
+  EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
+  EXPECT_LT((driven.at().place_m - Vector2d(5.0, 0.6)).norm(), 0.9 + 0.2);
+  EXPECT_GT(driven.nearest_m, robot.footprint_radius_m);
+}
+
+TEST(Navigator, ATwoWheeledRobotBacksStraightOff) {
+  const Flat flat;
+  Robot robot = test::turtlebot();
+  auto equipment = std::make_shared<Equipment>(*robot.equipment);
+  equipment->bumpers = {"camera_depth_optical_frame"};  // ahead, to the right
+  robot.equipment = equipment;
+  const KnownMap map = flat.map();
+  Navigator navigator(map, robot, {box_at(5.0, 0.6)});
+  Driven driven(flat, robot, {{1, 1}, 2.0});
+  double back = 0;
+  driven.wheels = [&](Twist2d& command) {
+    EXPECT_EQ(command.y(), 0);
+    back = std::min(back, command.x());
+  };
+  driven.bumper = [](double t) { return t > 0.5 && t < 0.7; };
+  driven.run(navigator, 5);
+  EXPECT_LT(back, -0.05);
+}
+
+TEST(Navigator, ARobotWithoutLasersOrWheelsIsRefused) {
   const Flat flat;
   const KnownMap map = flat.map();
   Robot robot = test::pepper();
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
-  equipment->bumpers.clear();
+  equipment->wheels.reset();
   robot.equipment = equipment;
   EXPECT_THROW(Navigator(map, robot, {box_at(5, 1)}), InputError);
   equipment = std::make_shared<Equipment>(*test::pepper().equipment);

@@ -92,6 +92,92 @@ TEST(LoadRobot, RefusesBadFilesWithFileLinePlaceAndValue) {
   EXPECT_THROW(load_robot("/no/such/robot.yaml"), InputError);
 }
 
+TEST(LoadRobot, EveryPartOfTheEquipmentMayBeAbsent) {
+  const TemporaryFolder folder(testing::TempDir());
+  write_atomically(folder.path() / "r.urdf",
+                   "<robot name=\"r\"><link name=\"base_footprint\"/></robot>");
+  const std::string pepper = read_file(kPepper);
+  write_atomically(folder.path() / "r.yaml",
+                   pepper.substr(0, pepper.find("equipment:")) + "equipment: {urdf: r.urdf}\n");
+  const Robot robot = load_robot(folder.path() / "r.yaml");
+  ASSERT_NE(robot.equipment, nullptr);
+  EXPECT_EQ(robot.wheels(), nullptr);
+  EXPECT_EQ(robot.differential(), nullptr);
+  EXPECT_FALSE(robot.equipment->head);
+  EXPECT_FALSE(robot.equipment->base_from_imu);
+  EXPECT_FALSE(robot.equipment->reflex);
+  EXPECT_TRUE(robot.equipment->lasers.empty());
+  EXPECT_EQ(robot.equipment->odometry.scale, 0);
+}
+
+TEST(LoadRobot, TurtleBotIsADifferentialDriveAsPublished) {
+  std::vector<std::string> warnings;
+  const Robot robot = load_robot(MH_SOURCE_DIR "/robots/turtlebot3/turtlebot3.yaml", &warnings);
+  EXPECT_TRUE(warnings.empty()) << warnings.front();
+  const WheelBase* wheels = robot.differential();
+  ASSERT_NE(wheels, nullptr);
+  EXPECT_NEAR(wheels->wheels[0].place_m.y() - wheels->wheels[1].place_m.y(), 0.288, 1e-12);
+  EXPECT_EQ(wheels->radius_m, 0.033);
+  // What the data sheet calls its greatest speeds is what its wheels reach: 0.26 m/s, and 1.82
+  // rad/s times half the track.
+  EXPECT_NEAR(wheels->max_rim_m_per_s, robot.limits.max_velocity_m_per_s, 1e-3);
+  EXPECT_NEAR(wheels->max_rim_m_per_s, robot.limits.max_turn_rad_per_s * 0.144, 3e-3);
+  const SE3 camera = robot.equipment->base_from(robot.equipment->depth_camera_link);
+  EXPECT_LT((camera.translation() - robot.base_from_camera.translation()).norm(), 1e-9);
+  EXPECT_LT(angle_between_rad(camera, robot.base_from_camera), 1e-6);
+}
+
+/// What load_robot() says of a base on wheels of 3 cm radius at (0, 0.1) and (0, -0.1); warnings
+/// count.
+std::string verdict_on_wheels(const std::string& joint_edit, const std::string& by,
+                              const std::string& wheels = "[l, r]", const std::string& more = "") {
+  const TemporaryFolder folder(testing::TempDir());
+  std::string urdf =
+      "<robot name=\"r\"><link name=\"body\"/><link name=\"ground\"/><link name=\"L\"/><link "
+      "name=\"R\"/>\n"
+      "<joint name=\"g\" type=\"fixed\"><parent link=\"body\"/><child link=\"ground\"/><origin "
+      "xyz=\"0 0 -0.1\"/></joint>\n"
+      "<joint name=\"l\" type=\"continuous\"><parent link=\"body\"/><child link=\"L\"/><origin "
+      "xyz=\"0 0.1 -0.07\"/><axis xyz=\"0 1 0\"/></joint>\n"
+      "<joint name=\"r\" type=\"continuous\"><parent link=\"body\"/><child link=\"R\"/><origin "
+      "xyz=\"0 -0.1 -0.07\"/><axis xyz=\"0 -1 0\"/></joint></robot>";
+  for (std::size_t at; !joint_edit.empty() && (at = urdf.find(joint_edit)) != std::string::npos;)
+    urdf.replace(at, joint_edit.size(), by);
+  write_atomically(folder.path() / "r.urdf", urdf);
+  const std::string pepper = read_file(kPepper);
+  write_atomically(folder.path() / "r.yaml",
+                   pepper.substr(0, pepper.find("equipment:")) + "equipment:\n  urdf: r.urdf\n  " +
+                       more + "wheels: {radius_m: 0.03, joints: " + wheels + "}\n");
+  std::vector<std::string> warnings;
+  try {
+    load_robot(folder.path() / "r.yaml", &warnings);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return warnings.empty() ? "no error" : "warning: " + warnings.front();
+}
+
+TEST(LoadRobot, WheelsThatDoNotRollOnTheFloorAreNamed) {
+  const auto expect_in = [](const std::string& part, const std::string& text) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  const std::string ground = "base_link: ground\n  ";
+  EXPECT_EQ(verdict_on_wheels("", "", "[l, r]", ground), "no error");
+  expect_in("warning: ", verdict_on_wheels("", ""));
+  expect_in("would stand 0.100 m below the floor", verdict_on_wheels("", ""));
+  expect_in("'l' stands here twice", verdict_on_wheels("", "", "[l, l]", ground));
+  expect_in("has no joint 'x'", verdict_on_wheels("", "", "[l, x]", ground));
+  expect_in("has no link 'x'", verdict_on_wheels("", "", "[l, r]", "base_link: x\n  "));
+  expect_in("joint 'g' is no wheel's: it does not turn",
+            verdict_on_wheels("", "", "[l, g]", ground));
+  expect_in("joint 'l' is no wheel's: it turns about an upright axis",
+            verdict_on_wheels("0 1 0", "0 0 1", "[l, r]", ground));
+  expect_in("velocity of joint 'l' to 0",
+            verdict_on_wheels("<axis xyz=\"0 1 0\"/>",
+                              "<axis  xyz=\"0 1 0\"/><limit effort=\"1\" velocity=\"0\"/>",
+                              "[l, r]", ground));
+}
+
 /// The node that "equipment.lasers.NAME" stands for in Pepper's file.
 YAML::Node node_at(YAML::Node node, const std::string& mapping) {
   std::istringstream parts(mapping);

@@ -99,7 +99,6 @@ TEST(LoadUrdf, RefusesWhatIsNoRobot) {
   expect_in(
       ":" + line_of("<link name=\"Tibia\"") + ": link 'Tibia': its mass -11.6 kg is not positive",
       urdf_refusal("<mass value=\"11.6015\"/>", "<mass value=\"-11.6\"/>"));
-  expect_in("link 'Tibia': no body has", urdf_refusal("ixx=\"0.129229\"", "ixx=\"9\""));
   expect_in(":" + line_of("<joint name=\"HeadPitch\"") + ": joint 'HeadPitch': its lower limit",
             urdf_refusal("lower=\"-0.706858\"", "lower=\"0.9\""));
   // What urdfdom finds has a place, too.
@@ -123,6 +122,55 @@ TEST(LoadUrdf, RefusesWhatIsNoRobot) {
   expect_in("urdf_test.urdf: ", refusal_of("<house/>"));
   expect_in("urdf_test.urdf: ", refusal_of("<robot name=\"r\"/>"));
   EXPECT_THROW(load_urdf("/no/such.urdf"), InputError);
+}
+
+TEST(LoadUrdf, AnInertiaThatNoBodyHasIsAWarningSinceNothingUsesIt) {
+  EXPECT_EQ(urdf_refusal("ixx=\"0.129229\"", "ixx=\"9\""), "no error");
+  const std::string file = testing::TempDir() + "inertia_urdf_test.urdf";
+  const auto warnings_on = [&](const std::string& moments) {
+    write_atomically(
+        file, "<robot name=\"r\">\n<link name=\"arm\"><inertial><mass value=\"2\"/><inertia " +
+                  moments + " ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link></robot>");
+    std::vector<std::string> warnings;
+    EXPECT_EQ(load_urdf(file, &warnings).mass_kg(), 2);
+    return warnings;
+  };
+  // As released for TIAGo: 0.00191 + 0.00846 < 0.01059.
+  const auto warned = warnings_on("ixx=\"0.00191\" iyy=\"0.00846\" izz=\"0.01059\"");
+  ASSERT_EQ(warned.size(), 1U);
+  expect_in(
+      "inertia_urdf_test.urdf:2: link 'arm': no body has the principal moments of inertia "
+      "0.00191, 0.00846, 0.01059 kg m2",
+      warned[0]);
+  EXPECT_EQ(warnings_on("ixx=\"-1\" iyy=\"1\" izz=\"1\"").size(), 1U);
+  EXPECT_TRUE(warnings_on("ixx=\"1\" iyy=\"1\" izz=\"2\"").empty());
+}
+
+TEST(LoadUrdf, TakesXacrosArgumentsAndPropertiesAndRefusesTheRest) {
+  const std::string file = testing::TempDir() + "xacro_urdf_test.urdf";
+  const auto robot = [](const std::string& top, const std::string& more) {
+    return "<robot name=\"r\" xmlns:xacro=\"http://ros.org/wiki/xacro\">\n" + top +
+           "<link name=\"${ns}base\"/><link name=\"${ns}b\"/>\n"
+           "<joint name=\"j\" type=\"fixed\"><parent link=\"${ns}base\"/><child "
+           "link=\"${ns}b\"/><!-- ${unknown} --></joint>\n" +
+           more + "</robot>";
+  };
+  // As in the TurtleBot3's files.
+  const std::string names =
+      "<xacro:arg name=\"namespace\" default=\"a_\"/><xacro:property name=\"ns\" value=\"$(arg "
+      "namespace)\"/>\n";
+  write_atomically(file, robot(names, ""));
+  const KinematicTree tree = load_urdf(file);
+  EXPECT_EQ(tree.root, "a_base");
+  EXPECT_EQ(tree.joint("j").child, "a_b");
+  expect_in("urdf_test.urdf:2: '${ns}base' is xacro: expand the file first",
+            refusal_of(robot("", "")));
+  expect_in("urdf_test.urdf:5: '<xacro:wheel>' is xacro",
+            refusal_of(robot(names, "<xacro:wheel side=\"left\"/>")));
+  expect_in("'${2 * 3}' is xacro",
+            refusal_of(robot(names,
+                             "<link name=\"c\"><visual><geometry><sphere radius=\"${2 * "
+                             "3}\"/></geometry></visual></link>")));
 }
 
 TEST(LoadUrdf, RefusesJointsInACircle) {
@@ -191,7 +239,7 @@ TEST(Robot, PepperFileAndUrdfAgree) {
   ASSERT_NE(robot.equipment, nullptr);
   const Equipment& e = *robot.equipment;
   EXPECT_NEAR(e.tree.mass_kg(), robot.mass_kg, 1e-6);
-  const SE3 camera = e.tree.root_from(e.depth_camera_link);
+  const SE3 camera = e.base_from(e.depth_camera_link);
   EXPECT_LT((camera.translation() - robot.base_from_camera.translation()).norm(), 1e-4);
   EXPECT_LT(angle_between_rad(camera, robot.base_from_camera), 1e-9);
   ASSERT_EQ(e.cameras.size(), 2U);
@@ -199,7 +247,7 @@ TEST(Robot, PepperFileAndUrdfAgree) {
   EXPECT_EQ(e.lasers[0].rays, 15);
   EXPECT_EQ(e.sonars.size(), 2U);
   EXPECT_EQ(e.bumpers.size(), 3U);
-  EXPECT_NEAR(e.wheels.max_rim_m_per_s, 0.4398, 1e-4);
+  EXPECT_NEAR(e.wheels->max_rim_m_per_s, 0.4398, 1e-4);
   EXPECT_DOUBLE_EQ(robot.limits.max_jerk_m_per_s3.value(), 1.0);
 }
 

@@ -18,21 +18,101 @@ const Robot& pepper() {
   static const Robot robot = load_robot(MH_SOURCE_DIR "/robots/pepper/pepper.yaml");
   return robot;
 }
-const OmniWheels& wheels() {
-  return pepper().equipment->wheels;
+const WheelBase& wheels() {
+  return *pepper().wheels();
 }
 
-TEST(OmniWheels, AheadTheFrontWheelsDriveAndTheRearOneRolls) {
-  const Eigen::Vector3d rims = rim_speeds_m_per_s(wheels(), {1, 0, 0});
+TEST(WheelBase, AheadTheFrontWheelsDriveAndTheRearOneRolls) {
+  const PerWheel rims = rim_speeds_m_per_s(wheels(), {1, 0, 0});
   EXPECT_NEAR(rims[0], -std::sin(1.07517), 1e-9);  // front left
   EXPECT_NEAR(rims[1], std::sin(1.07517), 1e-9);   // front right
   EXPECT_NEAR(rims[2], 0.0, 1e-9);                 // rear
   // Turning about the middle: each rim goes as fast as its wheel's place moves along its drive.
-  const Eigen::Vector3d turning = rim_speeds_m_per_s(wheels(), {0, 0, 1});
+  const PerWheel turning = rim_speeds_m_per_s(wheels(), {0, 0, 1});
   EXPECT_NEAR(turning[2], 0.170, 1e-9);
   EXPECT_NEAR(turning[0], 0.1792, 3e-4);  // its axle misses the middle by 1.7 deg
   const Twist2d twist(0.2, -0.1, 0.4);
   EXPECT_TRUE(twist_of_rims(wheels(), rim_speeds_m_per_s(wheels(), twist)).isApprox(twist, 1e-12));
+}
+
+WheelBase::Wheel wheel_at(double x, double y, double axle_rad = M_PI_2) {
+  return {.joint = "w", .place_m = {x, y}, .axle_rad = axle_rad};
+}
+
+WheelBase differential(std::vector<WheelBase::Wheel> wheels) {
+  WheelBase base{.wheels = std::move(wheels), .radius_m = 0.033};
+  EXPECT_EQ(find_kind(base), "");
+  EXPECT_EQ(base.kind, WheelBase::Kind::kDifferential);
+  return base;
+}
+
+TEST(WheelBase, WheelSpeedsAndMotionsAreARoundTripForThreeWheelsAndForTwo) {
+  const WheelBase two = differential({wheel_at(0, 0.144), wheel_at(0, -0.144, -M_PI_2)});
+  const WheelBase behind = differential({wheel_at(-0.1, 0.2), wheel_at(-0.1, -0.2)});
+  const WheelBase four = differential(
+      {wheel_at(0.2, 0.3), wheel_at(0.2, -0.3), wheel_at(-0.3, 0.3), wheel_at(-0.3, -0.3)});
+  const RandomStream draw(2);
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const Twist2d any(draw.uniform(3 * i, -1, 1), draw.uniform(3 * i + 1, -1, 1),
+                      draw.uniform(3 * i + 2, -2, 2));
+    EXPECT_LT((twist_of_rims(wheels(), rim_speeds_m_per_s(wheels(), any)) - any).norm(), 1e-12);
+    const PerWheel three = Eigen::Vector3d(any);
+    EXPECT_LT((rim_speeds_m_per_s(wheels(), twist_of_rims(wheels(), three)) - three).norm(), 1e-12);
+    for (const WheelBase* base : {&two, &behind, &four}) {
+      const Twist2d possible = twist_of(*base, any.x(), any.z());
+      EXPECT_NEAR(ahead_of(*base, possible), any.x(), 1e-15);
+      const PerWheel rims = rim_speeds_m_per_s(*base, possible);
+      EXPECT_LT((twist_of_rims(*base, rims) - possible).norm(), 1e-12);
+      // The wheels' middle never moves sideways, whatever the rims do.
+      const Twist2d read = twist_of_rims(*base, any.x() * rims);
+      EXPECT_NEAR(read.y() + read.z() * base->middle_m.x(), 0, 1e-15);
+    }
+    const PerWheel both = Eigen::Vector2d(any.x(), any.y());
+    EXPECT_LT((rim_speeds_m_per_s(two, twist_of_rims(two, both)) - both).norm(), 1e-12);
+  }
+}
+
+TEST(WheelBase, TwoWheelsDriveAtTheirMeanAndTurnByTheirDifferenceOverTheTrack) {
+  const WheelBase base = differential({wheel_at(0, 0.144), wheel_at(0, -0.144)});
+  const double left = 0.10, right = 0.16, track = 0.288;
+  const Twist2d read = twist_of_rims(base, Eigen::Vector2d(left, right));
+  EXPECT_NEAR(read.x(), (right + left) / 2, 1e-15);
+  EXPECT_EQ(read.y(), 0);
+  EXPECT_NEAR(read.z(), (right - left) / track, 1e-15);
+  // An axle behind the base's origin: turning left, the origin swings to the left.
+  const WheelBase behind = differential({wheel_at(-0.1, 0.2), wheel_at(-0.1, -0.2)});
+  EXPECT_LT((twist_of(behind, 0.3, 0.5) - Twist2d(0.3, 0.05, 0.5)).norm(), 1e-15);
+  // Of a skid-steered base each side counts as the mean of its wheels.
+  const WheelBase four = differential(
+      {wheel_at(0.2, 0.3), wheel_at(0.2, -0.3), wheel_at(-0.2, 0.3), wheel_at(-0.2, -0.3)});
+  EXPECT_LT((twist_of_rims(four, Eigen::Vector4d(0.1, 0.4, 0.3, 0.8)) -
+             Twist2d(0.4, 0, (0.6 - 0.2) / 0.6))
+                .norm(),
+            1e-15);
+}
+
+TEST(WheelBase, WheelsThatDriveNoBaseAreNamed) {
+  const auto wrong = [](std::vector<WheelBase::Wheel> wheels) {
+    WheelBase base{.wheels = std::move(wheels)};
+    return find_kind(base);
+  };
+  const auto expect_in = [](const std::string& part, const std::string& text) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect_in("has 0 joints", wrong({}));
+  expect_in("1 on the left", wrong({wheel_at(0, 0.2), wheel_at(0, -0.2), wheel_at(-0.2, 0)}));
+  expect_in("0 on the left and 0 on the right", wrong({wheel_at(0, 0)}));
+  expect_in("0 on the left and 0 on the right", wrong({wheel_at(0.2, 0.1), wheel_at(-0.2, 0.1)}));
+  expect_in("has 2 joints: an omnidirectional base has three",
+            wrong({wheel_at(0, 0.2), wheel_at(0, -0.2, 1.0)}));
+  expect_in("not to the base's y", wrong({wheel_at(0.2, 0, 0), wheel_at(-0.2, 0, 0)}));
+  // All three point at the middle: nothing turns the base about it.
+  expect_in("a direction in which no rim moves",
+            wrong({wheel_at(0, 0.2, 0), wheel_at(0, -0.2, 0), wheel_at(0.3, 0, M_PI_2)}));
+  EXPECT_EQ(wrong({wheel_at(0, 0.08, -1.5708), wheel_at(0, -0.08, 1.57)}), "");  // rounded
+  WheelBase again = wheels();
+  EXPECT_EQ(find_kind(again), "");
+  EXPECT_EQ(again.kind, WheelBase::Kind::kOmnidirectional);
 }
 
 /// A velocity in any direction, up to the given speed.
@@ -101,6 +181,25 @@ TEST(JerkLimiter, NeverExceedsALimitUnderCommandsThatJump) {
   EXPECT_GT(top_turn, 0.98 * limits.max_turn_rad_per_s);
 }
 
+TEST(JerkLimiter, WithoutALimitOfJerkItKeepsTheOthersAndReachesTheCommand) {
+  constexpr double h = 1.0 / 240;
+  BaseLimits limits = pepper().limits;
+  limits.max_jerk_m_per_s3 = limits.max_turn_jerk_rad_per_s3 = {};
+  JerkLimiter limiter(limits, h, &wheels());
+  JerkLimiter::Velocity before, now;
+  double reached_s = 0;
+  for (int i = 0; i < 480; ++i) {
+    now = limiter.step({.m_per_s = {0.3, 0}, .turn_rad_per_s = -0.5});
+    EXPECT_LE((now.m_per_s - before.m_per_s).norm(),
+              limits.max_acceleration_m_per_s2 * h * (1 + 1e-9));
+    if (now.m_per_s.x() < 0.3 - 1e-9) reached_s = i * h;
+    before = now;
+  }
+  EXPECT_NEAR(reached_s, 0.3 / limits.max_acceleration_m_per_s2, 2 * h);
+  EXPECT_NEAR(now.m_per_s.x(), 0.3, 1e-9);
+  EXPECT_NEAR(now.turn_rad_per_s, -0.5, 1e-9);
+}
+
 TEST(JerkLimiter, ReachesACommandInTheTimeOfTheProfile) {
   const BaseLimits& limits = pepper().limits;
   constexpr double h = 1.0 / 240;
@@ -143,6 +242,33 @@ TEST(WheelOdometry, WithoutErrorsItIsTheTruth) {
         1e-9);
     EXPECT_LT(angle_between_rad(odometry[i].world_from_camera, base[i].world_from_camera), 1e-7);
   }
+}
+
+TEST(WheelOdometry, OfTwoWheelsItIsTheTruthWithoutErrorsAndBendsIfOneWheelIsLarger) {
+  const WheelBase base = differential({wheel_at(-0.05, 0.144), wheel_at(-0.05, -0.144)});
+  const auto drive = [&](double turn_per_step) {
+    Trajectory path{{0, SE3()}};
+    for (int i = 1; i <= 300; ++i) {
+      const Twist2d moved = twist_of(base, 0.01, turn_per_step * std::sin(0.02 * i));
+      Vector6d step = Vector6d::Zero();
+      step << moved.x(), moved.y(), 0, 0, 0, moved.z();
+      path.push_back({i * 33'333'333LL, path.back().world_from_camera * SE3::exp(step)});
+    }
+    return path;
+  };
+  const Trajectory truth = drive(0.05);
+  const Trajectory odometry = wheel_odometry(truth, base, {}, 0);
+  ASSERT_EQ(odometry.size(), truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const SE3 error = truth[i].world_from_camera.inverse() * odometry[i].world_from_camera;
+    EXPECT_LT(error.log().norm(), 1e-9);
+  }
+  // Straight ahead, with wheels that read by scales l and r: an arc of (r - l) / track per meter.
+  const SE3 end =
+      wheel_odometry(drive(0), base, {.scale_spread = 0.01}, 5).back().world_from_camera;
+  const double turned = Eigen::Rotation2Dd(end.rotation().topLeftCorner<2, 2>()).angle();
+  EXPECT_GT(std::abs(turned), 0.005);
+  EXPECT_NEAR(end.translation().head<2>().norm(), 3, 0.1);
 }
 
 TEST(WheelOdometry, DriftsAsConfigured) {

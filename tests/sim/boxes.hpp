@@ -48,4 +48,9 @@ inline Robot pepper() {
   return load_robot(MH_SOURCE_DIR "/robots/pepper/pepper.yaml");
 }
 
+/// A differential drive.
+inline Robot turtlebot() {
+  return load_robot(MH_SOURCE_DIR "/robots/turtlebot3/turtlebot3.yaml");
+}
+
 }  // namespace mh::test

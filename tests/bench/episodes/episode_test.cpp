@@ -154,7 +154,7 @@ TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {
   EXPECT_GT(EpisodeRecord(mapped.map, start).strip("plain, start 0", score).total(), 0U);
 }
 
-TEST(Episodes, ARobotWithoutLasersOrBumpersIsRefused) {
+TEST(Episodes, ARobotWithoutLasersOrWheelsIsRefused) {
   Suite suite = small_suite();
   const TemporaryFolder work(fs::temp_directory_path());
   const fs::path pepper = suite.environments.front().robot;
@@ -162,11 +162,12 @@ TEST(Episodes, ARobotWithoutLasersOrBumpersIsRefused) {
   const auto replaced = [](std::string in, const std::string& old, const std::string& by) {
     return in.replace(in.find(old), old.size(), by);
   };
-  const std::string bumpers = "[BumperFL_frame, BumperFR_frame, BumperB_frame]";
-  const std::string numb = replaced(replaced(text, bumpers, "[]"), "urdf: pepper.urdf",
-                                    "urdf: " + (pepper.parent_path() / "pepper.urdf").string());
+  const std::string wheels =
+      "  wheels:\n    joints: [WheelFL, WheelFR, WheelB]\n    radius_m: 0.07 ";
+  const std::string afoot = replaced(replaced(text, wheels, " "), "urdf: pepper.urdf",
+                                     "urdf: " + (pepper.parent_path() / "pepper.urdf").string());
   for (const auto& [robot, lacks] :
-       {std::pair(text.substr(0, text.find("equipment:")), "lasers"), std::pair(numb, "bumpers")}) {
+       {std::pair(text.substr(0, text.find("equipment:")), "lasers"), std::pair(afoot, "wheels")}) {
     write_atomically(work.path() / "robot.yaml", robot);
     suite.environments.front().robot = work.path() / "robot.yaml";
     try {

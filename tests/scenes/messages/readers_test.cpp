@@ -72,6 +72,7 @@ void write_drive(std::unique_ptr<MessageWriter> file) {
   for (const char* name : {"front", "back"})
     equipment->sonars.push_back({.name = name, .base_from_sonar = {}});
   equipment->bumpers = {"bow"};
+  equipment->base_from_imu.emplace();
   Robot robot;
   robot.equipment = equipment;
   DrivenPath path;

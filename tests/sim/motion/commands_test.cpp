@@ -48,7 +48,7 @@ TEST(Commands, ReadsAScriptAndNamesWhatIsWrong) {
                              "- {for_s: 2, forward_m_per_s: 0.3, turn_deg_per_s: -90}\n"
                              "- {for_s: 1.5, left_m_per_s: 0.1, head_yaw_deg: 45}\n");
   const CommandScript script = load_commands(file);
-  EXPECT_FALSE(script.reflex);
+  EXPECT_EQ(script.reflex, false);
   ASSERT_EQ(script.commands.size(), 2U);
   EXPECT_DOUBLE_EQ(script.commands[0].turn_rad_per_s, -M_PI_2);
   EXPECT_DOUBLE_EQ(script.commands[1].head_yaw_rad.value(), M_PI_4);
@@ -77,8 +77,8 @@ TEST(Commands, RandomCommandsKeepEveryLimitOfTheRobot) {
   const CommandedDrive result = drive(wide, robot, script_of(commands));
   EXPECT_EQ(result.path.contact_time_s, 0.0);
   test::expect_limits_kept(result.path.peaks, robot.limits);
-  EXPECT_LE(result.path.peaks.rim_m_per_s, robot.equipment->wheels.max_rim_m_per_s);
-  EXPECT_GT(result.path.peaks.rim_m_per_s, 0.7 * robot.equipment->wheels.max_rim_m_per_s);
+  EXPECT_LE(result.path.peaks.rim_m_per_s, robot.wheels()->max_rim_m_per_s);
+  EXPECT_GT(result.path.peaks.rim_m_per_s, 0.7 * robot.wheels()->max_rim_m_per_s);
   EXPECT_GT(result.path.length_m, 10);
 
   const CommandedDrive again = drive(wide, robot, script_of(commands));
@@ -103,7 +103,7 @@ TEST(Commands, TheReflexStopsTheRobotFortyCentimetersBeforeAWall) {
 
 TEST(Commands, TheReflexKeepsItsDistanceAtAnySpeedAndSlant) {
   const Robot robot = pepper();
-  const double ahead_m = robot.equipment->reflex.ahead_m;
+  const double ahead_m = robot.equipment->reflex->ahead_m;
   for (const double speed : {0.1, 0.3, 0.55})
     for (const double heading_deg : {0.0, 10.0, 33.0}) {
       CommandScript script = script_of({{.duration_s = 60, .forward_m_per_s = speed}}, true);

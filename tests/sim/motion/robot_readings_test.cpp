@@ -20,6 +20,8 @@ TEST(WriteReadings, EachNumberStandsUnderItsHeading) {
   equipment->sonars = {{.name = "front", .base_from_sonar = {}},
                        {.name = "back", .base_from_sonar = {}}};
   equipment->bumpers = {"bow", "stern"};
+  equipment->wheels.emplace();
+  equipment->base_from_imu.emplace();
   Robot robot;
   robot.equipment = equipment;
   RobotReadings readings;
@@ -54,6 +56,14 @@ TEST(WriteReadings, EachNumberStandsUnderItsHeading) {
             "1.600000000,0,0,0,0,0,0\n");
   const std::string odometry = read_file(folder / "odometry.tum");
   EXPECT_TRUE(odometry.ends_with("\n1.500000000 1 2 3 0 0 0 1\n")) << odometry;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  equipment->wheels.reset();
+  equipment->base_from_imu.reset();
+  write_readings(folder, robot, readings);
+  EXPECT_TRUE(fs::exists(folder / "lasers.csv"));
+  EXPECT_FALSE(fs::exists(folder / "odometry.tum"));
+  EXPECT_FALSE(fs::exists(folder / "imu.csv"));
   fs::remove_all(folder);
 }
 

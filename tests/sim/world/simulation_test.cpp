@@ -151,6 +151,20 @@ TEST(Simulation, CarriedInTheDarkItSeesNothingAndItsWheelsRest) {
   EXPECT_THROW(simulation.carry_to({6.5, 5}, 0), InputError);  // into the table
 }
 
+TEST(Simulation, ATwoWheeledRobotIsNotMovedSidewaysAndKnowsItsWay) {
+  Simulation simulation(place_of(furnished()), test::turtlebot(), {},
+                        {.start_m = {3, 5}, .ticks_per_frame = 1000});
+  RobotObservation seen;
+  for (int i = 0; i < 20; ++i) seen = simulation.step({0.1, 0.2, 0}, 0.1);
+  const Eigen::Vector3d at = simulation.truth().world_from_base().translation();
+  EXPECT_NEAR(at.x(), 3.2, 0.01);
+  EXPECT_NEAR(at.y(), 5.0, 1e-6);
+  // 1 % too long, give or take what its file says of wheels and slip.
+  EXPECT_NEAR(seen.odom_from_base.translation().x() - 3, 1.01 * (at.x() - 3), 0.01);
+  EXPECT_EQ(seen.reading.lasers_m[0].size(), 360U);
+  EXPECT_GT(seen.reading.specific_force_m_per_s2.z(), 9);
+}
+
 TEST(Simulation, ARobotWithoutWheelsIsRefused) {
   Robot robot = small_camera();
   robot.equipment = nullptr;

@@ -12,6 +12,8 @@
 
 #include "scenes/floor.hpp"
 #include "slam/core/error.hpp"
+#include "slam/core/files.hpp"
+#include "slam/core/temporary_folder.hpp"
 #include "tests/scenes/scanned_room.hpp"
 #include "tests/sim/boxes.hpp"
 
@@ -153,6 +155,19 @@ TEST(Travel, PosesOfAFileStayWhereTheyAreAndAReplaySaysWhereItPutsThem) {
                   .norm(),
               1e-12);
   }
+}
+
+TEST(NoteOn, APlaceToFaceIsNotForADifferentialDrive) {
+  const TemporaryFolder folder(testing::TempDir());
+  const std::string file = folder.path() / "tour.yaml";
+  write_atomically(file,
+                   "name: t\nstart: {position: [1, 1], heading_deg: 0}\nwaypoints:\n"
+                   "- {to: [3, 1]}\n- {to: [3, 3], face: [9, 9]}\n");
+  EXPECT_EQ(note_on(file, test::pepper()), "");
+  EXPECT_EQ(note_on(file, test::turtlebot()),
+            file +
+                ":5: robot 'turtlebot3' has a differential drive: it faces its way, not the "
+                "place of 'face'");
 }
 
 }  // namespace
