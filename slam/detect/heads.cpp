@@ -84,14 +84,24 @@ bool is_decoded(const Matrix& m, const std::vector<Cell>& of) {
   return from_cell < from_zero;
 }
 
+Matrix transposed(const Matrix& m) {
+  return {m.columns, m.rows, m.values, true};
+}
+
+/// Whether a matrix that may be of one box per row is of one box per column: by where boxes are.
+bool has_boxes_in_columns(const Matrix& m, const InputSize& input) {
+  const std::vector<Cell> by_row = cells_of(m.rows, input), by_column = cells_of(m.columns, input);
+  return m.rows > 4 && !by_column.empty() && is_decoded(transposed(m), by_column) &&
+         !is_decoded(m, by_row);
+}
+
 /// The output that a head reads, as rows of boxes; nullopt if there is none.
 std::optional<Matrix> rows_of(Head head, std::span<const Tensor> outputs, const InputSize& input) {
   for (const Tensor& tensor : outputs) {
     std::optional<Matrix> m = as_matrix(tensor);
     if (!m) continue;
     if (head == Head::kYolov8) {
-      if (m->rows < m->columns || !cells_of(m->columns, input).empty())
-        *m = {m->columns, m->rows, m->values, true};
+      if (m->rows < m->columns || !cells_of(m->columns, input).empty()) *m = transposed(*m);
       if (m->columns > 4) return m;
     } else if (m->columns > 5 && (head != Head::kYolox || !cells_of(m->rows, input).empty())) {
       return m;
@@ -175,8 +185,7 @@ Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, boo
     const std::optional<Matrix> m = as_matrix(tensor);
     if (!m) continue;
     const std::vector<Cell> by_row = cells_of(m->rows, input);
-    // A square one, as of COCO's classes at 64 x 64, is YOLOv8's: no other has 80 there.
-    if (!by_row.empty() && m->columns > 5 && m->rows != m->columns)
+    if (!by_row.empty() && m->columns > 5 && !has_boxes_in_columns(*m, input))
       return is_decoded(*m, by_row) ? Head::kYoloxDecoded : Head::kYolox;
     if (m->rows > 4 && !cells_of(m->columns, input).empty()) return Head::kYolov8;
     // Three anchors in each cell.

@@ -160,7 +160,7 @@ OnnxShape read_input_shape(std::string_view info) {
   return sides;
 }
 
-std::string write_input(const std::string& name, const OnnxShape& shape) {
+std::string write_value(const std::string& name, const OnnxShape& shape) {
   std::string dims;
   for (const std::int64_t side : shape)
     dims += proto_bytes_field(value_info::kDim, proto_number(value_info::kSize, side));
@@ -296,7 +296,8 @@ std::optional<OnnxGraph> read_onnx_graph(std::string_view model) {
     if (field->tag == graph::kInitializer)
       read.weights[text_of(field->bytes, tensor::kName)] = field->bytes;
     if (field->tag == graph::kInput) inputs.push_back(field->bytes);
-    if (field->tag == graph::kOutput) read.outputs.push_back(field->bytes);
+    if (field->tag == graph::kOutput)
+      read.outputs.push_back(text_of(field->bytes, value_info::kName));
   }
   if (!walk.at_end()) return std::nullopt;
   for (const std::string_view info : inputs)
@@ -314,9 +315,9 @@ std::string write_onnx_graph(const OnnxGraph& written) {
   for (const auto& [name, values] : written.constants)
     content += proto_bytes_field(graph::kInitializer, write_onnx_tensor(name, values));
   for (const auto& [name, shape] : written.inputs)
-    content += proto_bytes_field(graph::kInput, write_input(name, shape));
-  for (const std::string_view info : written.outputs)
-    content += proto_bytes_field(graph::kOutput, info);
+    content += proto_bytes_field(graph::kInput, write_value(name, shape));
+  for (const std::string& name : written.outputs)  // OpenCV wants a shape and reads none
+    content += proto_bytes_field(graph::kOutput, write_value(name, {}));
   ProtoMessage walk(written.model);
   while (const auto field = walk.next())
     bytes += field->tag == model::kGraph ? proto_bytes_field(model::kGraph, content) : field->whole;

@@ -55,8 +55,8 @@ struct OnnxGraph {
   std::map<std::string, std::string_view, std::less<>> weights;  ///< by name: TensorProto
   std::map<std::string, OnnxTensor> constants;                   ///< more of them
   std::map<std::string, OnnxShape> inputs;                       ///< without weights
-  std::vector<std::string_view> outputs;                         ///< ValueInfoProto, as they are
-  std::string_view model;                                        ///< what it was read from
+  std::vector<std::string> outputs;
+  std::string_view model;  ///< what it was read from
 };
 
 /// nullopt if the bytes are not a whole model.

@@ -52,6 +52,28 @@ TEST(RecognizeHead, TellsDecodedBoxesByTheirPlaces) {
   EXPECT_EQ(recognize_head({&tensor, 1}, kInput, false), Head::kYoloxDecoded);
 }
 
+// 84 cells of 84 values: 79 classes and objectness, or 80 classes by column.
+TEST(RecognizeHead, TellsBoxesInColumnsOfASquareByTheirPlaces) {
+  constexpr InputSize kSquare{64, 64};
+  Made rows({1, 84, 84}), columns({1, 84, 84});
+  std::size_t box = 0;
+  for (const int stride : {8, 16, 32})
+    for (int y = 0; y < 64 / stride; ++y)
+      for (int x = 0; x < 64 / stride; ++x, ++box) {
+        columns.values[box] = (static_cast<float>(x) + 0.4F) * static_cast<float>(stride);
+        columns.values[84 + box] = (static_cast<float>(y) + 0.6F) * static_cast<float>(stride);
+        rows.values[84 * box] = columns.values[box];
+        rows.values[84 * box + 1] = columns.values[84 + box];
+      }
+  const Tensor by_row = rows.tensor(), by_column = columns.tensor();
+  EXPECT_EQ(recognize_head({&by_row, 1}, kSquare, false), Head::kYoloxDecoded);
+  EXPECT_EQ(recognize_head({&by_column, 1}, kSquare, false), Head::kYolov8);
+  EXPECT_EQ(class_count(Head::kYolov8, {&by_column, 1}, kSquare), 80);
+  // More classes than cells.
+  const Tensor tall{{1, 84, 21}, {columns.values.data(), 84 * 21}};
+  EXPECT_EQ(class_count(Head::kYolov8, {&tall, 1}, {32, 32}), 80);
+}
+
 TEST(Decode, YoloxAddsTheCellAndTakesTheExponent) {
   Made made({1, 42, 7});
   float* row = made.values.data() + (32 + 4 + 1) * 7;  // of stride 16: second row, second cell
@@ -104,25 +126,6 @@ TEST(Decode, Yolov8IsTransposedAndHasNoObjectness) {
   EXPECT_EQ(found[0].height, 6);
   EXPECT_EQ(found[0].best, 1);
   EXPECT_FLOAT_EQ(found[0].scores[1], 0.9F);
-}
-
-TEST(Decode, Yolov8MayBeAsWideAsItIsLong) {
-  const InputSize input{64, 64};  // 64 + 16 + 4 boxes of 4 + 80 values
-  Made made({1, 84, 84});
-  const auto put = [&](int row, float value) {
-    made.values[static_cast<std::size_t>(row * 84 + 3)] = value;
-  };
-  for (const auto& [row, value] : {std::pair(0, 30.0F), {1, 20.0F}, {2, 10.0F}, {3, 8.0F}})
-    put(row, value);
-  put(4 + 7, 0.9F);
-  const Tensor tensor = made.tensor();
-  EXPECT_EQ(recognize_head({&tensor, 1}, input, false), Head::kYolov8);
-  EXPECT_EQ(class_count(Head::kYolov8, {&tensor, 1}, input), 80);
-  const auto found = decode(Head::kYolov8, {&tensor, 1}, input, 0.5);
-  ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0].best, 7);
-  EXPECT_EQ(found[0].x, 30);
-  EXPECT_EQ(found[0].height, 8);
 }
 
 TEST(Decode, DarknetsBoxesAreSharesOfTheInputOfAllScales) {
