@@ -195,9 +195,13 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
   const double turn_shed =
       std::copysign(std::max(0.0, std::abs(turn_acceleration_rad_per_s2_) - turn_unit),
                     turn_acceleration_rad_per_s2_);
+  // A shove may have made it faster than it drives: it must be able to slow down.
+  const double speed = velocity_.m_per_s.norm();
+  const double fastest = std::max(limits_.max_velocity_m_per_s * (1 + 1e-6), speed);
+  const double most =
+      std::max(most_m_per_s_, speed + reach_m_ * std::abs(velocity_.turn_rad_per_s));
   const auto fits = [&](const Eigen::Vector2d& a, double turn_a) {
-    return peak(a) <= limits_.max_velocity_m_per_s * (1 + 1e-6) &&
-           peak(a) + reach_m_ * turn_peak(turn_a) <= most_m_per_s_;
+    return peak(a) <= fastest && peak(a) + reach_m_ * turn_peak(turn_a) <= most;
   };
   const std::array<std::pair<Eigen::Vector2d, double>, 4> choices = {
       {{next, turn_next}, {next, turn_shed}, {shed, turn_next}, {shed, turn_shed}}};

@@ -147,6 +147,20 @@ TEST(JerkLimiter, NoRimGoesFasterThanItCan) {
   EXPECT_NEAR(limiter.step({.turn_rad_per_s = 1.0}).turn_rad_per_s, 1.0, 1e-3);
 }
 
+TEST(JerkLimiter, SlowsDownFromAShoveThatWasFasterThanItDrives) {
+  const BaseLimits& limits = pepper().limits;
+  constexpr double h = 1.0 / 240;
+  for (const WheelBase* const rims : {static_cast<const WheelBase*>(nullptr), &wheels()}) {
+    JerkLimiter limiter(limits, h, rims);
+    limiter.stopped_at({.m_per_s = {3 * limits.max_velocity_m_per_s, 0},
+                        .turn_rad_per_s = 2 * limits.max_turn_rad_per_s});
+    JerkLimiter::Velocity now;
+    for (int i = 0; i < 240 * 10; ++i) now = limiter.step({.m_per_s = {0.1, 0}});
+    EXPECT_NEAR(now.m_per_s.x(), 0.1, 1e-6);
+    EXPECT_NEAR(now.turn_rad_per_s, 0, 1e-6);
+  }
+}
+
 TEST(JerkLimiter, NeverExceedsALimitUnderCommandsThatJump) {
   const BaseLimits& limits = pepper().limits;
   constexpr double h = 1.0 / 240;
