@@ -43,6 +43,8 @@ struct QuerySummary {
   std::optional<double> single_candidate;  ///< share of queries with exactly one left
   std::optional<double> label_mass;        ///< mean share of the query vector held by labels
   std::optional<double> gamma;             ///< mean weight of a label, equation 1
+  /// Means of the shares and the age in Candidates.
+  std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
 };
 
 template <Either<QuerySummary> S, class Visit>
@@ -50,7 +52,7 @@ void fields(S& summary, Visit& v) {
   using enum Better;
   auto& [queries, success, correct, false_positive, distance_mean_m, distance_median_m,
          aligned_distance_mean_m, attempts, keyframes, c1, c2, c3, final, single_candidate,
-         label_mass, gamma] = summary;
+         label_mass, gamma, unscored, stale, stale_weight, stale_age] = summary;
   v(Metric{.name = "queries"}, queries);
   v(Metric{"success", "success", "%", 2, kMore, "queries", true}, success);
   v(Metric{"correct", "correct", "%", 2, kMore, "queries", true}, correct);
@@ -67,6 +69,10 @@ void fields(S& summary, Visit& v) {
   v(Metric{.name = "candidates.single", .unit = "%"}, single_candidate);
   v(Metric{.name = "candidates.label_mass", .unit = "%"}, label_mass);
   v(Metric{.name = "candidates.gamma"}, gamma);
+  v(Metric{.name = "candidates.unscored", .unit = "%"}, unscored);
+  v(Metric{.name = "candidates.stale", .unit = "%"}, stale);
+  v(Metric{.name = "candidates.stale_weight", .unit = "%"}, stale_weight);
+  v(Metric{.name = "candidates.stale_age"}, stale_age);
 }
 
 }  // namespace mh

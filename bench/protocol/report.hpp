@@ -19,12 +19,16 @@ struct Candidates {
   std::optional<int> final;          ///< after equation 6
   std::optional<double> label_mass;  ///< share of the query vector's L1 mass held by labels
   std::optional<double> gamma;       ///< the weight of a label that gave it
+  /// Of the similarities that equation 5 sums: shares that no query computed, and that an earlier
+  /// query left; share of the latter in the sums; queries since they were left, mean.
+  std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
   friend bool operator==(const Candidates&, const Candidates&) = default;
 };
 
 template <Either<Candidates> C, class Visit>
 void fields(C& candidates, Visit& v) {
-  auto& [keyframes, c1, c2, c3, final, label_mass, gamma] = candidates;
+  auto& [keyframes, c1, c2, c3, final, label_mass, gamma, unscored, stale, stale_weight,
+         stale_age] = candidates;
   v("keyframes", keyframes);
   v("c1", c1);
   v("c2", c2);
@@ -32,6 +36,10 @@ void fields(C& candidates, Visit& v) {
   v("final", final);
   v("label_mass", label_mass);
   v("gamma", gamma);
+  v("unscored", unscored);
+  v("stale", stale);
+  v("stale_weight", stale_weight);
+  v("stale_age", stale_age);
 }
 
 /// A system's report on one frame. What it does not report is absent.

@@ -175,8 +175,15 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
   s.single_candidate = mean_reported(queries, [](const Candidates& c) {
     return c.final ? std::optional<double>(*c.final == 1) : std::nullopt;
   });
-  s.label_mass = mean_reported(queries, [](const Candidates& c) { return c.label_mass; });
-  s.gamma = mean_reported(queries, [](const Candidates& c) { return c.gamma; });
+  for (const auto& [field, reported] :
+       {std::pair(&QuerySummary::label_mass, &Candidates::label_mass),
+        {&QuerySummary::gamma, &Candidates::gamma},
+        {&QuerySummary::unscored, &Candidates::unscored},
+        {&QuerySummary::stale, &Candidates::stale},
+        {&QuerySummary::stale_weight, &Candidates::stale_weight},
+        {&QuerySummary::stale_age, &Candidates::stale_age}})
+    s.*field =
+        mean_reported(queries, [reported = reported](const Candidates& c) { return c.*reported; });
   if (distances.empty()) return s;
   s.distance_mean_m = mean(distances);
   s.aligned_distance_mean_m = mean(aligned);

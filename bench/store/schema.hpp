@@ -6,7 +6,7 @@
 namespace mh {
 
 /// `PRAGMA user_version` of a results file; a file with another one is refused.
-inline constexpr int kSchemaVersion = 10;
+inline constexpr int kSchemaVersion = 11;
 /// The same of a file of episodes (bench/episodes/episode_store.hpp), which counts from 1001.
 inline constexpr int kEpisodesVersion = 1001;
 

@@ -13,6 +13,24 @@
 namespace mh {
 namespace {
 
+/// Keyframes left by Algorithm 1, and of which queries its sums are.
+Candidates as_candidates(const CandidateCounts& c, double gamma) {
+  Candidates candidates{.keyframes = c.keyframes,
+                        .c1 = c.c1,
+                        .c2 = c.c2,
+                        .c3 = c.c3,
+                        .final = c.final,
+                        .label_mass = c.label_mass,
+                        .gamma = gamma};
+  const SummedScores& summed = c.summed;
+  if (summed.terms == 0) return candidates;
+  candidates.unscored = static_cast<double>(summed.unscored) / summed.terms;
+  candidates.stale = static_cast<double>(summed.stale) / summed.terms;
+  if (summed.weight > 0) candidates.stale_weight = summed.stale_weight / summed.weight;
+  if (summed.stale > 0) candidates.stale_age = static_cast<double>(summed.stale_age) / summed.stale;
+  return candidates;
+}
+
 /// @param state  after the step
 SystemReport as_report(const StepReport& step, const SlamState& state) {
   SystemReport report{.status = step.status,
@@ -24,9 +42,8 @@ SystemReport as_report(const StepReport& step, const SlamState& state) {
                       .relocalization = step.relocalization,
                       .candidates = {},
                       .matches = step.matches};
-  if (const auto& c = step.candidates)
-    report.candidates = {
-        c->keyframes, c->c1, c->c2, c->c3, c->final, c->label_mass, state.config.semantics.gamma};
+  if (step.candidates)
+    report.candidates = as_candidates(*step.candidates, state.config.semantics.gamma);
   return report;
 }
 
@@ -34,7 +51,7 @@ class OurSession : public RelocalizationSession {
  public:
   /// @param released  what earlier sessions left, and this one leaves to the next; may be null
   OurSession(const SlamState& frozen, const StepObservers& observers,
-             std::vector<double>* released = nullptr)
+             ReleasedScores* released = nullptr)
       : frozen_(frozen), observers_(observers), released_(released) {
     if (released_ != nullptr) tracker_.released_scores = *released_;
   }
@@ -47,7 +64,7 @@ class OurSession : public RelocalizationSession {
  private:
   const SlamState& frozen_;  // the system that opened the session outlives it, like the observers
   const StepObservers& observers_;
-  std::vector<double>* released_;
+  ReleasedScores* released_;
   Tracker tracker_;
 };
 
@@ -130,7 +147,7 @@ class OurSystem : public System {
 
  private:
   /// What the queries so far left under these settings; null if the settings do not ask for it.
-  std::vector<double>* released() const {
+  ReleasedScores* released() const {
     if (state_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return nullptr;
     const SemanticConfig& s = state_.config.semantics;
     const auto [place, is_new] =
@@ -155,7 +172,7 @@ class OurSystem : public System {
   OurSystemOptions options_;
   using QuerySettings = std::tuple<double, double, double, double, Overlap, bool>;
   /// Under NeighborScores::kAsReleased sessions do share this: they depend on their order.
-  mutable std::map<QuerySettings, std::vector<double>> released_;
+  mutable std::map<QuerySettings, ReleasedScores> released_;
   bool found_ = false;  ///< a frame was tracked in this map
   bool frozen_ = false;
 };

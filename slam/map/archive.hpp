@@ -219,7 +219,7 @@ void fields(A& a, T& landmark) {
 template <class A, Either<Distortion> T>
 void fields(A& a, T& distortion) {
   auto& [k1, k2, p1, p2, k3, k4, k5, k6] = distortion;
-  a(k1, k2, p1, p2, k3);  // k4 to k6: map_file.cpp, where a camera has them
+  a(k1, k2, p1, p2, k3, k4, k5, k6);
 }
 template <class A, Either<Camera> T>
 void fields(A& a, T& camera) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map file, little-endian:
 //   8 bytes  magic "MHMAP\n\0\0"
-//   u32      version: 6, or 7 if the camera's distortion has k4 to k6
+//   u32      version
 //   u64      digest of the vocabulary
 //   u64      size of the content
-//   content  settings (YAML), camera, in version 7 its k4 to k6, keyframes, landmarks, state of
-//   tracking and loop closing,
+//   content  settings (YAML), camera, keyframes, landmarks, state of tracking and loop closing,
 //            tracked frames; lists start with their length (u64), see slam/map/archive.hpp
 //   u64      xxh3-64 of all preceding bytes
 #include "slam/pipeline/map_file.hpp"
@@ -32,6 +31,16 @@ template <class A, Either<Motion> T>
 void fields(A& a, T& motion) {
   auto& [velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance] = motion;
   a(velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance);
+}
+template <class A, Either<ReleasedScores::Score> T>
+void fields(A& a, T& score) {
+  auto& [similarity, query] = score;
+  a(similarity, query);
+}
+template <class A, Either<ReleasedScores> T>
+void fields(A& a, T& scores) {
+  auto& [of, queries] = scores;
+  a(of, queries);
 }
 template <class A, Either<Tracker> T>
 void fields(A& a, T& tracker) {
@@ -75,6 +84,10 @@ TrackedFrames read_tracked_frames(Reader& reader, const Map& map) {
 }
 
 void check(const Reader& reader, const Tracker& tracker, const Map& map) {
+  const ReleasedScores& scores = tracker.released_scores;
+  reader.require(scores.of.size() <= map.keyframes().size(), "the number of released scores");
+  for (const ReleasedScores::Score& score : scores.of)
+    reader.require(score.query >= 0 && score.query <= scores.queries, "a released score's query");
   if (!tracker.last) return;
   reader.require(tracker.last->landmarks.size() == tracker.last->features.size(),
                  "the last frame's number of landmarks");
@@ -88,20 +101,9 @@ void check(const Reader& reader, const Tracker& tracker, const Map& map) {
 constexpr std::string_view kMagic{"MHMAP\n\0\0", 8};
 constexpr std::size_t kHeaderSize = kMagic.size() + 4 + 8 + 8;
 
-/// Calls a(k4, k5, k6), which files of kMapFileVersionRational alone hold.
-void rational_terms(auto& a, auto& camera) {
-  auto& d = camera.distortion;
-  a(d.k4, d.k5, d.k6);
-}
-
-struct Content {
-  std::uint32_t version = 0;
-  std::string_view bytes;
-};
-
 /// The content of a map file, after its header and checksum are checked.
-Content checked_content(std::string_view bytes, const std::string& name,
-                        std::uint64_t vocabulary_digest) {
+std::string_view checked_content(std::string_view bytes, const std::string& name,
+                                 std::uint64_t vocabulary_digest) {
   const std::string_view start = bytes.substr(0, kMagic.size());
   if (start.empty() || start != kMagic.substr(0, start.size()))
     throw InputError(fmt::format("{}: is not a map of Modelhouse's", name));
@@ -115,9 +117,9 @@ Content checked_content(std::string_view bytes, const std::string& name,
   std::uint32_t version = 0;
   std::uint64_t vocabulary = 0, size = 0, stored = 0;
   header(version, vocabulary, size);
-  if (version != kMapFileVersion && version != kMapFileVersionRational)
-    throw InputError(fmt::format("{}: is a map of version {}, but this program reads {} and {}",
-                                 name, version, kMapFileVersion, kMapFileVersionRational));
+  if (version != kMapFileVersion)
+    throw InputError(fmt::format("{}: is a map of version {}, but this program reads {}", name,
+                                 version, kMapFileVersion));
   const std::uint64_t all = bytes.size() - kHeaderSize;  // no sum with sizes from the file: they
                                                          // may be wrong
   if (all < sizeof stored || size != all - sizeof stored)
@@ -132,7 +134,7 @@ Content checked_content(std::string_view bytes, const std::string& name,
     throw InputError(
         fmt::format("{}: was made with another vocabulary: digest {:016x}, this one has {:016x}",
                     name, vocabulary, vocabulary_digest));
-  return {version, before.substr(kHeaderSize)};
+  return before.substr(kHeaderSize);
 }
 
 SlamConfig parse_config(const std::string& text, const std::string& name) {
@@ -151,8 +153,6 @@ std::string encode_slam(const SlamState& state) {
                last_stamp_ns] = state;
   Writer content;
   content(format_slam_config(config), camera);
-  const bool rational = camera.distortion.is_rational();
-  if (rational) rational_terms(content, camera);
   write_map(content, map);
   content(tracker, loop_memory);
   write_tracked_frames(content, tracked_frames);
@@ -161,8 +161,7 @@ std::string encode_slam(const SlamState& state) {
 
   Writer whole;
   whole.bytes(kMagic.data(), kMagic.size());
-  whole(rational ? kMapFileVersionRational : kMapFileVersion, vocabulary->digest(),
-        static_cast<std::uint64_t>(body.size()));
+  whole(kMapFileVersion, vocabulary->digest(), static_cast<std::uint64_t>(body.size()));
   whole.bytes(body.data(), body.size());
   std::string bytes = whole.take();
   const std::uint64_t checksum = XXH3_64bits(bytes.data(), bytes.size());
@@ -173,12 +172,10 @@ std::string encode_slam(const SlamState& state) {
 SlamState decode_slam(const std::string& bytes, const std::string& name,
                       std::shared_ptr<const Vocabulary> vocabulary) {
   using namespace archive;
-  const auto [version, inner] = checked_content(bytes, name, vocabulary->digest());
-  Reader content(inner, name);
+  Reader content(checked_content(bytes, name, vocabulary->digest()), name);
   std::string settings;
   Camera camera;
   content(settings, camera);
-  if (version == kMapFileVersionRational) rational_terms(content, camera);
   SlamState state = make_slam(camera, parse_config(settings, name), std::move(vocabulary));
   state.map = read_map(content, camera, state.config.features.levels, state.vocabulary->size());
   content(state.tracker, state.loop_memory);

@@ -10,9 +10,7 @@
 
 namespace mh {
 
-inline constexpr std::uint32_t kMapFileVersion = 6;
-/// Of maps whose camera has the distortion's k4 to k6, which the former has no place for.
-inline constexpr std::uint32_t kMapFileVersionRational = 7;
+inline constexpr std::uint32_t kMapFileVersion = 8;
 
 /// Serializes all of a SlamState except the vocabulary, which is referenced by its digest: a run
 /// that is saved and loaded resumes bit-identically to one that was not. Equal states give equal

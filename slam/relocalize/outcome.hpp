@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "slam/core/words.hpp"
 
 namespace mh {
@@ -21,12 +23,24 @@ constexpr std::string_view name(RelocalizationStage stage) {
   return name_of(stage, words(stage));
 }
 
+/// Of which queries the similarities are that equation 5 summed, over all of its sums. Those of
+/// keyframes that share nothing with the query are not counted: they are 0 by definition.
+struct SummedScores {
+  int terms = 0;
+  int unscored = 0;            ///< 0, since no query ever computed them (NeighborScores)
+  int stale = 0;               ///< left by an earlier query (NeighborScores::kAsReleased)
+  double weight = 0;           ///< sum of all terms
+  double stale_weight = 0;     ///< of the stale ones
+  std::int64_t stale_age = 0;  ///< summed over the stale ones: queries since each was computed
+};
+
 /// Keyframes left after each step of Algorithm 1.
 struct CandidateCounts {
   int keyframes = 0;           ///< in the map
   int c1 = 0, c2 = 0, c3 = 0;  ///< after equations 3, 4 and 5
   int final = 0;               ///< after equation 6
   double label_mass = 0;       ///< share of the query vector's L1 mass that comes from labels
+  SummedScores summed;
 };
 
 }  // namespace mh

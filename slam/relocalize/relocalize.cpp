@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "slam/config/slam.hpp"
 #include "slam/relocalize/rules.hpp"
@@ -42,17 +43,18 @@ namespace {
 /// Stores the similarities of the keyframes that pass equation 4, as ORB-SLAM2 does for each query.
 void store(const std::vector<InvertedIndex::Score>& scores, Overlap what, double alpha,
            ReleasedScores& released) {
+  ++released.queries;
   int most = 0;
   for (const InvertedIndex::Score& score : scores) most = std::max(most, overlap(score, what));
   for (const InvertedIndex::Score& score : scores)
-    if (overlap(score, what) > alpha * most) released[score.keyframe.value] = score.similarity;
+    if (overlap(score, what) > alpha * most)
+      released.of[score.keyframe.value] = {score.similarity, released.queries};
 }
 
 }  // namespace
 
-CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
-                                                const SemanticConfig& config,
-                                                ReleasedScores* released) {
+KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
+                                   const SemanticConfig& config, ReleasedScores* released) {
   // Keyframes that share nothing fail equation 3 and can be skipped.
   const std::vector<InvertedIndex::Score> scores = map.sharing(query);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
@@ -63,17 +65,33 @@ CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedV
     of[score.keyframe.value] = &score;
   }
   if (released != nullptr) {
-    released->resize(map.keyframes().size());
+    released->of.resize(map.keyframes().size());
     store(scores, what, config.alpha, *released);
   }
+  SummedScores summed;
   const auto similarity = [&](KeyframeId k) {
     if (of[k.value] == nullptr) return 0.0;
-    return released != nullptr ? (*released)[k.value] : of[k.value]->similarity;
+    const ReleasedScores::Score score = released != nullptr
+                                            ? released->of[k.value]
+                                            : ReleasedScores::Score{of[k.value]->similarity};
+    ++summed.terms;
+    summed.weight += score.similarity;
+    if (released == nullptr || score.query == released->queries) return score.similarity;
+    if (score.query == 0) {
+      ++summed.unscored;
+    } else {
+      ++summed.stale;
+      summed.stale_weight += score.similarity;
+      summed.stale_age += released->queries - score.query;
+    }
+    return score.similarity;
   };
-  return select_candidates(
-      std::span<const KeyframeId>(keyframes),
-      [&](KeyframeId k) { return overlap(*of[k.value], what); },
-      [&](KeyframeId k) { return neighborhood(map, k); }, similarity, config.alpha, config.beta);
+  const auto shared = [&](KeyframeId k) { return overlap(*of[k.value], what); };
+  const auto neighbors = [&](KeyframeId k) { return neighborhood(map, k); };
+  CandidateSelection<KeyframeId> selection =
+      select_candidates(std::span<const KeyframeId>(keyframes), shared, neighbors, similarity,
+                        config.alpha, config.beta);
+  return {std::move(selection), summed};
 }
 
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
@@ -127,16 +145,14 @@ void prefer_near(std::vector<Candidate<KeyframeId>>& candidates, const Map& map,
 
 }  // namespace
 
-CandidateSelection<KeyframeId> choose_candidates(const Map& map, const Query& query,
-                                                 const SlamConfig& config,
-                                                 ReleasedScores* released) {
+KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,
+                                    ReleasedScores* released) {
   const NeighborScores neighbors = config.relocalize.neighbor_scores;
   ReleasedScores cleared;
   if (neighbors != NeighborScores::kAsReleased)
     released = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
   const SemanticConfig& rules = config.semantics;
-  CandidateSelection<KeyframeId> selection =
-      select_keyframes(map, query.words.vector, rules, released);
+  KeyframeSelection selection = select_keyframes(map, query.words.vector, rules, released);
   const auto prefer = [&](std::vector<Candidate<KeyframeId>>& candidates) {
     if (rules.nearness > 0) prefer_near(candidates, map, query.features, rules.nearness);
   };
@@ -172,7 +188,8 @@ RelocalizationResult relocalize(const Query& query, const SlamContext& context, 
                        .c2 = selection.c2,
                        .c3 = selection.c3,
                        .final = static_cast<int>(candidates.size()),
-                       .label_mass = query.words.vector.label_mass()};
+                       .label_mass = query.words.vector.label_mass(),
+                       .summed = selection.summed};
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "slam/match/context.hpp"
 #include "slam/relocalize/candidate_trial.hpp"
 #include "slam/relocalize/outcome.hpp"
+#include "slam/relocalize/released_scores.hpp"
 #include "slam/semantics/candidate_selection.hpp"
 
 namespace mh {
@@ -29,17 +30,18 @@ struct RelocalizationResult {
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs = {});
 
-/// For each keyframe, indexed by id: its similarity to the last query for which it passed equation
-/// 4; 0 if there was none (NeighborScores::kAsReleased).
-using ReleasedScores = std::vector<double>;
+/// Algorithm 1's choice, and of which queries the similarities are that it summed.
+struct KeyframeSelection : CandidateSelection<KeyframeId> {
+  SummedScores summed;
+};
 
 /// Algorithm 1 over the whole map. If the query's vector holds no label, equation 3 counts words,
 /// whatever `overlap` says.
 /// @param released  first receives this query's similarities, then supplies those of equation 5;
 /// null: each similarity is computed for this query
-CandidateSelection<KeyframeId> select_keyframes(const Map& map, const AugmentedVector& query,
-                                                const SemanticConfig& config,
-                                                ReleasedScores* released = nullptr);
+KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
+                                   const SemanticConfig& config,
+                                   ReleasedScores* released = nullptr);
 
 /// The attempts at one query so far, by candidate, under one stream and one trial_key(). Searches
 /// that differ only in which candidates they choose can reuse them.
@@ -56,9 +58,8 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 /// RelocalizeConfig::neighbor_scores says, then `nearness` and `candidates` of SemanticConfig.
 /// @param released  of earlier queries. Read and updated only under NeighborScores::kAsReleased,
 /// and must then not be null
-CandidateSelection<KeyframeId> choose_candidates(const Map& map, const Query& query,
-                                                 const SlamConfig& config,
-                                                 ReleasedScores* released);
+KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,
+                                    ReleasedScores* released);
 
 /// Tries one keyframe as relocalize() tries its candidates.
 CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,

@@ -47,6 +47,10 @@ const MadeUpFigures kSemantic = {
                  .c3 = 12,
                  .label_mass = 0.31,
                  .gamma = 1.75,
+                 .unscored = 0.11,
+                 .stale = 0.22,
+                 .stale_weight = 0.33,
+                 .stale_age = 4.4,
                  .unanswered = RelocalizationStage::kInliers},
     .second_tour = {.correct = 2,
                     .distances_m = {0.05, 0.07, 0.6},
@@ -315,12 +319,13 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
       "correct": 0.625, "false_positive": 0.125, "distance_mean_m": 0.2, "distance_median_m": 0.035,
       "aligned_distance_mean_m": 0.7, "attempts": 2.25, "candidates": {"keyframes": 120.0,
       "c1": 60.0, "c2": 30.0, "c3": 12.0, "final": 4.0, "single": 0.375, "label_mass": 0.31,
-      "gamma": 1.75}})"));
+      "gamma": 1.75, "unscored": 0.11, "stale": 0.22, "stale_weight": 0.33, "stale_age": 4.4}})"));
   EXPECT_EQ(semantic["second_tour"], nlohmann::json::parse(R"({"queries": 5.0, "success": 0.6,
       "correct": 0.4, "false_positive": 0.2, "distance_mean_m": 0.24, "distance_median_m": 0.07,
       "aligned_distance_mean_m": 0.49, "attempts": 3.2, "candidates": {"keyframes": 100.0,
       "c1": 64.0, "c2": 32.0, "c3": 16.0, "final": 2.4, "single": 0.2, "label_mass": 0.17,
-      "gamma": 0.85}})"));
+      "gamma": 0.85, "unscored": null, "stale": null, "stale_weight": null,
+      "stale_age": null}})"));
   EXPECT_EQ(semantic["matchers"]["motion_model"],
             nlohmann::json::parse(R"({"compared": 1000, "penalized": 123, "rejected_by_xi": 45,
       "ratio_helped": 6})"));
@@ -341,7 +346,8 @@ TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   EXPECT_EQ(query, nlohmann::json::parse(R"({"frame": 179, "stamp_ns": 179, "success": true,
       "correct": false, "false_positive": true, "stage": "verified", "attempts": 3, "blank_frames": 0,
       "distance_m": 1.0, "angle_deg": 10.0, "aligned_distance_m": 1.5, "candidates":
-      {"keyframes": 120, "c1": 60, "c2": 30, "c3": 12, "final": 5, "label_mass": 0.31, "gamma": 1.75},
+      {"keyframes": 120, "c1": 60, "c2": 30, "c3": 12, "final": 5, "label_mass": 0.31, "gamma": 1.75,
+      "unscored": 0.11, "stale": 0.22, "stale_weight": 0.33, "stale_age": 4.4},
       "grade": {"mapped_m": null, "mapped_deg": null, "shown": null, "speed": null}})"));
 }
 

@@ -19,6 +19,7 @@ struct MadeUpAnswers {
   std::vector<int> attempts, final;  ///< of all
   int keyframes = 0, c1 = 0, c2 = 0, c3 = 0;
   double label_mass = 0, gamma = 0;
+  std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
   RelocalizationStage unanswered = RelocalizationStage::kNone;
 };
 
@@ -47,7 +48,11 @@ inline std::vector<QueryScore> made_up_queries(const MadeUpAnswers& a) {
                            .c3 = a.c3,
                            .final = a.final[i],
                            .label_mass = a.label_mass,
-                           .gamma = a.gamma};
+                           .gamma = a.gamma,
+                           .unscored = a.unscored,
+                           .stale = a.stale,
+                           .stale_weight = a.stale_weight,
+                           .stale_age = a.stale_age};
     q.answer.stage = a.unanswered;
     if (i < a.distances_m.size()) {
       q.success = true;

@@ -77,8 +77,17 @@ RunResult some_run(const std::string& name, double shift_m = 0.0) {
   answered.distance_m = 1.0 / 7.0;
   answered.answer.world_from_camera = pose(5);
   answered.answer.stage = RelocalizationStage::kVerified;
-  answered.answer.candidates = {
-      .keyframes = 3, .c1 = 2, .c2 = {}, .c3 = 0, .final = 1, .label_mass = 0.3, .gamma = 1.25};
+  answered.answer.candidates = {.keyframes = 3,
+                                .c1 = 2,
+                                .c2 = {},
+                                .c3 = 0,
+                                .final = 1,
+                                .label_mass = 0.3,
+                                .gamma = 1.25,
+                                .unscored = 0.5,
+                                .stale = 0.25,
+                                .stale_weight = 0.125,
+                                .stale_age = 3};
   answered.answer.matches.emplace()[3].penalized = 4;
   unanswered.answer.index = 59;
   unanswered.answer.stage = RelocalizationStage::kPnp;

@@ -89,8 +89,7 @@ class Layout {
     put<std::int32_t>(s.camera.width_px, s.camera.height_px);
     const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = s.camera.distortion;
     put<double>(s.camera.fx_px, s.camera.fy_px, s.camera.cx_px, s.camera.cy_px, k1, k2, p1, p2, k3,
-                s.camera.rate_hz, s.camera.baseline_m, s.camera.disparity_sigma_px);
-    if (s.camera.distortion.is_rational()) put<double>(k4, k5, k6);
+                k4, k5, k6, s.camera.rate_hz, s.camera.baseline_m, s.camera.disparity_sigma_px);
     put<std::uint64_t>(keyframes.size());
     for (const Keyframe& k : keyframes) keyframe(k);
     put<std::uint64_t>(landmarks.size());
@@ -205,15 +204,19 @@ class Layout {
     put<std::uint32_t>(t.reference.value);
     put<std::int32_t>(t.frames_since_keyframe);
     put<std::uint8_t>(t.coasting);
-    put<std::uint64_t>(t.released_scores.size());
-    for (const double score : t.released_scores) put<double>(score);
+    put<std::uint64_t>(t.released_scores.of.size());
+    for (const auto& [similarity, query] : t.released_scores.of) {
+      put<double>(similarity);
+      put<std::int32_t>(query);
+    }
+    put<std::int32_t>(t.released_scores.queries);
   }
 
   std::string out_;
 };
 
 /// A whole file around a content.
-std::string framed(const std::string& content, std::uint32_t version = 6) {
+std::string framed(const std::string& content, std::uint32_t version = kMapFileVersion) {
   std::string bytes("MHMAP\n\0\0", 8);
   const auto append = [&](auto value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -320,6 +323,11 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   refuses("the last frame's landmark",
           [=](Parts& p) { p.state.tracker.last->landmarks[0].value = landmarks; });
   refuses("the reference keyframe", [=](Parts& p) { p.state.tracker.reference.value = keyframes; });
+  refuses("a released score's query", [](Parts& p) {
+    p.state.tracker.released_scores = {.of = {{0.5, 2}}, .queries = 1};
+  });
+  refuses("the number of released scores",
+          [=](Parts& p) { p.state.tracker.released_scores.of.resize(keyframes + 1); });
   refuses("a tracked frame's keyframe",
           [=](Parts& p) { p.state.tracked_frames.begin()->second.reference.value = keyframes; });
   // Both sides store which keyframe sees which landmark.
@@ -336,7 +344,7 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
   state.loop_memory = {.drift = SE3::exp((Vector6d() << 1, 2, 3, 0.4, 0.5, 0.6).finished()),
                        .keyframe = KeyframeId{1},
                        .agreeing = 1};
-  state.tracker.released_scores = {0.25, 0.5};
+  state.tracker.released_scores = {.of = {{0.25, 1}, {0.5, 3}}, .queries = 3};
   for (const SlamState& of : {state, start()}) {
     const std::string bytes = framed(Layout(of).bytes());
     EXPECT_TRUE(bytes == encode_slam(of))
@@ -344,12 +352,11 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
   }
 }
 
-// Maps of cameras without k4 to k6 keep their version and their bytes.
 TEST(MapFile, HoldsTheEightCoefficientsOfACamera) {
   SlamState state = midway();
   state.camera.distortion = {.k1 = 0.5, .k2 = -0.1, .k4 = 0.4, .k5 = -0.05, .k6 = 0.01};
   const std::string bytes = encode_slam(state);
-  EXPECT_TRUE(bytes == framed(Layout(state).bytes(), 7));
+  EXPECT_TRUE(bytes == framed(Layout(state).bytes()));
   EXPECT_EQ(decode_slam(bytes, "rational", vocabulary()).camera, state.camera);
 }
 
@@ -399,7 +406,7 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
   other[8] = 9;
-  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 9, but this program reads 6 and 7");
+  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 9, but this program reads 8");
   EXPECT_NE(refusal_of(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));

@@ -137,6 +137,37 @@ TEST(ReleasedScores, OfNeighborsAreThoseOfEarlierQueries) {
   EXPECT_DOUBLE_EQ(score(nullptr), 1.25);
 }
 
+TEST(ReleasedScores, AreCountedByTheQueryThatLeftThem) {
+  const Map map = map_of_neighbors();
+  const AugmentedVector near_first = vector_of({}, {1, 2, 3, 4}),
+                        near_second = vector_of({}, {5, 6, 7, 9});
+  const SemanticConfig config{.alpha = 0.8, .beta = 0.0, .overlap = Overlap::kWords};
+  const auto summed = [&](ReleasedScores* released) {
+    return select_keyframes(map, near_first, config, released).summed;
+  };
+  ReleasedScores released;
+  const SummedScores unscored = summed(&released);
+  EXPECT_EQ(unscored.terms, 2);
+  EXPECT_EQ(unscored.unscored, 1);
+  EXPECT_EQ(unscored.stale, 0);
+  EXPECT_DOUBLE_EQ(unscored.weight, 1.0);
+
+  select_keyframes(map, near_second, config, &released);
+  for (const int age : {1, 2}) {
+    const SummedScores stale = summed(&released);
+    EXPECT_EQ(stale.terms, 2);
+    EXPECT_EQ(stale.unscored, 0);
+    EXPECT_EQ(stale.stale, 1);
+    EXPECT_DOUBLE_EQ(stale.weight, 1.75);
+    EXPECT_DOUBLE_EQ(stale.stale_weight, 0.75);
+    EXPECT_EQ(stale.stale_age, age);
+  }
+  const SummedScores fresh = summed(nullptr);
+  EXPECT_EQ(fresh.terms, 2);
+  EXPECT_EQ(fresh.unscored + fresh.stale, 0);
+  EXPECT_DOUBLE_EQ(fresh.weight, 1.25);
+}
+
 TEST(ReleasedScores, ThatAreClearedAreThoseOfAFirstQuery) {
   Map map = map_of_neighbors();
   Keyframe other;  // similarity 0.8: more than beta of 1, not of 1.25
