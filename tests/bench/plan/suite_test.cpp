@@ -89,7 +89,7 @@ TEST_F(SuiteFile, IsJudgedByCorrectAnswersUnlessItNamesSuccess) {
   EXPECT_NE(error("measure: sucess\n").find("'sucess' is not one of correct, success"),
             std::string::npos);
   // Designs that were stated before measuring name success.
-  for (const char* name : {"four_arms", "rules_verdict", "table1", "like_rooms"})
+  for (const char* name : {"arms", "rules_verdict", "table1", "like_rooms"})
     EXPECT_EQ(load_suite(shipped_file(name, Shipped::kSuite)).measure, Measure::kSuccess) << name;
   EXPECT_EQ(load_suite(shipped_file("model_house", Shipped::kSuite)).measure, Measure::kCorrect);
 }
