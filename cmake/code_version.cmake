@@ -1,43 +1,37 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=... -DOUT=... -P code_version.cmake: writes digests of the sources that decide what a
-# stage makes. They are part of the keys of cached entries and of finished runs, so that neither
-# outlives a change of the code.
+# cmake -DROOT=... -DOUT=... -DDECIDES=... -P code_version.cmake: writes digests of what decides what a
+# stage makes: the compiler's flags and the files that CMake's decides() named (DECIDES: a line
+# BITS|FLAGS, then KEY|PATTERN each). They are part of the keys of cached entries and of finished runs, so that
+# neither outlives a change of the code.
 cmake_minimum_required(VERSION 3.25)
 
-function(digest_of variable)
-  set(files "")
-  foreach(pattern IN LISTS ARGN)
-    file(GLOB_RECURSE found ${ROOT}/${pattern})
-    list(APPEND files ${found})
-  endforeach()
-  list(SORT files)
-  set(all "")
-  foreach(file IN LISTS files)
+file(STRINGS ${DECIDES} lines)
+list(POP_FRONT lines bits)
+foreach(line IN LISTS lines)
+  string(REGEX MATCH "([^|]+)[|](.+)" matched "${line}")
+  set(key ${CMAKE_MATCH_1})
+  file(GLOB_RECURSE found ${CMAKE_MATCH_2})
+  if(NOT found)
+    message(FATAL_ERROR "nothing is named ${CMAKE_MATCH_2}: a key of results would miss it")
+  endif()
+  list(APPEND files_${key} ${found})
+  list(APPEND keys ${key})
+endforeach()
+list(REMOVE_DUPLICATES keys)
+set(definitions "")
+foreach(key IN LISTS keys)
+  list(REMOVE_DUPLICATES files_${key})
+  list(SORT files_${key})
+  set(all "${bits}\n")
+  foreach(file IN LISTS files_${key})
     file(SHA256 ${file} digest)
     file(RELATIVE_PATH name ${ROOT} ${file})
     string(APPEND all "${name} ${digest}\n")
   endforeach()
   string(SHA256 digest "${all}")
   string(SUBSTRING ${digest} 0 16 digest)
-  set(${variable} ${digest} PARENT_SCOPE)
-endfunction()
-
-digest_of(LIGHT scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml scenes/floors/*.yaml sim/render/*.cpp sim/render/*.hpp slam/core/*.cpp
-          slam/core/*.hpp)
-digest_of(DETECT slam/detect/*.cpp slam/detect/*.hpp slam/core/*.cpp slam/core/*.hpp)
-digest_of(RUN slam/*.cpp slam/*.hpp scenes/*.cpp scenes/*.hpp scenes/categories/*.yaml scenes/floors/*.yaml robots/*.cpp robots/*.hpp sim/*.cpp
-          sim/*.hpp bench/protocol/*.cpp bench/protocol/*.hpp bench/metrics/*.cpp
-          bench/metrics/*.hpp bench/systems/*.cpp bench/systems/*.hpp bench/world/*.cpp
-          bench/world/*.hpp bench/inputs/inputs.cpp bench/inputs/inputs.hpp bench/inputs/recorded_camera.*
-          bench/plan/find_program.* bench/plan/graded_spec.*
-          bench/plan/outside_program.* bench/provenance/digest.*
-          bench/provenance/input_digest.hpp bench/provenance/place_facts.hpp
-          bench/results/call_times.* bench/results/placed.* bench/results/run_result.hpp
-          bench/run/hidden.* bench/run/run_one.* include/modelhouse/*.h
-          CMakeLists.txt)
-digest_of(AUDIT bench/audit/*.cpp bench/audit/*.hpp)
-digest_of(EPISODES bench/episodes/*.cpp bench/episodes/*.hpp bench/plan/episodes_spec.*
-          bench/studies/laser_scans.*)
+  string(APPEND definitions "#define MH_CODE_${key} \"${digest}\"\n")
+endforeach()
 
 # Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.
 function(commit_from_files variable)
@@ -88,10 +82,5 @@ endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT
 "// Made by cmake/code_version.cmake.
 #pragma once
-#define MH_CODE_LIGHT \"${LIGHT}\"
-#define MH_CODE_DETECT \"${DETECT}\"
-#define MH_CODE_RUN \"${RUN}\"
-#define MH_CODE_AUDIT \"${AUDIT}\"
-#define MH_CODE_EPISODES \"${EPISODES}\"
-#define MH_COMMIT \"${commit}\"
+${definitions}#define MH_COMMIT \"${commit}\"
 ")

@@ -7,7 +7,7 @@ install(TARGETS modelhouse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Data keep the layout of the sources: suites name their files relative to their own folder.
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)
-foreach(folder assets bench/pages/bundle bench/scenarios bench/suites robots/pepper robots/turtlebot3
+foreach(folder assets bench/report/pages/bundle bench/scenarios bench/suites robots/pepper robots/turtlebot3
                scenes/model_house scenes/rooms sim/sensors/levels)
   install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder})
 endforeach()
@@ -15,13 +15,7 @@ install(DIRECTORY examples/ DESTINATION ${data_dir}/examples PATTERN "__pycache_
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
 
-# Manual page and completion say what this very program takes.
 set(made ${PROJECT_BINARY_DIR}/made)
-add_custom_command(TARGET modelhouse POST_BUILD
-  COMMAND $<TARGET_FILE:modelhouse> manual > ${made}/modelhouse.1
-  COMMAND $<TARGET_FILE:modelhouse> completion bash > ${made}/completion.bash
-  COMMAND $<TARGET_FILE:modelhouse> completion zsh > ${made}/completion.zsh
-  COMMAND $<TARGET_FILE:modelhouse> completion fish > ${made}/completion.fish)
 install(FILES ${made}/modelhouse.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${made}/completion.bash RENAME modelhouse
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <string>
 
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

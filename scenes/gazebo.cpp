@@ -19,10 +19,10 @@
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/mesh_io/subdivide.hpp"
 #include "scenes/placed_objects.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/lower_case.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/lower_case.hpp"
 
 namespace mh {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "scenes/scene_fields.hpp"
-#include "slam/core/read_record.hpp"
+#include "slam/io/read_record.hpp"
 
 namespace mh {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/scene.hpp"
-#include "slam/core/guarded_child.hpp"
+#include "slam/io/guarded_child.hpp"
 
 namespace mh {
 

@@ -11,9 +11,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/narrowed.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/narrowed.hpp"
 
 namespace mh {
 namespace {

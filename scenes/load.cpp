@@ -16,10 +16,10 @@
 #include "scenes/placed_objects.hpp"
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/scannet.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/legible.hpp"
-#include "slam/core/lower_case.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/lower_case.hpp"
+#include "slam/io/printable.hpp"
 
 namespace mh {
 
@@ -53,7 +53,7 @@ Scene turned(Scene scene, const SceneFrame& frame) {
 }
 
 void make_legible(std::string& text) {
-  if (!is_legible(text)) text = legible(std::move(text));
+  if (!is_legible(text)) text = printable(std::move(text));
 }
 
 /// Names from files are printed and written into JSON, so they must be legible.

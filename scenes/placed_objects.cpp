@@ -16,8 +16,8 @@
 #include "scenes/scannet/files.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "scenes/thin_images.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/suggest.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh {
 namespace {

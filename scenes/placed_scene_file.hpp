@@ -11,7 +11,7 @@
 #include "scenes/mesh_io/label_rules.hpp"
 #include "scenes/scene_frame.hpp"
 #include "slam/core/labels.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 

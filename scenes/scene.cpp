@@ -10,7 +10,7 @@
 #include <set>
 #include <type_traits>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

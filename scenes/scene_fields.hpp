@@ -18,39 +18,39 @@
 namespace mh::scene_fields {
 
 template <class T, class U>
-concept Either = std::same_as<std::remove_const_t<T>, U>;
+concept MaybeConst = std::same_as<std::remove_const_t<T>, U>;
 
-template <class Archive, Either<Material> T>
+template <class Archive, MaybeConst<Material> T>
 void fields(Archive& archive, T& material) {
   auto& [name, base_color, texture, opacity, tile_m, emission, transmission] = material;
   archive(name, base_color, texture, opacity, tile_m, emission, transmission);
 }
 
-template <class Archive, Either<Instance> T>
+template <class Archive, MaybeConst<Instance> T>
 void fields(Archive& archive, T& instance) {
   auto& [id, class_id, name, min_m, max_m] = instance;
   archive(id, class_id, name, min_m, max_m);
 }
 
-template <class Archive, Either<Light> T>
+template <class Archive, MaybeConst<Light> T>
 void fields(Archive& archive, T& light) {
   auto& [kind, position_m, direction, radius_m, angular_radius_rad, color] = light;
   archive(kind, position_m, direction, radius_m, angular_radius_rad, color);
 }
 
-template <class Archive, Either<Room> T>
+template <class Archive, MaybeConst<Room> T>
 void fields(Archive& archive, T& room) {
   auto& [name, polygon_m, is_box] = room;
   archive(name, polygon_m, is_box);
 }
 
-template <class Archive, Either<Floor> T>
+template <class Archive, MaybeConst<Floor> T>
 void fields(Archive& archive, T& floor) {
   auto& [middle_m, up, rough_m, area_m2] = floor;
   archive(middle_m, up, rough_m, area_m2);
 }
 
-template <class Archive, Either<Scene> T>
+template <class Archive, MaybeConst<Scene> T>
 void fields(Archive& archive, T& scene) {
   auto& [name, positions_m, uvs, colors, light, triangles, material_of, class_of, instance_of,
          materials, instances, lights, rooms, floor] = scene;

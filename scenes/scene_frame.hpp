@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 

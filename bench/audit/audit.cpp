@@ -10,14 +10,14 @@
 
 #include <fmt/format.h>
 
-#include "bench/audit/ask_again.hpp"
+#include "bench/audit/query_replay.hpp"
 #include "bench/audit/retrieval.hpp"
 #include "bench/audit/trials.hpp"
 #include "bench/protocol/query.hpp"
-#include "bench/provenance/digest.hpp"
-#include "bench/systems/ours.hpp"
+#include "bench/systems/builtin.hpp"
 #include "bench/systems/timed.hpp"
-#include "slam/core/error.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/error.hpp"
 #include "slam/pipeline/locate.hpp"
 #include "slam/relocalize/relocalize.hpp"
 
@@ -270,7 +270,7 @@ class RunAuditor {
   SlamState& frozen_;
   TrueCamera camera_;
   TrueMap truth_;
-  AskAgain again_;
+  QueryReplay again_;
   std::vector<Asked> asked_;
 };
 
@@ -292,7 +292,7 @@ void require_auditable(const RunSpec& spec) {
 RunResult run_with_map(const RunSpec& spec, const World& world, RunTools tools, SlamState& frozen) {
   tools.system = [&](const RunSpec& of, const World& in) {
     frozen = make_slam(in.mapping->camera(), of.slam, in.vocabulary);
-    return make_our_system(frozen, OurSystemOptions{});
+    return make_builtin_system(frozen, BuiltinOptions{});
   };
   return run_one(spec, world, tools);
 }

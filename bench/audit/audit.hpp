@@ -2,10 +2,10 @@
 #pragma once
 
 #include "bench/audit/query_audit.hpp"
-#include "bench/plan/runs.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
+#include "bench/protocol/world/world.hpp"
 #include "bench/run/run_one.hpp"
-#include "bench/world/world.hpp"
+#include "bench/suite/runs.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh {

@@ -4,15 +4,15 @@
 #include <fmt/format.h>
 
 #include "bench/audit/audit.hpp"
-#include "bench/cache/cache.hpp"
-#include "bench/inputs/inputs.hpp"
-#include "bench/inputs/run_key.hpp"
-#include "bench/provenance/code_version.hpp"
-#include "bench/provenance/digest.hpp"
-#include "bench/provenance/json_fields.hpp"
+#include "bench/suite/cache.hpp"
+#include "bench/suite/code_version.hpp"
+#include "bench/suite/inputs.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "bench/suite/run_key.hpp"
 #include "bench/systems/timed.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {

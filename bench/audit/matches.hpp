@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bench/audit/true_view.hpp"
-#include "slam/core/fields.hpp"
+#include "slam/io/fields.hpp"
 #include "slam/match/trace.hpp"
 #include "slam/semantics/descriptor_distance.hpp"
 
@@ -45,7 +45,7 @@ struct GateCounts {
   GateCounts& operator+=(const GateCounts& more);
 };
 
-template <Either<GateCounts> C, class Visit>
+template <MaybeConst<GateCounts> C, class Visit>
 void fields(C& counts, Visit& v) {
   auto& [right, wrong] = counts;
   v("right", right);
@@ -69,7 +69,7 @@ struct XiEffect {
   XiEffect& operator+=(const XiEffect& more);
 };
 
-template <Either<XiEffect> E, class Visit>
+template <MaybeConst<XiEffect> E, class Visit>
 void fields(E& effect, Visit& v) {
   auto& [lost_to_threshold, lost_to_ratio, lost_to_another, lost_by_void, lost_at_border,
          lost_by_label_error, right_gained, wrong_removed, wrong_gained, right_differ,
@@ -94,7 +94,7 @@ struct StageMatches {
   StageMatches& operator+=(const StageMatches& more);
 };
 
-template <Either<StageMatches> M, class Visit>
+template <MaybeConst<StageMatches> M, class Visit>
 void fields(M& matches, Visit& v) {
   auto& [with_xi, without_xi, xi] = matches;
   v("with_xi", with_xi);

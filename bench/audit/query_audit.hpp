@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "bench/audit/matches.hpp"
-#include "bench/metrics/query_summary.hpp"
-#include "slam/core/fields.hpp"
-#include "slam/core/words.hpp"
+#include "bench/protocol/metrics/query_summary.hpp"
+#include "slam/io/fields.hpp"
+#include "slam/io/words.hpp"
 #include "slam/relocalize/outcome.hpp"
 
 namespace mh {
@@ -73,7 +73,7 @@ struct QueryAudit {
   MatchAudit matches{};
 };
 
-template <Either<QueryAudit> A, class Visit>
+template <MaybeConst<QueryAudit> A, class Visit>
 void fields(A& audit, Visit& v) {
   auto& [frame, correct, attempts, first_answered, first_correct, stage, cause, best_co_visible,
          nearest_m, nearest_deg, keyframes, relevant, candidates, relevant_candidates,
@@ -125,7 +125,7 @@ inline std::vector<QueryAudit>& queries(PointAudit& point, QuerySet set) {
   return of_query_set(point, set);
 }
 
-template <Either<PointAudit> A, class Visit>
+template <MaybeConst<PointAudit> A, class Visit>
 void fields(A& point, Visit& v) {
   auto& [held_out, second_tour, graded] = point;
   v("held_out", held_out);
@@ -141,7 +141,7 @@ struct RunAudit {
   bool map_from_cache = false;  ///< run_s is then without the mapping
 };
 
-template <Either<RunAudit> A, class Visit>
+template <MaybeConst<RunAudit> A, class Visit>
 void fields(A& audit, Visit& v) {
   auto& [points, audit_s, run_s, map_from_cache] = audit;
   v("points", points);

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "bench/plan/labels.hpp"
+#include "bench/suite/labels.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "bench/audit/query_audit.hpp"
-#include "bench/plan/runs.hpp"
-#include "bench/plan/suite.hpp"
+#include "bench/suite/runs.hpp"
+#include "bench/suite/suite.hpp"
 
 namespace mh {
 
 /// A run with its audit.
 struct AuditedRun {
   RunSpec spec;
-  std::string key;  ///< of the run's result (bench/inputs/run_key.hpp)
+  std::string key;  ///< of the run's result (bench/suite/run_key.hpp)
   RunAudit audit;
 };
 
@@ -44,7 +44,7 @@ struct AuditSummary {
   MatchAudit matches{};                                        ///< sums
 };
 
-template <Either<AuditSummary> S, class Visit>
+template <MaybeConst<AuditSummary> S, class Visit>
 void fields(S& summary, Visit& v) {
   auto& [queries, correct, first_correct, first_correct_of_solvable, wrong_candidates,
          nothing_in_sight, few_matches, false_answer, few_inliers, by_any, by_nearest,

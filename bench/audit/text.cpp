@@ -4,7 +4,7 @@
 #include "bench/audit/write.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
-#include "slam/core/counted.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {

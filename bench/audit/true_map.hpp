@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/audit/true_view.hpp"
-#include "bench/metrics/query_summary.hpp"
-#include "bench/world/world.hpp"
+#include "bench/protocol/metrics/query_summary.hpp"
+#include "bench/protocol/world/world.hpp"
 #include "slam/map/map.hpp"
 
 namespace mh {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "bench/provenance/json_fields.hpp"
 #include "bench/report/text_table.hpp"
+#include "bench/suite/json_fields.hpp"
 
 namespace mh {
 namespace {

@@ -10,9 +10,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bench/plan/shipped.hpp"
-#include "slam/core/read_record.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "bench/suite/shipped.hpp"
+#include "slam/io/read_record.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh::cli {
 

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/audit/write.hpp"
-#include "bench/cache/cache.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
@@ -14,9 +13,10 @@
 #include "bench/cli/write_audit.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/store/store.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/json_text.hpp"
+#include "bench/suite/cache.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/json_text.hpp"
 
 namespace mh::cli {
 namespace {

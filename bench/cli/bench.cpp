@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/audit/audit.hpp"
-#include "bench/cache/cache.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
@@ -20,16 +19,17 @@
 #include "bench/cli/set_option.hpp"
 #include "bench/cli/to_parent.hpp"
 #include "bench/cli/write_audit.hpp"
-#include "bench/episodes/report.hpp"
-#include "bench/protocol/config.hpp"
+#include "bench/run/episodes/report.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/run/slurm.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/settings_io.hpp"
+#include "bench/suite/cache.hpp"
+#include "bench/suite/protocol_config.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh::cli {
 namespace {

@@ -5,22 +5,22 @@
 
 #include <fmt/format.h>
 
-#include "bench/cache/cache.hpp"
-#include "bench/check/baseline.hpp"
-#include "bench/check/from_runs.hpp"
-#include "bench/check/report.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
-#include "bench/provenance/digest.hpp"
+#include "bench/results/gate/baseline.hpp"
+#include "bench/results/gate/from_runs.hpp"
+#include "bench/results/gate/report.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/signal_watch.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "bench/suite/cache.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh::cli {
 namespace {

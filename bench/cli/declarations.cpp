@@ -11,8 +11,8 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/plan/shipped.hpp"
-#include "slam/core/suggest.hpp"
+#include "bench/suite/shipped.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh::cli {
 namespace {

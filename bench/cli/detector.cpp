@@ -14,20 +14,20 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/detector_option.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/inputs/recorded_camera.hpp"
-#include "bench/studies/draw_detections.hpp"
-#include "bench/world/cached_detections.hpp"
+#include "bench/lab/draw_detections.hpp"
+#include "bench/protocol/world/cached_detections.hpp"
+#include "bench/suite/recorded_camera.hpp"
 #include "scenes/image_file.hpp"
-#include "scenes/images/write_image.hpp"
-#include "scenes/recorded/frame_sequence.hpp"
-#include "scenes/recorded/open_sequence.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/legible.hpp"
-#include "slam/core/temporary_folder.hpp"
-#include "slam/core/text_file.hpp"
+#include "scenes/recordings/frame_sequence.hpp"
+#include "scenes/recordings/images/write_image.hpp"
+#include "scenes/recordings/open_sequence.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/printable.hpp"
+#include "slam/io/temporary_folder.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh::cli {
 namespace {
@@ -78,7 +78,7 @@ class Frames {
   }
   /// " of FILE" of an image; "" of a recording's frame.
   std::string source_of(std::size_t i) const {
-    return sequence_ ? "" : " of " + legible(images_[i]);
+    return sequence_ ? "" : " of " + printable(images_[i]);
   }
   RgbdFrame frame(std::size_t i) const {
     if (sequence_) return sequence_->frame(i, RandomStream());

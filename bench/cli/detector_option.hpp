@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "bench/cache/cache.hpp"
-#include "slam/core/error.hpp"
+#include "bench/suite/cache.hpp"
 #include "slam/detect/detector.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::cli {
 

@@ -16,13 +16,13 @@
 #include "robots/model/robot.hpp"
 #include "scenes/floor.hpp"
 #include "scenes/load.hpp"
-#include "scenes/recorded/ros/recorder.hpp"
+#include "scenes/recordings/ros/recorder.hpp"
 #include "sim/motion/robot_readings.hpp"
 #include "sim/world/robot_messages.hpp"
 #include "sim/world/travel.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::cli {
 namespace {

@@ -7,20 +7,20 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cache/cache.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
-#include "bench/episodes/run_episodes.hpp"
-#include "bench/episodes/strip.hpp"
-#include "bench/provenance/json_fields.hpp"
+#include "bench/run/episodes/run_episodes.hpp"
+#include "bench/run/episodes/strip.hpp"
 #include "bench/run/run_one.hpp"
+#include "bench/suite/cache.hpp"
+#include "bench/suite/json_fields.hpp"
 #include "bench/systems/outside_error.hpp"
-#include "scenes/images/write_image.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/suggest.hpp"
+#include "scenes/recordings/images/write_image.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh::cli {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/metrics/evaluate.hpp"
+#include "bench/protocol/metrics/evaluate.hpp"
 
 #include <cmath>
 #include <map>
@@ -13,9 +13,9 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::cli {
 namespace {

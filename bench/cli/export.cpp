@@ -7,7 +7,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/report/export.hpp"
 #include "bench/run/run.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh::cli {
 namespace {

@@ -6,27 +6,52 @@
 #include <fmt/format.h>
 
 #include "bench/cli/write_audit.hpp"
-#include "bench/plan/runs.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/json.hpp"
+#include "bench/report/pages/verdict.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
+#include "bench/suite/runs.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::cli {
+namespace {
+
+/// What is decided by the suite's measure: a line for each pair of systems and set of queries, as
+/// far as a screen has room.
+std::string findings_text(const Suite& suite, const std::vector<RunResult>& runs) {
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  std::size_t said = 0, more = 0;
+  for (const Judged& j : judged(suite, make_rows(suite, runs))) {
+    if (!j.comparison.in_family || j.comparison.what.measure != name(suite.measure)) continue;
+    if (said == kMost) {
+      ++more;
+      continue;
+    }
+    ++said;
+    text += fmt::format("  {} - {}: {}\n", suite.systems[j.systems.first].name,
+                        suite.systems[j.systems.second].name, finding(suite, j));
+  }
+  if (more > 0) text += fmt::format("  and {} more in table.txt\n", more);
+  return text.empty() ? text : "\n" + text;
+}
+
+}  // namespace
 
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json) {
   forget_other_audit(out);
-  const std::string table =
-      write_results(out, suite, results.runs, results.failed, results.missing);
+  write_results(out, suite, results.runs, results.failed, results.missing);
   if (json) {
     fmt::print("{}\n", results_json(suite, results.runs, results.failed, results.missing).dump(2));
   } else {
-    fmt::print("{}\n", table);
-    if (!results.runs.empty()) fmt::print("{}\n", times_table(suite, results.runs));
-    fmt::print("results in {}\n", out.string());
+    fmt::print(
+        "{}{}\n{}: all figures in table.txt, times in times.txt; as pages: modelhouse report "
+        "{}\n",
+        results_screen(suite, results.runs, results.failed, results.missing),
+        findings_text(suite, results.runs), out.string(), out.string());
   }
   throw_failures(results.failed, fmt::format("why: see {}", (out / "table.txt").string()),
                  "; --retry-failed tries again");

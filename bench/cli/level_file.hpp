@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "sim/sensors/config.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh::cli {
 

@@ -21,9 +21,9 @@
 #include "bench/run/run.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/legible.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/printable.hpp"
 
 namespace {
 
@@ -37,7 +37,7 @@ enum ExitCode {
 
 int fail(int code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  fmt::print(stderr, "{}{}\n", mh::kErrorMark, mh::legible(std::move(message)));
+  fmt::print(stderr, "{}{}\n", mh::kErrorMark, mh::printable(std::move(message)));
   return code;
 }
 

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "bench/plan/shipped.hpp"
+#include "bench/suite/shipped.hpp"
 #include "sim/world/travel.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/suggest.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh::cli {
 

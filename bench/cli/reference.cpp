@@ -12,16 +12,16 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/drawing/false_colors.hpp"
-#include "bench/protocol/config.hpp"
+#include "bench/report/drawing/false_colors.hpp"
+#include "bench/suite/protocol_config.hpp"
 #include "robots/model/robot_keys.hpp"
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/materials/materials.hpp"
 #include "sim/sensors/config.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/core/labels.hpp"
-#include "slam/core/settings_io.hpp"
 #include "slam/detect/settings.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh::cli {
 namespace {

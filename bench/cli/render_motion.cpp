@@ -8,9 +8,9 @@
 
 #include "bench/cli/arguments.hpp"
 #include "sim/motion/replay.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::cli {
 namespace {

@@ -5,16 +5,16 @@
 
 #include <fmt/format.h>
 
+#include "bench/audit/replay/replay.hpp"
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/usual_cache.hpp"
-#include "bench/pages/place_images.hpp"
-#include "bench/pages/plot.hpp"
-#include "bench/pages/write.hpp"
-#include "bench/replay/replay.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/suggest.hpp"
+#include "bench/report/pages/place_images.hpp"
+#include "bench/report/pages/plot.hpp"
+#include "bench/report/pages/write.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh::cli {
 namespace {

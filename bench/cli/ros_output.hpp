@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "scenes/messages/message_writer.hpp"
+#include "scenes/recordings/messages/message_writer.hpp"
 
 namespace mh::cli {
 

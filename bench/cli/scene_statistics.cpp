@@ -11,16 +11,16 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/usual_cache.hpp"
-#include "bench/studies/survey.hpp"
-#include "bench/world/cached_light.hpp"
+#include "bench/lab/survey.hpp"
+#include "bench/protocol/world/cached_light.hpp"
 #include "scenes/image_file.hpp"
 #include "scenes/load.hpp"
-#include "scenes/recorded/tum_folder.hpp"
+#include "scenes/recordings/tum_folder.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/sequence.hpp"
 #include "sim/world/travel.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::cli {
 namespace {

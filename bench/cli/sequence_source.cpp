@@ -8,14 +8,14 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/usual_cache.hpp"
-#include "bench/inputs/recorded_camera.hpp"
+#include "bench/protocol/world/cached_light.hpp"
 #include "bench/results/statistics.hpp"
-#include "bench/world/cached_light.hpp"
-#include "scenes/recorded/open_sequence.hpp"
+#include "bench/suite/recorded_camera.hpp"
+#include "scenes/recordings/open_sequence.hpp"
 #include "sim/world/scene_sequence.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
 #include "slam/features/undistort.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::cli {
 namespace {

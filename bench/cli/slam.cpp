@@ -13,13 +13,13 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/sequence_source.hpp"
 #include "bench/cli/slam_report.hpp"
+#include "bench/protocol/world/cached_detections.hpp"
+#include "bench/protocol/world/first_frames.hpp"
 #include "bench/run/run_one.hpp"
-#include "bench/systems/ours.hpp"
-#include "bench/world/cached_detections.hpp"
-#include "bench/world/first_frames.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
+#include "bench/systems/builtin.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 #include "slam/pipeline/map_file.hpp"
 
 namespace mh::cli {
@@ -131,16 +131,15 @@ RunResult run_sequence(const SlamArguments& options, const World& world, SlamSta
   spec.slam = state.config;
   spec.points = {state.config.semantics};
   if (!options.protocol) spec.protocol = live_feed();
-  const OurSystemOptions ours{.observers = observers,
-                              .small_map = options.protocol ? 0 : kSmallMap};
+  const BuiltinOptions ours{.observers = observers, .small_map = options.protocol ? 0 : kSmallMap};
   if (!options.localize)
     return run_one(
         spec, world,
-        {.system = [&](const RunSpec&, const World&) { return make_our_system(state, ours); },
+        {.system = [&](const RunSpec&, const World&) { return make_builtin_system(state, ours); },
          .observe = watch,
          .first = first,
          .occupancy = false});
-  const auto frozen = make_our_system(state, ours);
+  const auto frozen = make_builtin_system(state, ours);
   frozen->freeze();
   Localization found =
       localize_sequence(*frozen, *world.mapping, spec.protocol, RandomStream(options.seed), watch);

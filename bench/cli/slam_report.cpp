@@ -9,14 +9,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/provenance/digest.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/systems/timed.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/legible.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/printable.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "slam/pipeline/export.hpp"
 
 namespace mh::cli {
@@ -53,7 +53,7 @@ const std::vector<QueryScore>* held_out_of(const RunResult& run) {
 
 Json summary_json(const SlamReport& report) {
   const RunResult& run = report.run;
-  Json json = {{"source", legible(report.source)},
+  Json json = {{"source", printable(report.source)},
                {"seed", run.spec.seed},
                {"frames", run.mapping.offered},
                {"tracked", report.log.tracked},

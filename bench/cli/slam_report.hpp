@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/metrics/evaluate.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/metrics/evaluate.hpp"
+#include "bench/protocol/run_result.hpp"
 #include "bench/run/frame_log.hpp"
 #include "bench/systems/stage_clock.hpp"
 #include "slam/pipeline/settings.hpp"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bench/cache/cache.hpp"
+#include "bench/suite/cache.hpp"
 
 namespace mh::cli {
 

@@ -9,8 +9,8 @@
 #include "bench/cli/finish.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
-#include "bench/provenance/digest.hpp"
-#include "bench/verify/verify.hpp"
+#include "bench/run/verify.hpp"
+#include "slam/core/digest.hpp"
 
 namespace mh::cli {
 namespace {

@@ -10,13 +10,13 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
-#include "bench/inputs/recorded_camera.hpp"
-#include "bench/provenance/digest.hpp"
-#include "bench/studies/vocabulary_score.hpp"
-#include "bench/studies/vocabulary_training.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "bench/lab/vocabulary_score.hpp"
+#include "bench/lab/vocabulary_training.hpp"
+#include "bench/suite/recorded_camera.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh::cli {
 namespace {

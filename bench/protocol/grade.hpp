@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "slam/core/fields.hpp"
+#include "slam/io/fields.hpp"
 
 namespace mh {
 
@@ -18,7 +18,7 @@ struct QueryGrade {
   friend bool operator==(const QueryGrade&, const QueryGrade&) = default;
 };
 
-template <Either<QueryGrade> G, class Visit>
+template <MaybeConst<QueryGrade> G, class Visit>
 void fields(G& grade, Visit& v) {
   auto& [mapped_m, mapped_deg, shown, speed] = grade;
   v("mapped_m", mapped_m);

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "bench/protocol/config.hpp"
+#include "bench/suite/protocol_config.hpp"
 #include "slam/core/trajectory.hpp"
 #include "slam/loop/closure.hpp"
 

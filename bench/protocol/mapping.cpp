@@ -5,7 +5,7 @@
 
 #include "bench/protocol/step_digest.hpp"
 #include "bench/protocol/streams.hpp"
-#include "bench/provenance/digest.hpp"
+#include "slam/core/digest.hpp"
 
 namespace mh {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "bench/protocol/config.hpp"
 #include "bench/protocol/system.hpp"
 #include "bench/protocol/usable_frame.hpp"
-#include "bench/provenance/digest.hpp"
+#include "bench/suite/protocol_config.hpp"
+#include "slam/core/digest.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {
@@ -28,7 +28,7 @@ struct MappedFrame {
   std::uint64_t pose_digest = 0;
 };
 
-template <Either<MappedFrame> F, class Visit>
+template <MaybeConst<MappedFrame> F, class Visit>
 void fields(F& call, Visit& v) {
   auto& [index, stamp_ns, restart, status, inliers, keyframe_added, map_reset, image_digest,
          matching_digest, pose_digest] = call;
@@ -58,7 +58,7 @@ struct MappingOutcome {
 };
 
 /// All fields except the calls.
-template <Either<MappingOutcome> O, class Visit>
+template <MaybeConst<MappingOutcome> O, class Visit>
 void fields(O& outcome, Visit& v) {
   auto& [calls, dropped, failures, restarts, before_map, gave_up, offered, matches, loops,
          skipped] = outcome;

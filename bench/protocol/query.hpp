@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "bench/protocol/config.hpp"
 #include "bench/protocol/mapping.hpp"
 #include "bench/protocol/system.hpp"
+#include "bench/suite/protocol_config.hpp"
 
 namespace mh {
 
@@ -26,7 +26,7 @@ struct QueryAnswer {
   std::uint64_t pose_digest = 0;
 };
 
-template <Either<QueryAnswer> A, class Visit>
+template <MaybeConst<QueryAnswer> A, class Visit>
 void fields(A& answer, Visit& v) {
   auto& [index, blank_frames, attempts, world_from_camera, stage, candidates, matches, image_digest,
          matching_digest, pose_digest] = answer;

@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "slam/core/fields.hpp"
 #include "slam/core/se3.hpp"
 #include "slam/core/track_status.hpp"
+#include "slam/io/fields.hpp"
 #include "slam/loop/closure.hpp"
 #include "slam/match/counts.hpp"
 #include "slam/relocalize/outcome.hpp"
@@ -25,7 +25,7 @@ struct Candidates {
   friend bool operator==(const Candidates&, const Candidates&) = default;
 };
 
-template <Either<Candidates> C, class Visit>
+template <MaybeConst<Candidates> C, class Visit>
 void fields(C& candidates, Visit& v) {
   auto& [keyframes, c1, c2, c3, final, label_mass, gamma, unscored, stale, stale_weight,
          stale_age] = candidates;

@@ -73,7 +73,7 @@ struct QueryScore {
   QueryGrade grade = {};
 };
 
-template <Either<QueryScore> S, class Visit>
+template <MaybeConst<QueryScore> S, class Visit>
 void fields(S& score, Visit& v) {
   auto& [answer, stamp_ns, true_world_from_camera, success, correct, false_positive, distance_m,
          angle_deg, aligned_distance_m, grade] = score;

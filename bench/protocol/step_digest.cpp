@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/protocol/step_digest.hpp"
 
-#include "bench/provenance/digest.hpp"
+#include "slam/core/digest.hpp"
 
 namespace mh {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "slam/core/error.hpp"
-#include "slam/core/fields.hpp"
 #include "slam/core/sequence.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/fields.hpp"
 
 namespace mh {
 
@@ -22,7 +22,7 @@ struct SkippedFrames {
   friend bool operator==(const SkippedFrames&, const SkippedFrames&) = default;
 };
 
-template <Either<SkippedFrames> S, class Visit>
+template <MaybeConst<SkippedFrames> S, class Visit>
 void fields(S& skipped, Visit& v) {
   auto& [count, reasons] = skipped;
   v("frames", count);

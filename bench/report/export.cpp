@@ -118,11 +118,16 @@ std::string export_csv(const Store& store) {
         ", (SELECT value FROM metrics m WHERE m.key = r.key AND m.point = o.point AND m.name = "
         "'{0}') AS \"{0}\"",
         names[i][0]);
+  std::string settings;
+  const auto add = [&](const char* name, const auto&, const SettingRange&, const char*) {
+    settings += fmt::format(", o.{}", name);
+  };
+  const SemanticConfig any;
+  fields(any, add);
   Rows rows = store.rows(
       "SELECT p.name AS run, r.environment, r.category, r.level, r.system, r.labels, r.trial, "
-      "r.seed, r.status, r.error, o.point, o.gamma, o.label_mass, o.xi, o.alpha, o.beta, "
-      "o.overlap" +
-      columns +
+      "r.seed, r.status, r.error, o.point" +
+      settings + columns +
       " FROM plan p JOIN runs r ON r.key = p.key LEFT JOIN points o ON o.key = r.key "
       "ORDER BY p.position, o.point");
   add_varied(store.planned_suite(), rows);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report/figures_json.hpp"
 
-#include "bench/provenance/json_fields.hpp"
+#include "bench/suite/json_fields.hpp"
 
 namespace mh {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/metrics/metric.hpp"
+#include "bench/protocol/metrics/metric.hpp"
 #include "slam/match/counts.hpp"
 
 namespace mh {

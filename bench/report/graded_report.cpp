@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "bench/provenance/json_fields.hpp"
 #include "bench/report/comparisons_text.hpp"
 #include "bench/report/text_table.hpp"
-#include "slam/core/counted.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {

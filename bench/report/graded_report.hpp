@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/drawing/plot.hpp"
+#include "bench/report/drawing/plot.hpp"
 #include "bench/results/graded.hpp"
 
 namespace mh {

@@ -3,12 +3,12 @@
 
 #include <opencv2/core/version.hpp>
 
-#include "bench/provenance/json_fields.hpp"
 #include "bench/report/figures_json.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/run_json.hpp"
 #include "bench/report/suite_json.hpp"
 #include "bench/results/scenes.hpp"
+#include "bench/suite/json_fields.hpp"
 
 namespace mh {
 namespace {

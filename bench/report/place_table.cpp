@@ -11,7 +11,7 @@
 #include "bench/report/comparisons_text.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
-#include "slam/core/counted.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {
@@ -201,7 +201,7 @@ std::string common_ate(const Block& block) {
   return text;
 }
 
-std::string block_text(const Block& block) {
+std::string block_text(const Block& block, Extent extent) {
   const Suite& suite = block.suite;
   const Row& row = *block.rows.front();
   std::string text = fmt::format(
@@ -209,7 +209,9 @@ std::string block_text(const Block& block) {
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
       level_name(suite.levels[row.level]), with_labels(row.labels), counted(suite.trials, "trial"),
       suite.trials == 1 ? "" : " (medians)", shortened(suite, block.all));
-  text += paper_table(block);
+  const std::string table = paper_table(block);
+  if (extent == Extent::kScreen) return text + (table.empty() ? mapping_details(block) : table);
+  text += table;
   for (const QuerySet set : kQuerySets)
     if (most_queries(block, set) > 0)
       text += query_details(block, set) + candidate_details(block, set);
@@ -222,7 +224,7 @@ std::string block_text(const Block& block) {
 
 }  // namespace
 
-std::string place_table(const Suite& suite, std::span<const Row> rows) {
+std::string place_table(const Suite& suite, std::span<const Row> rows, Extent extent) {
   std::string text;
   for (auto first = rows.begin(); first != rows.end();) {
     Block block{suite, rows, {}, {}};
@@ -231,9 +233,10 @@ std::string place_table(const Suite& suite, std::span<const Row> rows) {
       block.rows.push_back(&*end);
       if (!already_shown(suite, *end)) block.detailed.push_back(&*end);
     }
-    text += block_text(block);
+    text += block_text(block, extent);
     first = end;
   }
+  if (extent == Extent::kScreen) return text;
   for (const Family& family : compare_systems(suite, rows)) text += comparisons_text(suite, family);
   return text;
 }

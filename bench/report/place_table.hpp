@@ -4,12 +4,14 @@
 #include <span>
 #include <string>
 
+#include "bench/report/text_table.hpp"
 #include "bench/results/summary.hpp"
 
 namespace mh {
 
 /// Table of a suite of one place: a block for each level and kind of labels, then how the systems
-/// differ.
-std::string place_table(const Suite& suite, std::span<const Row> rows);
+/// differ. On a screen: of each block the table in the form of the paper's.
+std::string place_table(const Suite& suite, std::span<const Row> rows,
+                        Extent extent = Extent::kWhole);
 
 }  // namespace mh

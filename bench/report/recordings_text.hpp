@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "bench/plan/suite.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
+#include "bench/suite/suite.hpp"
 
 namespace mh {
 

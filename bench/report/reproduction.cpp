@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "bench/plan/outside_program.hpp"
-#include "bench/plan/spec_json.hpp"
-#include "bench/provenance/code_version.hpp"
-#include "bench/provenance/digest.hpp"
-#include "bench/provenance/fingerprint.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/suite_json.hpp"
+#include "bench/suite/code_version.hpp"
+#include "bench/suite/fingerprint.hpp"
+#include "bench/suite/outside_program.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "slam/core/digest.hpp"
 
 namespace mh {
 

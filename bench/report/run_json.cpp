@@ -3,10 +3,10 @@
 
 #include <numbers>
 
-#include "bench/plan/spec_json.hpp"
 #include "bench/protocol/loop_audit.hpp"
-#include "bench/provenance/json_fields.hpp"
 #include "bench/report/figures_json.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "bench/suite/spec_json.hpp"
 
 namespace mh {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
 
 namespace mh {
 

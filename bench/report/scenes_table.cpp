@@ -8,7 +8,7 @@
 #include "bench/report/comparisons_text.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
-#include "slam/core/counted.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {
@@ -36,9 +36,11 @@ std::string categories_text(const Suite& suite, std::span<const CategoryRow> row
 
 }  // namespace
 
-std::string scenes_table(const Suite& suite, std::span<const Row> rows) {
+std::string scenes_table(const Suite& suite, std::span<const Row> rows, Extent extent) {
   std::string text;
-  const std::vector<CategoryRow> all = make_category_rows(suite, rows);
+  std::vector<CategoryRow> all = make_category_rows(suite, rows);
+  if (extent == Extent::kScreen)
+    std::erase_if(all, [](const CategoryRow& row) { return row.category != kAllCategories; });
   for (auto first = all.begin(); first != all.end();) {
     const auto end = std::find_if(first, all.end(), [&](const CategoryRow& row) {
       return row.level != first->level || row.labels != first->labels;
@@ -50,6 +52,7 @@ std::string scenes_table(const Suite& suite, std::span<const Row> rows) {
     text += categories_text(suite, {first, end}, all);
     first = end;
   }
+  if (extent == Extent::kScreen) return text;
   for (const SceneFamily& family : compare_over_scenes(suite, rows))
     text += comparisons_text(suite, family);
   return text;

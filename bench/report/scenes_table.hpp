@@ -4,12 +4,14 @@
 #include <span>
 #include <string>
 
+#include "bench/report/text_table.hpp"
 #include "bench/results/summary.hpp"
 
 namespace mh {
 
 /// Table of a suite of many places, in the form of the paper's Table 1: a row per category and
-/// system, then how the systems differ over scenes.
-std::string scenes_table(const Suite& suite, std::span<const Row> rows);
+/// system, then how the systems differ over scenes. On a screen: the rows over all categories.
+std::string scenes_table(const Suite& suite, std::span<const Row> rows,
+                         Extent extent = Extent::kWhole);
 
 }  // namespace mh

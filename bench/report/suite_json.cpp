@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "bench/plan/shipped.hpp"
-#include "bench/plan/spec_json.hpp"
-#include "bench/provenance/json_fields.hpp"
-#include "scenes/recorded/open_sequence.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "bench/suite/shipped.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "scenes/recordings/open_sequence.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {
@@ -59,18 +59,11 @@ Json recorded_json(const Suite& suite, const Environment& e) {
 
 Json environment_json(const Suite& suite, const Environment& e) {
   if (e.is_recorded()) return recorded_json(suite, e);
-  Json json = {{"name", e.name},
-               {"category", e.category},
-               {"scene", source_json(suite, e.scene)},
-               {"robot", from_suite(suite, e.robot)},
-               {"mapping_tour", source_json(suite, e.mapping_tour)},
-               {"query_tour", e.query_tour ? source_json(suite, *e.query_tour) : Json()}};
+  Json json = {{"name", e.name}, {"category", e.category}};
+  sources(e, [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
+    json[source.key] = path ? source_json(suite, *path) : Json();
+  });
   json.update(to_json(e.frame));
-  add_sources(json, suite,
-              {{"query_scene", e.query_scene},
-               {"kidnapped_tour", e.kidnapped_tour},
-               {"sensors", e.sensors},
-               {"pedestrian", e.pedestrian}});
   return json;
 }
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/plan/suite.hpp"
+#include "bench/suite/suite.hpp"
 
 namespace mh {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "bench/drawing/plot.hpp"
+#include "bench/report/drawing/plot.hpp"
 #include "bench/results/sweep.hpp"
 
 namespace mh {

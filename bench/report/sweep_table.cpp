@@ -11,7 +11,7 @@
 #include "bench/report/wording.hpp"
 #include "bench/results/sweep.hpp"
 #include "slam/config/slam.hpp"
-#include "slam/core/counted.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {

@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bench/plan/parameters.hpp"
-#include "bench/plan/runs.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/place_table.hpp"
 #include "bench/report/recordings_text.hpp"
 #include "bench/report/scenes_table.hpp"
 #include "bench/report/sweep_table.hpp"
+#include "bench/suite/parameters.hpp"
+#include "bench/suite/runs.hpp"
 #include "slam/config/slam.hpp"
-#include "slam/core/counted.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {
@@ -82,14 +82,29 @@ std::vector<std::string> base_lines(const Suite& suite) {
   return lines;
 }
 
+namespace {
+
+std::string main_table(const Suite& suite, std::span<const Row> rows, Extent extent) {
+  return parameter_points(suite).size() > 1 ? sweep_table(suite, rows)
+         : suite.environments.size() > 1    ? scenes_table(suite, rows, extent)
+                                            : place_table(suite, rows, extent);
+}
+
+}  // namespace
+
 std::string results_table(const Suite& suite, std::span<const RunResult> runs,
                           std::span<const FailedRun> failed, std::span<const std::string> missing) {
   const std::vector<Row> rows = make_rows(suite, runs, failed);
-  return warning_of_cut(suite, runs) +
-         (parameter_points(suite).size() > 1 ? sweep_table(suite, rows)
-          : suite.environments.size() > 1    ? scenes_table(suite, rows)
-                                             : place_table(suite, rows)) +
+  return warning_of_cut(suite, runs) + main_table(suite, rows, Extent::kWhole) +
          graded_table(suite, rows) + base_text(suite) + recordings_text(suite, runs) +
+         failures_text(failed) + missing_text(missing);
+}
+
+std::string results_screen(const Suite& suite, std::span<const RunResult> runs,
+                           std::span<const FailedRun> failed,
+                           std::span<const std::string> missing) {
+  return warning_of_cut(suite, runs) +
+         main_table(suite, make_rows(suite, runs, failed), Extent::kScreen) +
          failures_text(failed) + missing_text(missing);
 }
 

@@ -17,6 +17,11 @@ std::string results_table(const Suite& suite, std::span<const RunResult> runs,
                           std::span<const FailedRun> failed = {},
                           std::span<const std::string> missing = {});
 
+/// The part of it that fits on a screen, without the comparisons.
+std::string results_screen(const Suite& suite, std::span<const RunResult> runs,
+                           std::span<const FailedRun> failed = {},
+                           std::span<const std::string> missing = {});
+
 /// Whose rules relocalization follows, so that no figure stands without its base, and the systems
 /// with settings of their own, a line each.
 std::vector<std::string> base_lines(const Suite& suite);

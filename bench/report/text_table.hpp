@@ -7,6 +7,9 @@
 
 namespace mh {
 
+/// How much of the results a text gives: all, or what fits on a screen.
+enum class Extent { kWhole, kScreen };
+
 /// Rows of cells under headings, for a terminal. Each column is as wide as its widest cell, columns
 /// are separated by two spaces, and every line starts with two.
 class TextTable {

@@ -10,7 +10,7 @@
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
 #include "slam/config/slam.hpp"
-#include "slam/core/counted.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/drawing/canvas.hpp"
-#include "bench/drawing/slice.hpp"
-#include "slam/core/counted.hpp"
+#include "bench/report/drawing/canvas.hpp"
+#include "bench/report/drawing/slice.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {

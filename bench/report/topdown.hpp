@@ -3,9 +3,9 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
+#include "bench/protocol/world/world.hpp"
 #include "bench/results/summary.hpp"
-#include "bench/world/world.hpp"
 
 namespace mh {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/counted.hpp"
+#include "slam/io/counted.hpp"
 
 namespace mh {
 namespace {

@@ -3,21 +3,21 @@
 
 #include <fmt/format.h>
 
-#include "bench/drawing/contact_sheet.hpp"
-#include "bench/inputs/run_key.hpp"
-#include "bench/plan/spec_json.hpp"
-#include "bench/provenance/code_version.hpp"
-#include "bench/provenance/digest.hpp"
+#include "bench/report/drawing/contact_sheet.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/sweep.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/topdown.hpp"
-#include "scenes/images/png.hpp"
-#include "scenes/images/write_image.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "bench/suite/code_version.hpp"
+#include "bench/suite/run_key.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "scenes/recordings/images/png.hpp"
+#include "scenes/recordings/images/write_image.hpp"
+#include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/occupancy/objects.hpp"
 
 namespace mh {
@@ -103,10 +103,8 @@ void write_views(const fs::path& file, const World& world, const RunSpec& spec) 
       identity);
 }
 
-std::string write_results(const fs::path& folder, const Suite& suite,
-                          std::span<const RunResult> runs, std::span<const FailedRun> failed,
-                          std::span<const std::string> missing) {
-  const std::string table = results_table(suite, runs, failed, missing);
+void write_results(const fs::path& folder, const Suite& suite, std::span<const RunResult> runs,
+                   std::span<const FailedRun> failed, std::span<const std::string> missing) {
   write_atomically(folder / "times.json", times_json(runs).dump(2) + "\n");
   write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
   write_atomically(folder / "times.txt", times_table(suite, runs));
@@ -116,10 +114,9 @@ std::string write_results(const fs::path& folder, const Suite& suite,
   if (parameter_points(suite).size() > 1)
     for (const SweepResult& result : sweep_results(suite, rows))
       draw_chart(folder / sweep_image_name(suite, result), sweep_chart(suite, rows, result));
-  write_atomically(folder / "table.txt", table);
+  write_atomically(folder / "table.txt", results_table(suite, runs, failed, missing));
   write_atomically(folder / "results.json",
                    results_json(suite, runs, failed, missing).dump(2) + "\n");
-  return table;
 }
 
 }  // namespace mh

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "bench/results/run_result.hpp"
-#include "bench/world/world.hpp"
+#include "bench/protocol/run_result.hpp"
+#include "bench/protocol/world/world.hpp"
 
 namespace mh {
 
@@ -27,9 +27,8 @@ bool shows_another_run(const std::filesystem::path& folder, const std::string& k
 void write_views(const std::filesystem::path& file, const World& world, const RunSpec& spec);
 
 /// Writes the combined results of a suite's runs: results.json, times.json, table.txt, times.txt.
-/// @returns the printed table.
-std::string write_results(const std::filesystem::path& folder, const Suite& suite,
-                          std::span<const RunResult> runs, std::span<const FailedRun> failed = {},
-                          std::span<const std::string> missing = {});
+void write_results(const std::filesystem::path& folder, const Suite& suite,
+                   std::span<const RunResult> runs, std::span<const FailedRun> failed = {},
+                   std::span<const std::string> missing = {});
 
 }  // namespace mh

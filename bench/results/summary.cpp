@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/metrics/measures.hpp"
+#include "bench/protocol/metrics/measures.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {

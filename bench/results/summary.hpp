@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "bench/metrics/mapping_counts.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/metrics/mapping_counts.hpp"
+#include "bench/protocol/run_result.hpp"
 #include "bench/results/statistics.hpp"
 
 namespace mh {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/plan/runs.hpp"
+#include "bench/suite/runs.hpp"
 
 namespace mh {
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "bench/cache/cache.hpp"
-#include "scenes/recorded/open_sequence.hpp"
-#include "slam/core/files.hpp"
+#include "bench/suite/cache.hpp"
+#include "scenes/recordings/open_sequence.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {
@@ -40,18 +40,16 @@ void add_written(const fs::path& folder, int depth, std::vector<fs::path>& writt
 
 /// Where the environment's inputs lie, by their names; what is generated lies nowhere.
 std::map<std::string_view, fs::path> sources_of(const Environment& e) {
-  std::map<std::string_view, fs::path> sources = {{"scene", e.scene},
-                                                  {"mapping_tour", e.mapping_tour}};
-  const auto add = [&](std::string_view name, const std::optional<fs::path>& source) {
-    if (source) sources[name] = *source;
-  };
-  add("query_tour", e.query_tour);
-  add("query_scene", e.query_scene);
-  add("kidnapped_tour", e.kidnapped_tour);
-  add("pedestrian", e.pedestrian);
-  if (e.is_recorded()) sources = {{"sequence", split_sequence(e.sequence).second}};
-  if (e.queries) sources["queries"] = split_sequence(*e.queries).second;
-  return sources;
+  std::map<std::string_view, fs::path> all;
+  if (e.is_recorded()) {
+    all["sequence"] = split_sequence(e.sequence).second;
+    if (e.queries) all["queries"] = split_sequence(*e.queries).second;
+    return all;
+  }
+  sources(e, [&](const WorldSource& source, const std::optional<fs::path>& path) {
+    if (path && source.reveals_truth) all[source.key] = *path;
+  });
+  return all;
 }
 
 }  // namespace

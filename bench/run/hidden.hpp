@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "bench/plan/runs.hpp"
-#include "bench/world/world.hpp"
+#include "bench/protocol/world/world.hpp"
+#include "bench/suite/runs.hpp"
 
 namespace mh {
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "bench/store/store.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

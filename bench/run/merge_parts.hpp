@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/plan/suite.hpp"
+#include "bench/suite/suite.hpp"
 
 namespace mh {
 

@@ -10,17 +10,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bench/inputs/recorded_camera.hpp"
-#include "bench/inputs/run_key.hpp"
-#include "bench/plan/check_labels.hpp"
-#include "bench/plan/find_program.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/run/shard.hpp"
+#include "bench/suite/check_labels.hpp"
+#include "bench/suite/find_program.hpp"
+#include "bench/suite/recorded_camera.hpp"
+#include "bench/suite/run_key.hpp"
 #include "sim/world/shared_exposures.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "slam/pipeline/settings.hpp"
 
 namespace mh {
@@ -191,7 +191,7 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
     };
     note(e.scene, e.mapping_tour, e.pedestrian);
     note(e.scene, e.kidnapped_tour);
-    note(e.query_scene.value_or(e.scene), e.query_tour);
+    note(e.queried_scene(), e.query_tour);
   }
   for (const auto& [place, uses] : uses_of) {
     const auto& [file, frame] = place;

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/inputs/inputs.hpp"
 #include "bench/run/pool.hpp"
+#include "bench/suite/inputs.hpp"
 
 namespace mh {
 

@@ -14,13 +14,13 @@
 
 #include <fmt/format.h>
 
-#include "bench/plan/spec_json.hpp"
 #include "bench/run/forecast.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/plan/runs.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/store/store.hpp"
+#include "bench/suite/runs.hpp"
 
 namespace mh {
 

@@ -14,19 +14,19 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cache/cache.hpp"
-#include "bench/inputs/inputs.hpp"
-#include "bench/inputs/run_key.hpp"
-#include "bench/plan/spec_json.hpp"
+#include "bench/protocol/world/world.hpp"
 #include "bench/report/write.hpp"
 #include "bench/run/plan_runs.hpp"
 #include "bench/run/run_one.hpp"
+#include "bench/suite/cache.hpp"
+#include "bench/suite/inputs.hpp"
+#include "bench/suite/run_key.hpp"
+#include "bench/suite/spec_json.hpp"
 #include "bench/systems/timed.hpp"
-#include "bench/world/world.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {

@@ -8,15 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/inputs/inputs.hpp"
-#include "bench/plan/suite.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
 #include "bench/run/pool.hpp"
 #include "bench/run/shard.hpp"
 #include "bench/store/load_results.hpp"
 #include "bench/store/store.hpp"
+#include "bench/suite/inputs.hpp"
+#include "bench/suite/suite.hpp"
 #include "sim/world/shared_exposures.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 

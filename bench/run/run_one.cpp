@@ -8,24 +8,27 @@
 
 #include <fmt/format.h>
 
-#include "bench/inputs/run_key.hpp"
-#include "bench/provenance/digest.hpp"
-#include "bench/results/placed.hpp"
+#include "bench/protocol/placed.hpp"
 #include "bench/run/hidden.hpp"
+#include "bench/suite/run_key.hpp"
+#include "bench/systems/builtin.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
 #include "bench/systems/library.hpp"
-#include "bench/systems/ours.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
 #include "bench/systems/timed.hpp"
-#include "slam/core/counted.hpp"
+#include "slam/core/digest.hpp"
+#include "scenes/recordings/open_sequence.hpp"
+#include "slam/io/counted.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 #include "slam/occupancy/occupancy_mapper.hpp"
 
 namespace mh {
 namespace {
+
+namespace fs = std::filesystem;
 
 enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3, kGraded = 4 };
 
@@ -47,9 +50,9 @@ class WorkDone {
 };
 
 /// Forwards another sequence's frames, so that they can be observed.
-class FramesOf : public Sequence {
+class SequenceView : public Sequence {
  public:
-  explicit FramesOf(const Sequence& inner) : inner_(inner) {}
+  explicit SequenceView(const Sequence& inner) : inner_(inner) {}
   const Camera& camera() const override { return inner_.camera(); }
   std::size_t size() const override { return inner_.size(); }
   Stamp stamp_ns(std::size_t i) const override { return inner_.stamp_ns(i); }
@@ -64,16 +67,16 @@ class FramesOf : public Sequence {
 
 /// The frames as a run sees them: the CPU time spent on making them is counted, and tests may
 /// change them.
-class WatchedFrames : public FramesOf {
+class WatchedFrames : public SequenceView {
  public:
   /// @param recording  where they come from; empty: they are simulated
   /// @param spent_s  grows by the time spent
   WatchedFrames(const Sequence& inner, std::string recording, const RunTamper& tamper,
                 double& spent_s)
-      : FramesOf(inner), recording_(std::move(recording)), tamper_(tamper), spent_s_(spent_s) {}
+      : SequenceView(inner), recording_(std::move(recording)), tamper_(tamper), spent_s_(spent_s) {}
   RgbdFrame frame(std::size_t i, RandomStream noise) const override try {
     const ProcessorTimer timer(spent_s_);
-    RgbdFrame frame = FramesOf::frame(i, noise);
+    RgbdFrame frame = SequenceView::frame(i, noise);
     if (tamper_.frame) tamper_.frame(i, frame);
     return frame;
   } catch (const InputError& error) {
@@ -92,12 +95,12 @@ std::string recording_of(const Environment& environment, QuerySet set) {
 }
 
 /// Frames of one query, made once for all parameter points.
-class FramesMadeOnce : public FramesOf {
+class FramesMadeOnce : public SequenceView {
  public:
-  using FramesOf::FramesOf;
+  using SequenceView::SequenceView;
   RgbdFrame frame(std::size_t i, RandomStream noise) const override {
     auto made = made_.find(noise.key());
-    if (made == made_.end()) made = made_.emplace(noise.key(), FramesOf::frame(i, noise)).first;
+    if (made == made_.end()) made = made_.emplace(noise.key(), SequenceView::frame(i, noise)).first;
     return made->second;
   }
 
@@ -250,7 +253,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
   }
   SlamConfig settings = spec.slam;
   if (world.readout_s) settings.track.readout_s = *world.readout_s;
-  return make_our_system(world.mapping->camera(), settings, world.vocabulary);
+  return make_builtin_system(world.mapping->camera(), settings, world.vocabulary);
 }
 
 RandomStream mapping_stream(const RunSpec& spec) {

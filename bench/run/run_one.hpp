@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/protocol/run_result.hpp"
 #include "bench/protocol/system.hpp"
-#include "bench/results/run_result.hpp"
-#include "bench/world/world.hpp"
+#include "bench/protocol/world/world.hpp"
 
 namespace mh {
 

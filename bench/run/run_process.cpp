@@ -20,9 +20,9 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/last_line.hpp"
-#include "slam/core/legible.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/last_line.hpp"
+#include "slam/io/printable.hpp"
 
 extern char** environ;
 
@@ -144,9 +144,9 @@ void RunProcess::read_shares() {
       if (share_ == 0) first_share_ = std::chrono::steady_clock::now();
       share_ = share >= 0 && share <= 1 ? share : share_;
     } else if (line.starts_with(kStatusMark)) {
-      status_ = legible(line.substr(1));
+      status_ = printable(line.substr(1));
     } else {
-      stages_.push_back(legible(line));
+      stages_.push_back(printable(line));
     }
   }
 }

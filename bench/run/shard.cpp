@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/plan/spec_json.hpp"
-#include "bench/provenance/digest.hpp"
+#include "bench/suite/spec_json.hpp"
 #include "sim/world/travel.hpp"
-#include "slam/core/error.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -9,15 +9,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bench/inputs/inputs.hpp"
-#include "bench/plan/outside_program.hpp"
 #include "bench/report/write.hpp"
 #include "bench/run/merge_parts.hpp"
 #include "bench/run/plan_runs.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/files.hpp"
+#include "bench/suite/inputs.hpp"
+#include "bench/suite/outside_program.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

@@ -11,9 +11,10 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-#include "bench/provenance/json_fields.hpp"
 #include "bench/store/row_digest.hpp"
-#include "slam/core/json_text.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "slam/io/json_text.hpp"
+#include "slam/io/settings_io.hpp"
 
 // Records as rows of SQL tables, by their lists of fields: the column definitions, and values in
 // both directions. Nested records are flattened into columns; a pose takes seven; a list is JSON
@@ -34,6 +35,14 @@ class ColumnTexts {
   template <class T>
   void operator()(const char* name, const T&) {
     add<T>(name, " NOT NULL");
+  }
+  /// A setting: null where a system has none.
+  template <class T>
+  void operator()(const char* name, const T&, const SettingRange&, const char*) {
+    text_ += fmt::format("  {} {},\n", name,
+                         std::is_floating_point_v<T> ? "REAL"
+                         : std::is_integral_v<T>     ? "INTEGER"
+                                                     : "TEXT");
   }
   const std::string& text() const { return text_; }
 
@@ -83,6 +92,13 @@ class RowWriter {
   template <class T>
   void operator()(const char*, const T& value) {
     put(value);
+  }
+  template <class T>
+  void operator()(const char*, const T& value, const SettingRange&, const char*) {
+    if constexpr (std::is_enum_v<T>)
+      put(SettingsWriter::word_of(value));
+    else
+      put(value);
   }
   void end_row() {
     statement_.exec();

@@ -12,8 +12,8 @@
 
 #include "bench/store/row_digest.hpp"
 #include "bench/store/schema.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

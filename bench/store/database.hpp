@@ -7,7 +7,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "slam/core/fields.hpp"
 #include "slam/core/trajectory.hpp"
+#include "slam/io/fields.hpp"
 
 namespace mh {
 
@@ -17,7 +17,7 @@ struct FrameRow {
   std::optional<SE3> estimate;
 };
 
-template <Either<FrameRow> F, class Visit>
+template <MaybeConst<FrameRow> F, class Visit>
 void fields(F& row, Visit& v) {
   auto& [frame, stamp_ns, truth, estimate] = row;
   v("frame", frame);

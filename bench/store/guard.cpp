@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/file_errors.hpp"
+#include "slam/io/file_errors.hpp"
 
 namespace mh {
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "bench/plan/runs.hpp"
+#include "bench/suite/runs.hpp"
 
 namespace mh {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/plan/suite.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
 #include "bench/store/store.hpp"
+#include "bench/suite/suite.hpp"
 
 namespace mh {
 

@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "bench/plan/runs.hpp"
 #include "bench/store/database.hpp"
 #include "bench/store/guard.hpp"
 #include "bench/store/row_digest.hpp"
 #include "bench/store/store.hpp"
-#include "slam/core/error.hpp"
+#include "bench/suite/runs.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -6,14 +6,14 @@
 
 #include <fmt/format.h>
 
-#include "bench/inputs/run_key.hpp"
-#include "bench/plan/spec_json.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/store/columns.hpp"
 #include "bench/store/frame_row.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/json_text.hpp"
-#include "slam/core/settings_io.hpp"
+#include "bench/suite/run_key.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/json_text.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The fields of a run without rows of their own, as stored in `runs.result`.
-template <Either<RunResult> R, class Visit>
+template <MaybeConst<RunResult> R, class Visit>
 void result_fields(R& run, Visit& v) {
   v("place", run.place);
   v("mapping", run.mapping);
@@ -65,11 +65,8 @@ void put_metrics(SQLite::Database& db, const std::string& key, const RunResult& 
 void put_points(SQLite::Database& db, const std::string& key, const RunSpec& spec) {
   RowWriter rows(db, "points");
   for (std::size_t p = 0; p < spec.points.size(); ++p) {
-    const SemanticConfig& s = spec.points[p];
     rows << key << p;
-    if (spec.system.takes_settings())  // else the rest stays null
-      rows << s.gamma << s.label_mass << s.xi << s.alpha << s.beta
-           << SettingsWriter::word_of(s.overlap) << s.void_is_a_label;
+    if (spec.system.takes_settings()) fields(spec.points[p], rows);  // else the rest stays null
     rows.end_row();
   }
 }

@@ -7,7 +7,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
 
 namespace mh {
 

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "bench/provenance/digest.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {
@@ -75,7 +75,8 @@ Columns columns_of(SQLite::Database& db, const std::string& table) {
   return columns;
 }
 
-std::string printable(std::string text) {
+/// For a message: bytes of a damaged row may be anything.
+std::string ascii(std::string text) {
   constexpr std::size_t kMost = 120;
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
@@ -99,7 +100,7 @@ void require_all_rows(SQLite::Database& db, const std::filesystem::path& file) {
                       "ORDER BY name LIMIT 1",
                       of_run));
   if (lost.executeStep())
-    fail(fmt::format("run '{}' has {} of {} rows", printable(lost.getColumn(0).getString()),
+    fail(fmt::format("run '{}' has {} of {} rows", ascii(lost.getColumn(0).getString()),
                      lost.getColumn(2).getInt64(), lost.getColumn(1).getInt64()));
   // All in one statement: other processes may be adding results.
   SQLite::Statement left(
@@ -143,7 +144,7 @@ void require_whole_table(SQLite::Database& db, const std::filesystem::path& file
     throw InputError(fmt::format(
         "{}: is damaged: row ({}) of its table '{}': put back a copy, or move it away and run "
         "again",
-        file.string(), printable(s.getColumn(0).getString()), table));
+        file.string(), ascii(s.getColumn(0).getString()), table));
 }
 
 void require_whole_rows(SQLite::Database& db, const std::filesystem::path& file) {

@@ -26,9 +26,8 @@ CREATE TABLE runs (
   error TEXT NOT NULL, spec TEXT NOT NULL, result TEXT NOT NULL, row_count INTEGER NOT NULL,
   digest INTEGER) WITHOUT ROWID;
 CREATE TABLE points (
-  key TEXT NOT NULL, point INTEGER NOT NULL, gamma REAL, label_mass REAL, xi REAL, alpha REAL,
-  beta REAL,
-  overlap TEXT, void_is_a_label INTEGER, digest INTEGER, PRIMARY KEY (key, point)) WITHOUT ROWID;
+  key TEXT NOT NULL, point INTEGER NOT NULL,
+{}  digest INTEGER, PRIMARY KEY (key, point)) WITHOUT ROWID;
 CREATE TABLE metrics (
   key TEXT NOT NULL, point INTEGER NOT NULL, name TEXT NOT NULL, value REAL, digest INTEGER,
   PRIMARY KEY (key, point, name)) WITHOUT ROWID;
@@ -49,7 +48,8 @@ CREATE TABLE claims (
   key TEXT PRIMARY KEY, host TEXT NOT NULL, process INTEGER NOT NULL, started INTEGER NOT NULL,
   beat INTEGER NOT NULL) WITHOUT ROWID;
 )sql",
-      columns_of<MappedFrame>(), columns_of<FrameRow>(), columns_of<QueryScore>());
+      columns_of<SemanticConfig>(), columns_of<MappedFrame>(), columns_of<FrameRow>(),
+      columns_of<QueryScore>());
 }
 
 }  // namespace mh

@@ -7,7 +7,7 @@ namespace mh {
 
 /// `PRAGMA user_version` of a results file; a file with another one is refused.
 inline constexpr int kSchemaVersion = 11;
-/// The same of a file of episodes (bench/episodes/episode_store.hpp), which counts from 1001.
+/// The same of a file of episodes (bench/run/episodes/episode_store.hpp), which counts from 1001.
 inline constexpr int kEpisodesVersion = 1001;
 
 /// The tables of a results file, as CREATE statements; docs/store.md explains each column. `runs`,

@@ -11,18 +11,18 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/plan/runs.hpp"
-#include "bench/plan/spec_json.hpp"
-#include "bench/provenance/fingerprint.hpp"
 #include "bench/store/database.hpp"
 #include "bench/store/guard.hpp"
 #include "bench/store/result_rows.hpp"
 #include "bench/store/row_digest.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/json_number.hpp"
-#include "slam/core/json_text.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "bench/suite/fingerprint.hpp"
+#include "bench/suite/runs.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/json_number.hpp"
+#include "slam/io/json_text.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {

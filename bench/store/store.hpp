@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "bench/plan/suite.hpp"
-#include "bench/results/run_result.hpp"
+#include "bench/protocol/run_result.hpp"
+#include "bench/suite/suite.hpp"
 
 namespace SQLite {
 class Database;

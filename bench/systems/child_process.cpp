@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/systems/child_process.hpp"
-#include "bench/plan/find_program.hpp"
+#include "bench/suite/find_program.hpp"
 #include "bench/systems/hiding.hpp"
 #include "bench/systems/program_folder.hpp"
-#include "slam/core/last_line.hpp"
-#include "slam/core/legible.hpp"
+#include "slam/io/last_line.hpp"
+#include "slam/io/printable.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -97,7 +97,7 @@ std::string told(std::string text, std::size_t most) {
   if (cut) text.resize(most);
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return legible(std::move(text)) + (cut ? "..." : "");
+  return printable(std::move(text)) + (cut ? "..." : "");
 }
 
 }  // namespace

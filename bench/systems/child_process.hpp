@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "bench/plan/outside_program.hpp"
+#include "bench/suite/outside_program.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/watcher.hpp"
 

@@ -13,12 +13,12 @@
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/outside_system.hpp"
 #include "bench/systems/scratch_folder.hpp"
-#include "scenes/recorded/frame_files.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/json_text.hpp"
-#include "slam/core/lower_case.hpp"
+#include "scenes/recordings/frame_files.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/json_text.hpp"
+#include "slam/io/lower_case.hpp"
 
 namespace mh {
 namespace {

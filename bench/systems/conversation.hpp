@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "bench/plan/outside_program.hpp"
 #include "bench/protocol/system.hpp"
+#include "bench/suite/outside_program.hpp"
 #include "slam/core/camera.hpp"
 
 namespace mh {

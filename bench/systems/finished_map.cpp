@@ -10,8 +10,8 @@ namespace archive {
 
 /// Serializes a record through its list of fields, without their names.
 template <class A, class T>
-requires Either<T, MappingOutcome> || Either<T, MappedFrame> || Either<T, LoopClosure> ||
-    Either<T, SkippedFrames> || Either<T, MatcherCounts>
+requires MaybeConst<T, MappingOutcome> || MaybeConst<T, MappedFrame> ||
+    MaybeConst<T, LoopClosure> || MaybeConst<T, SkippedFrames> || MaybeConst<T, MatcherCounts>
 void fields(A& a, T& record) {
   const auto visit = [&](const char*, auto&& value) {
     using Value = std::decay_t<decltype(value)>;

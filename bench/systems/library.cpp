@@ -26,10 +26,10 @@
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/outside_system.hpp"
 #include "include/modelhouse/system.h"
-#include "scenes/recorded/frame_files.hpp"
-#include "slam/core/file_errors.hpp"
+#include "scenes/recordings/frame_files.hpp"
 #include "slam/core/labels.hpp"
-#include "slam/core/legible.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/printable.hpp"
 
 namespace mh {
 namespace {
@@ -142,7 +142,7 @@ class Setup {
   /// Returns ": what the library wrote", or an empty string.
   std::string message() const {
     const std::string text(message_.data(), strnlen(message_.data(), message_.size()));
-    return text.empty() ? text : ": " + legible(text);
+    return text.empty() ? text : ": " + printable(text);
   }
 
  private:
@@ -166,7 +166,7 @@ class LibrarySystem : public OutsideSystem {
     if (loaded == nullptr) {
       std::string reason = dlerror();  // starts with the file's path, which differs by machine
       if (reason.starts_with(file.string() + ": ")) reason.erase(0, file.string().size() + 2);
-      fail(fmt::format("cannot be loaded: {}", legible(reason)));
+      fail(fmt::format("cannot be loaded: {}", printable(reason)));
     }
     constexpr const char* kMake = "mh_make_system";
     const auto make = reinterpret_cast<decltype(&mh_make_system)>(dlsym(loaded, kMake));
@@ -291,7 +291,7 @@ class LibrarySystem : public OutsideSystem {
         function();
         return;
       } catch (const std::exception& exception) {
-        escaped = fmt::format("let an exception escape: {}", legible(exception.what()));
+        escaped = fmt::format("let an exception escape: {}", printable(exception.what()));
       } catch (...) {
         escaped = "let an exception escape";
       }

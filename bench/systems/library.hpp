@@ -6,8 +6,8 @@
 #include <memory>
 #include <string_view>
 
-#include "bench/plan/outside_program.hpp"
 #include "bench/protocol/system.hpp"
+#include "bench/suite/outside_program.hpp"
 #include "slam/core/camera.hpp"
 
 namespace mh {

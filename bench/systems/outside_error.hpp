@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 

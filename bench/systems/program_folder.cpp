@@ -14,9 +14,9 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/remove_tree.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/remove_tree.hpp"
 
 namespace mh {
 namespace {

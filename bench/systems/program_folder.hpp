@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 

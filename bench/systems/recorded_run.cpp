@@ -12,11 +12,11 @@
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/frames_read.hpp"
 #include "bench/systems/outside_error.hpp"
-#include "scenes/recorded/tum_folder.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/text_file.hpp"
+#include "scenes/recordings/tum_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

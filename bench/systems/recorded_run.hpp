@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "bench/plan/outside_program.hpp"
+#include "bench/suite/outside_program.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/trajectory.hpp"
 

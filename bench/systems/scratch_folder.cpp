@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/file_errors.hpp"
-#include "slam/core/remove_tree.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/remove_tree.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

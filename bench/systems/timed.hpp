@@ -5,8 +5,8 @@
 #include <mutex>
 #include <vector>
 
+#include "bench/protocol/call_times.hpp"
 #include "bench/protocol/system.hpp"
-#include "bench/results/call_times.hpp"
 
 namespace mh {
 

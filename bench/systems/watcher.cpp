@@ -24,8 +24,8 @@
 #include <fmt/format.h>
 
 #include "bench/systems/hiding.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/remove_tree.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/remove_tree.hpp"
 
 namespace mh {
 namespace {

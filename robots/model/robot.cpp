@@ -11,8 +11,8 @@
 #include "robots/model/robot_fields.hpp"
 #include "robots/model/wheel_base.hpp"
 #include "slam/core/angles.hpp"
-#include "slam/core/settings_io.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/settings_io.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

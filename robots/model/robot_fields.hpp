@@ -3,9 +3,9 @@
 
 #include "robots/model/robot.hpp"
 #include "slam/core/camera.hpp"
-#include "slam/core/setting.hpp"
+#include "slam/io/setting.hpp"
 
-// The numbers of a robot's file as lists of fields (slam/core/setting.hpp), from which the file is
+// The numbers of a robot's file as lists of fields (slam/io/setting.hpp), from which the file is
 // read and its keys are documented. Structure (links and joints of a URDF, poses, lists and
 // references by name) has its own readers in robot.cpp.
 
@@ -16,7 +16,7 @@ inline constexpr SettingRange kImageSize_px = required({16, 8192}), kRate_hz = r
 }  // namespace setting
 
 /// Of `base`.
-template <Either<Robot> R, class Visit>
+template <MaybeConst<Robot> R, class Visit>
 void body_fields(R& robot, Visit& v) {
   v("mass_kg", robot.mass_kg, setting::required({0.1, 1000}), "of the whole robot");
   v("footprint_radius_m", robot.footprint_radius_m, setting::required({0.02, 2}),
@@ -24,7 +24,7 @@ void body_fields(R& robot, Visit& v) {
   v("height_m", robot.height_m, setting::required({0.05, 3}), "what it must pass under");
 }
 
-template <Either<BaseLimits> C, class Visit>
+template <MaybeConst<BaseLimits> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [max_velocity_m_per_s, max_acceleration_m_per_s2, max_turn_rad_per_s,
          max_turn_acceleration_rad_per_s2, max_jerk_m_per_s3, max_turn_jerk_rad_per_s3] = c;
@@ -44,7 +44,7 @@ struct LensFields {
   double horizontal_fov_deg = 0, vertical_fov_deg = 0, rate_hz = 0, baseline_m = 0;
 };
 
-template <Either<LensFields> C, class Visit>
+template <MaybeConst<LensFields> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [width_px, height_px, horizontal_fov_deg, vertical_fov_deg, rate_hz, baseline_m] = c;
   v("width_px", width_px, setting::kImageSize_px, "of color and depth");
@@ -57,18 +57,18 @@ void fields(C& c, Visit& v) {
 }
 
 /// Of a calibrated camera.
-template <Either<Camera> C, class Visit>
+template <MaybeConst<Camera> C, class Visit>
 void size_fields(C& camera, Visit& v) {
   v("width_px", camera.width_px, setting::kImageSize_px, "");
   v("height_px", camera.height_px, setting::kImageSize_px, "");
 }
-template <Either<Camera> C, class Visit>
+template <MaybeConst<Camera> C, class Visit>
 void rate_fields(C& camera, Visit& v) {
   v("rate_hz", camera.rate_hz, setting::kRate_hz, "frames per second");
 }
 
 /// Of `wheels`, without their joints.
-template <Either<WheelBase> C, class Visit>
+template <MaybeConst<WheelBase> C, class Visit>
 void wheel_fields(C& wheels, Visit& v) {
   v("radius_m", wheels.radius_m, setting::required({0.005, 1}), "");
 }
@@ -79,7 +79,7 @@ struct FanFields {
   double field_of_view_deg = 0;
 };
 
-template <Either<FanFields> C, class Visit>
+template <MaybeConst<FanFields> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [rays, field_of_view_deg] = c;
   v("rays", rays, setting::required({2, 10000}), "");
@@ -92,14 +92,14 @@ struct ConeFields {
   double field_of_view_deg = 0, resolution_m = 0;
 };
 
-template <Either<ConeFields> C, class Visit>
+template <MaybeConst<ConeFields> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [field_of_view_deg, resolution_m] = c;
   v("field_of_view_deg", field_of_view_deg, setting::required({1, 170}), "of the cone");
   v("resolution_m", resolution_m, setting::required({0, 1}), "step of a reading");
 }
 
-template <Either<OdometryErrors> C, class Visit>
+template <MaybeConst<OdometryErrors> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [scale, scale_spread, slip_per_sqrt_m] = c;
   v("scale", scale, setting::required({-0.5, 0.5}), "of all wheels: 0.01 = 1 % too long");
@@ -108,7 +108,7 @@ void fields(C& c, Visit& v) {
     "m of error after 1 m of rim, growing with its root");
 }
 
-template <Either<CollisionReflex> C, class Visit>
+template <MaybeConst<CollisionReflex> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [ahead_m, aside_m] = c;
   v("ahead_m", ahead_m, setting::required({0, 3}), "from the shell, along its way");

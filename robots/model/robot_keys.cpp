@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "robots/model/robot_fields.hpp"
-#include "slam/core/settings_io.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh {
 namespace {

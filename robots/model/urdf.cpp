@@ -17,8 +17,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "robots/model/xacro.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

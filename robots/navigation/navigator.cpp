@@ -11,7 +11,7 @@
 
 #include "robots/navigation/plan.hpp"
 #include "robots/navigation/smooth.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "scenes/find_file.hpp"
 #include "scenes/mesh_io/percent.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh::gazebo {
 namespace fs = std::filesystem;

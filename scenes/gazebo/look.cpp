@@ -8,8 +8,8 @@
 
 #include "scenes/find_file.hpp"
 #include "scenes/gazebo/source.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh::gazebo {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::gazebo {
 namespace fs = std::filesystem;

@@ -15,7 +15,7 @@
 #include "scenes/generate/shape.hpp"
 #include "scenes/generate/surfaces.hpp"
 #include "scenes/name_key.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::generate {
 namespace {

@@ -16,7 +16,7 @@
 #include "scenes/generate/surfaces.hpp"
 #include "scenes/house/house.hpp"
 #include "scenes/name_key.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

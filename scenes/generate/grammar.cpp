@@ -7,8 +7,8 @@
 
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/generate/data.hpp"
-#include "slam/core/suggest.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/suggest.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

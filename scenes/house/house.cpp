@@ -7,7 +7,7 @@
 #include "scenes/house/plan_file.hpp"
 #include "scenes/house/shell.hpp"
 #include "scenes/name_key.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "scenes/house/plan_parts.hpp"
 #include "slam/core/angles.hpp"
-#include "slam/core/suggest.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "scenes/house/plan_parts.hpp"
-#include "slam/core/suggest.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenes/house/plan_file.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 

@@ -9,7 +9,7 @@
 
 #include "scenes/materials/painters.hpp"
 #include "scenes/name_key.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/srgb.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/narrowed.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/narrowed.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

@@ -12,8 +12,8 @@
 #include "scenes/mesh_io/gltf/extensions.hpp"
 #include "scenes/mesh_io/gltf/materials.hpp"
 #include "scenes/mesh_io/gltf/nodes.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/json_text.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/json_text.hpp"
 
 namespace mh {
 namespace {

@@ -8,9 +8,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "scenes/image_file.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/held_bytes.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/held_bytes.hpp"
 
 namespace mh {
 namespace {

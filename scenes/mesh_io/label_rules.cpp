@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/files.hpp"
-#include "slam/core/suggest.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "slam/core/labels.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 

@@ -5,11 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/json_number.hpp"
-#include "slam/core/json_text.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/json_number.hpp"
+#include "slam/io/json_text.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

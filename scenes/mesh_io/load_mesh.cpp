@@ -26,12 +26,12 @@
 #include "scenes/mesh_io/noted_files.hpp"
 #include "scenes/mesh_io/ply.hpp"
 #include "scenes/mesh_io/ply_labels.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/held_bytes.hpp"
-#include "slam/core/lower_case.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/held_bytes.hpp"
+#include "slam/io/lower_case.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

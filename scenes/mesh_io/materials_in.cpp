@@ -10,8 +10,8 @@
 
 #include "scenes/find_file.hpp"
 #include "scenes/srgb.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

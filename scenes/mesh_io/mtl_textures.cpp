@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/lower_case.hpp"
+#include "slam/io/lower_case.hpp"
 
 namespace mh {
 namespace {

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "scenes/mesh_io/obj_text.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/held_bytes.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/held_bytes.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <charconv>
 
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "scenes/mesh_io/ply_header.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/held_bytes.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/held_bytes.hpp"
 
 namespace mh {
 namespace {

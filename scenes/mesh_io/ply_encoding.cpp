@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "scenes/mesh_io/ply_header.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::ply {
 

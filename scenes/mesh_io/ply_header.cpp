@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::ply {
 

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scenes/mesh_io/node_name.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/json_text.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/json_text.hpp"
 
 namespace mh {
 namespace {

@@ -12,8 +12,8 @@
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/node_name.hpp"
 #include "scenes/srgb.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

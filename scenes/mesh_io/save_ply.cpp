@@ -3,7 +3,7 @@
 #include "scenes/mesh_io/mesh_io.hpp"
 #include "scenes/mesh_io/ply.hpp"
 #include "scenes/mesh_io/seen_colors.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace fs = std::filesystem;

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "slam/core/error.hpp"
-#include "slam/core/json_text.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/json_text.hpp"
 
 namespace mh {
 namespace {

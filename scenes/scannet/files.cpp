@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "scenes/image_file.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

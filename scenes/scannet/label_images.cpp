@@ -10,9 +10,9 @@
 
 #include "scenes/image_file.hpp"
 #include "scenes/scannet/frame_folder.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

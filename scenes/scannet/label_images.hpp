@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "slam/core/grid2d.hpp"
-#include "slam/core/held_bytes.hpp"
+#include "slam/io/held_bytes.hpp"
 
 namespace mh {
 

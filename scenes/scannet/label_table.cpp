@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "scenes/mesh_io/node_name.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

@@ -16,10 +16,10 @@
 #include "scenes/scannet/label_table.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "scenes/scannet/scene_info.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/held_bytes.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/held_bytes.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

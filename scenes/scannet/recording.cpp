@@ -12,12 +12,12 @@
 #include "scenes/image_file.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/sens.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/number_in.hpp"
-#include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/number_in.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

@@ -13,8 +13,8 @@
 #include "scenes/scannet/label_table.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "slam/core/camera.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

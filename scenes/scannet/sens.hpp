@@ -8,7 +8,7 @@
 #include <string>
 
 #include "scenes/scannet/recording.hpp"
-#include "slam/core/held_bytes.hpp"
+#include "slam/io/held_bytes.hpp"
 
 namespace mh {
 

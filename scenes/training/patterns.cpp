@@ -11,7 +11,7 @@
 #include "scenes/materials/canvas.hpp"
 #include "scenes/training/ink.hpp"
 #include "scenes/training/prints.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

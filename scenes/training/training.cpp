@@ -10,8 +10,8 @@
 
 #include "scenes/dice.hpp"
 #include "scenes/training/patterns.hpp"
-#include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

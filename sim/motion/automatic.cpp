@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "robots/navigation/floor_grid.hpp"
 #include "robots/navigation/plan.hpp"
+#include "sim/motion/floor_grid.hpp"
 #include "sim/motion/path.hpp"
 #include "sim/motion/start.hpp"
-#include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

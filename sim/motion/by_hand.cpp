@@ -11,8 +11,8 @@
 #include "sim/motion/gaze.hpp"
 #include "sim/motion/signal.hpp"
 #include "slam/core/angles.hpp"
-#include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

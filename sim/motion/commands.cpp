@@ -9,8 +9,8 @@
 #include "sim/motion/commanded_base.hpp"
 #include "sim/motion/start.hpp"
 #include "slam/core/angles.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

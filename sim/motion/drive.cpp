@@ -14,7 +14,7 @@
 #include "sim/motion/reference.hpp"
 #include "sim/motion/start.hpp"
 #include "sim/physics/planar_world.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

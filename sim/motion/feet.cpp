@@ -9,7 +9,7 @@
 
 #include "robots/navigation/plan.hpp"
 #include "sim/motion/signal.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::by_hand {
 namespace {

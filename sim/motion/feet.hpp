@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "robots/navigation/floor_grid.hpp"
 #include "sim/motion/by_hand.hpp"
+#include "sim/motion/floor_grid.hpp"
 #include "slam/core/random.hpp"
 
 namespace mh::by_hand {

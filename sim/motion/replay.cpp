@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "robots/navigation/floor_grid.hpp"
-#include "slam/core/error.hpp"
+#include "sim/motion/floor_grid.hpp"
 #include "slam/core/path_length.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

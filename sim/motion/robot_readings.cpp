@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/files.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 

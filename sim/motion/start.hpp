@@ -6,7 +6,7 @@
 
 #include "scenes/scene.hpp"
 #include "sim/physics/planar_world.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 

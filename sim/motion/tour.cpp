@@ -3,7 +3,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/motion/start.hpp"
 #include "slam/core/angles.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

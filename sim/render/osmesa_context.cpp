@@ -16,7 +16,7 @@ extern "C" {
 using OSMesaContext = struct osmesa_context*;
 }
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

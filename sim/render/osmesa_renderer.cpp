@@ -12,7 +12,7 @@
 #include "sim/render/osmesa_scene.hpp"
 #include "sim/render/osmesa_shaders.hpp"
 #include "sim/render/renderer.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "scenes/materials/noise.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sim/render/color.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

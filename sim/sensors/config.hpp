@@ -7,7 +7,7 @@
 
 #include "sim/sensors/labels.hpp"
 #include "slam/core/camera.hpp"
-#include "slam/core/setting.hpp"
+#include "slam/io/setting.hpp"
 
 // The settings of a sensor level (sim/sensors/levels): a struct for each section of the file,
 // followed by the list of its fields. Each fault can be switched on and off separately.
@@ -33,7 +33,7 @@ struct DepthNoiseConfig {
   friend bool operator==(const DepthNoiseConfig&, const DepthNoiseConfig&) = default;
 };
 
-template <Either<DepthNoiseConfig> C, class Visit>
+template <MaybeConst<DepthNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, axial, lateral, quantization, grazing_holes, projector_shadow, min_range_m,
          max_range_m] = c;
@@ -65,7 +65,7 @@ struct ColorNoiseConfig {
   friend bool operator==(const ColorNoiseConfig&, const ColorNoiseConfig&) = default;
 };
 
-template <Either<ColorNoiseConfig> C, class Visit>
+template <MaybeConst<ColorNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, sigma] = c;
   v("enabled", enabled, setting::kSwitch, "Gaussian noise in gray levels");
@@ -90,7 +90,7 @@ struct ShotNoiseConfig {
   friend bool operator==(const ShotNoiseConfig&, const ShotNoiseConfig&) = default;
 };
 
-template <Either<ShotNoiseConfig> C, class Visit>
+template <MaybeConst<ShotNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, well_e, read_noise_e, gain, gain_at_exposure] = c;
   v("enabled", enabled, setting::kSwitch, "shot and read noise in linear light");
@@ -112,7 +112,7 @@ struct AutoExposureConfig {
   friend bool operator==(const AutoExposureConfig&, const AutoExposureConfig&) = default;
 };
 
-template <Either<AutoExposureConfig> C, class Visit>
+template <MaybeConst<AutoExposureConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, target, time_constant_s, max_gain] = c;
   v("enabled", enabled, setting::kSwitch, "gain that follows the mean luminance with a lag");
@@ -129,7 +129,7 @@ struct VignettingConfig {
   friend bool operator==(const VignettingConfig&, const VignettingConfig&) = default;
 };
 
-template <Either<VignettingConfig> C, class Visit>
+template <MaybeConst<VignettingConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, strength] = c;
   v("enabled", enabled, setting::kSwitch, "light falls off toward the corners");
@@ -143,7 +143,7 @@ struct LensBlurConfig {
   friend bool operator==(const LensBlurConfig&, const LensBlurConfig&) = default;
 };
 
-template <Either<LensBlurConfig> C, class Visit>
+template <MaybeConst<LensBlurConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, sigma_px] = c;
   v("enabled", enabled, setting::kSwitch, "blur of the lens");
@@ -160,7 +160,7 @@ struct ProcessingConfig {
   friend bool operator==(const ProcessingConfig&, const ProcessingConfig&) = default;
 };
 
-template <Either<ProcessingConfig> C, class Visit>
+template <MaybeConst<ProcessingConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, contrast, sharpening, sharpening_px] = c;
   v("enabled", enabled, setting::kSwitch, "in-camera image processing");
@@ -176,7 +176,7 @@ struct LensDistortionConfig {
   friend bool operator==(const LensDistortionConfig&, const LensDistortionConfig&) = default;
 };
 
-template <Either<LensDistortionConfig> C, class Visit>
+template <MaybeConst<LensDistortionConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, lens] = c;
   [[maybe_unused]] auto& [k1, k2, p1, p2, k3, k4, k5, k6] = lens;  // k4 to k6: no level has them
@@ -198,7 +198,7 @@ struct MotionBlurConfig {
   friend bool operator==(const MotionBlurConfig&, const MotionBlurConfig&) = default;
 };
 
-template <Either<MotionBlurConfig> C, class Visit>
+template <MaybeConst<MotionBlurConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, exposure_ms] = c;
   v("enabled", enabled, setting::kSwitch, "images are integrated along the true motion");
@@ -214,7 +214,7 @@ struct RollingShutterConfig {
   friend bool operator==(const RollingShutterConfig&, const RollingShutterConfig&) = default;
 };
 
-template <Either<RollingShutterConfig> C, class Visit>
+template <MaybeConst<RollingShutterConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, readout_ms] = c;
   v("enabled", enabled, setting::kSwitch, "rows are read out one after another");
@@ -228,7 +228,7 @@ struct DepthOffsetConfig {
   friend bool operator==(const DepthOffsetConfig&, const DepthOffsetConfig&) = default;
 };
 
-template <Either<DepthOffsetConfig> C, class Visit>
+template <MaybeConst<DepthOffsetConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, offset_ms] = c;
   v("enabled", enabled, setting::kSwitch, "depth and color are captured at different times");
@@ -244,7 +244,7 @@ struct LostFramesConfig {
   friend bool operator==(const LostFramesConfig&, const LostFramesConfig&) = default;
 };
 
-template <Either<LostFramesConfig> C, class Visit>
+template <MaybeConst<LostFramesConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, share] = c;
   v("enabled", enabled, setting::kSwitch, "whether frames are lost");
@@ -260,7 +260,7 @@ struct HurryConfig {
   friend bool operator==(const HurryConfig&, const HurryConfig&) = default;
 };
 
-template <Either<HurryConfig> C, class Visit>
+template <MaybeConst<HurryConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, speed] = c;
   v("enabled", enabled, setting::kSwitch, "a handheld camera moves faster along its path");
@@ -300,7 +300,7 @@ struct SensorConfig {
 
 /// Calls visit.section(name) before each section of a level and visit(name, value, range, note) for
 /// each field.
-template <Either<SensorConfig> C, class Visit>
+template <MaybeConst<SensorConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
   [[maybe_unused]] auto& [depth_noise, color_noise, shot_noise, auto_exposure, vignetting,
                           lens_blur, processing, lens_distortion, motion_blur, rolling_shutter,

@@ -7,7 +7,7 @@
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/class_sets.hpp"
 #include "slam/core/random.hpp"
-#include "slam/core/setting.hpp"
+#include "slam/io/setting.hpp"
 
 namespace mh {
 
@@ -55,7 +55,7 @@ struct DetectorConfig {
   friend bool operator==(const DetectorConfig&, const DetectorConfig&) = default;
 };
 
-template <Either<DetectorConfig> C, class Visit>
+template <MaybeConst<DetectorConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [recall_small, recall_medium, recall_large, confusion, false_alarms, box_sigma] = c;
   v("recall_small", recall_small, setting::kShare, "of objects below 32 x 32 px");
@@ -84,7 +84,7 @@ struct LabelNoiseConfig {
   friend bool operator==(const LabelNoiseConfig&, const LabelNoiseConfig&) = default;
 };
 
-template <Either<LabelNoiseConfig> C, class Visit>
+template <MaybeConst<LabelNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, confusion, swap, dropout, erosion_px, class_set] = c;
   v("enabled", enabled, setting::kSwitch, "the five dials below; what follows them holds anyway");
@@ -110,7 +110,7 @@ struct LabelConfig {
   friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
 };
 
-template <Either<LabelConfig> C, class Visit>
+template <MaybeConst<LabelConfig> C, class Visit>
 void for_each_setting(C& config, Visit& v) {
   auto& [noise, detector, persistent_share, frame_share, seed] = config;
   v.section("label_noise");

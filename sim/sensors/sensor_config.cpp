@@ -2,8 +2,8 @@
 #include <string_view>
 
 #include "sim/sensors/config.hpp"
-#include "slam/core/settings_io.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/settings_io.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "scenes/floor.hpp"
 #include "scenes/mesh_builder.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

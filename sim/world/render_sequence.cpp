@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenes/recorded/frame_files.hpp"
+#include "scenes/recordings/frame_files.hpp"
 #include "sim/world/sequence.hpp"
 
 namespace mh {

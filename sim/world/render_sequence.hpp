@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "scenes/recorded/scannet_folder.hpp"
-#include "scenes/recorded/sequence_writer.hpp"
+#include "scenes/recordings/scannet_folder.hpp"
+#include "scenes/recordings/sequence_writer.hpp"
 #include "sim/sensors/shutter.hpp"
 
 namespace mh {

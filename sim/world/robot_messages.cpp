@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "scenes/floor.hpp"
-#include "scenes/messages/robot_types.hpp"
-#include "scenes/recorded/ros/names.hpp"
-#include "slam/core/error.hpp"
+#include "scenes/recordings/messages/robot_types.hpp"
+#include "scenes/recordings/ros/names.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

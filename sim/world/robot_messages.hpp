@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "robots/model/robot.hpp"
-#include "robots/navigation/floor_grid.hpp"
-#include "scenes/messages/message_log.hpp"
+#include "scenes/recordings/messages/message_log.hpp"
 #include "scenes/scene.hpp"
+#include "sim/motion/floor_grid.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/motion/sensing.hpp"
 

@@ -10,7 +10,7 @@
 #include "sim/motion/start.hpp"
 #include "sim/world/sequence.hpp"
 #include "sim/world/travel.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

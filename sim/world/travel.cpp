@@ -20,10 +20,10 @@
 #include "sim/motion/by_hand.hpp"
 #include "sim/motion/commands.hpp"
 #include "sim/motion/replay.hpp"
-#include "slam/core/error.hpp"
 #include "slam/core/interpolate.hpp"
 #include "slam/core/path_length.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

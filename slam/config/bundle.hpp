@@ -14,7 +14,7 @@ struct BundleConfig {
   friend bool operator==(const BundleConfig&, const BundleConfig&) = default;
 };
 
-template <Either<BundleConfig> C, class Visit>
+template <MaybeConst<BundleConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [iterations, refine_iterations, relative_decrease, chi2_mono, chi2_stereo] = c;
   v("iterations", iterations, {1, 1000}, "with Huber's cost, before outliers are dropped");

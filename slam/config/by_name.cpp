@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "slam/core/settings_io.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "slam/config/slam.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 

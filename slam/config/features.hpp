@@ -15,7 +15,7 @@ struct FeatureConfig {
   friend bool operator==(const FeatureConfig&, const FeatureConfig&) = default;
 };
 
-template <Either<FeatureConfig> C, class Visit>
+template <MaybeConst<FeatureConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [count, levels, scale, fast_threshold, fast_threshold_low, max_depth_m] = c;
   v("count", count, {10, 20000}, "keypoints wanted per frame");

@@ -16,7 +16,7 @@ struct KeyframeConfig {
   friend bool operator==(const KeyframeConfig&, const KeyframeConfig&) = default;
 };
 
-template <Either<KeyframeConfig> C, class Visit>
+template <MaybeConst<KeyframeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [max_interval, min_tracked_share, min_close_tracked, min_close_new, close_depth_m,
          redundant_share] = c;

@@ -28,7 +28,7 @@ struct LoopConfig {
   friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };
 
-template <Either<LoopConfig> C, class Visit>
+template <MaybeConst<LoopConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, augmented, min_gap, loosely_shared, min_similarity_share, agreeing, patience,
          same_drift_m, same_drift_rad, max_drift_m, max_drift_share, max_drift_rad, negligible_m,

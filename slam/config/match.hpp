@@ -13,7 +13,7 @@ struct MatchConfig {
   friend bool operator==(const MatchConfig&, const MatchConfig&) = default;
 };
 
-template <Either<MatchConfig> C, class Visit>
+template <MaybeConst<MatchConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [max_distance, max_distance_loose, ratio, ratio_projection] = c;
   v("max_distance", max_distance, setting::kBits, "bits; appearance alone, fusion");

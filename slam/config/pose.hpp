@@ -14,7 +14,7 @@ struct PoseConfig {
   friend bool operator==(const PoseConfig&, const PoseConfig&) = default;
 };
 
-template <Either<PoseConfig> C, class Visit>
+template <MaybeConst<PoseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [rounds, iterations, chi2_mono, chi2_stereo, min_inliers] = c;
   v("rounds", rounds, {1, 100}, "inlier sets are formed anew after each");
@@ -31,7 +31,7 @@ struct RansacConfig {
   friend bool operator==(const RansacConfig&, const RansacConfig&) = default;
 };
 
-template <Either<RansacConfig> C, class Visit>
+template <MaybeConst<RansacConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [max_iterations, confidence, min_inliers] = c;
   v("max_iterations", max_iterations, setting::kCount, "of RANSAC");

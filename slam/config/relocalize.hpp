@@ -51,7 +51,7 @@ struct RelocalizeConfig {
   friend bool operator==(const RelocalizeConfig&, const RelocalizeConfig&) = default;
 };
 
-template <Either<RelocalizeConfig> C, class Visit>
+template <MaybeConst<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, search_radius_px,
          disparity_sigma_px, ransac] = c;

@@ -79,7 +79,7 @@ struct SemanticConfig {
   friend bool operator==(const SemanticConfig&, const SemanticConfig&) = default;
 };
 
-template <Either<SemanticConfig> C, class Visit>
+template <MaybeConst<SemanticConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [gamma, label_mass, xi, alpha, beta, overlap, void_is_a_label, candidates, nearness,
          wider_search, min_agreement] = c;

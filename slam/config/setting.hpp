@@ -2,10 +2,10 @@
 #pragma once
 
 // Each file of this folder holds one section of the SLAM settings: a struct with its defaults and
-// the list of its fields (slam/core/setting.hpp). Settings files, suites, sweeps, map files and the
+// the list of its fields (slam/io/setting.hpp). Settings files, suites, sweeps, map files and the
 // tables in the docs are generated from these lists.
 
-#include "slam/core/setting.hpp"
+#include "slam/io/setting.hpp"
 
 namespace mh::setting {
 

@@ -30,7 +30,7 @@ struct SlamConfig {
 
 /// Calls visit.section(name) before each section and visit(name, value, range, note) for each
 /// field.
-template <Either<SlamConfig> C, class Visit>
+template <MaybeConst<SlamConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
   auto& [features, semantics, match, pose, bundle, keyframe, track, relocalize, loop] = config;
   const auto part = [&](const char* name, auto& c) {

@@ -25,7 +25,7 @@ struct TrackConfig {
   friend bool operator==(const TrackConfig&, const TrackConfig&) = default;
 };
 
-template <Either<TrackConfig> C, class Visit>
+template <MaybeConst<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
          local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad, coast_s,

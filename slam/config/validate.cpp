@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/config/slam.hpp"
-#include "slam/core/settings_io.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh {
 

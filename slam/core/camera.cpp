@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

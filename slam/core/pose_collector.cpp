@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/counted.hpp"
-#include "slam/core/legible.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/printable.hpp"
 
 namespace mh {
 namespace {
@@ -24,7 +24,7 @@ constexpr std::array<std::pair<const char*, const char*>, 4> kOneAndMore = {
 }  // namespace
 
 void LinePlace::fail(const std::string& what, PoseFault fault) const {
-  throw BadPose(fmt::format("{}:{}: {}", file, line, legible(what)), fault);
+  throw BadPose(fmt::format("{}:{}: {}", file, line, printable(what)), fault);
 }
 
 void PoseCollector::add(const TimedPose& pose, std::string_view stamp, const LinePlace& place) {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "slam/core/error.hpp"
 #include "slam/core/trajectory.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 

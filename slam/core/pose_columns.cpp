@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/lower_case.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/lower_case.hpp"
 
 namespace mh {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "slam/core/words.hpp"
+#include "slam/io/words.hpp"
 
 namespace mh {
 

@@ -12,13 +12,13 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/number_in.hpp"
 #include "slam/core/pose_collector.hpp"
 #include "slam/core/pose_columns.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/number_in.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

@@ -14,16 +14,16 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/json_text.hpp"
-#include "slam/core/legible.hpp"
-#include "slam/core/number_in.hpp"
-#include "slam/core/text_file.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/detect/detector.hpp"
 #include "slam/detect/heads.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/json_text.hpp"
+#include "slam/io/number_in.hpp"
+#include "slam/io/printable.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -114,8 +114,8 @@ std::vector<double> numbers(std::string line, const std::string& place, const ch
   for (std::string word; words >> word;) {
     const auto value = number_in(without_plus(word));
     if (!value)
-      throw InputError(
-          fmt::format("{}: '{}' is not a number; each line is {}", place, legible(word), columns));
+      throw InputError(fmt::format("{}: '{}' is not a number; each line is {}", place,
+                                   printable(word), columns));
     all.push_back(*value);
   }
   return all;

@@ -11,10 +11,10 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/lower_case.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/lower_case.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

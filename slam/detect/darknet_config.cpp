@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/number_in.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/number_in.hpp"
 
 namespace mh {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -12,15 +12,15 @@
 #include <fmt/ranges.h>
 #include <opencv2/core/utils/logger.hpp>
 
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/legible.hpp"
-#include "slam/core/settings_io.hpp"
-#include "slam/core/text_file.hpp"
 #include "slam/detect/darknet_config.hpp"
 #include "slam/detect/onnx_graph.hpp"
 #include "slam/detect/onnx_rewrite.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/printable.hpp"
+#include "slam/io/settings_io.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -151,7 +151,7 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
     refuse_network(spec.network,
                    fmt::format("its metadata's `names` is no list of classes: '{}'; name them by "
                                "`classes`",
-                               legible(stated->second)));
+                               printable(stated->second)));
   return *std::move(names);
 }
 

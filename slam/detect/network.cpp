@@ -7,13 +7,13 @@
 #include <xxhash.h>
 #include <opencv2/core/utility.hpp>
 
-#include "slam/core/error.hpp"
-#include "slam/core/guarded_child.hpp"
-#include "slam/core/settings_io.hpp"
 #include "slam/detect/detector.hpp"
 #include "slam/detect/fit_image.hpp"
 #include "slam/detect/heads.hpp"
 #include "slam/detect/import_network.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/guarded_child.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/settings_io.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh {
 

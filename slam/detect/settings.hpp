@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "slam/core/setting.hpp"
-#include "slam/core/words.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/setting.hpp"
+#include "slam/io/words.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 
@@ -65,7 +65,7 @@ struct DetectorSettings {
   friend bool operator==(const DetectorSettings&, const DetectorSettings&) = default;
 };
 
-template <Either<DetectorSettings> C, class Visit>
+template <MaybeConst<DetectorSettings> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [head, letterbox, padding, normalize, channels, width_px, height_px, confidence, nms,
          max_detections, fill] = c;

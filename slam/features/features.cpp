@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
 #include "slam/features/corners.hpp"
 #include "slam/features/describe.hpp"
 #include "slam/features/pyramid.hpp"
 #include "slam/features/undistort.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

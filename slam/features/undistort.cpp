@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

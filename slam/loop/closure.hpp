@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "slam/core/fields.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/se3.hpp"
+#include "slam/io/fields.hpp"
 
 namespace mh {
 
@@ -14,7 +14,7 @@ struct LoopClosure {
   SE3 old_from_new;                      ///< old camera from new camera
 };
 
-template <Either<LoopClosure> L, class Visit>
+template <MaybeConst<LoopClosure> L, class Visit>
 void fields(L& loop, Visit& v) {
   auto& [stamp_ns, old_stamp_ns, old_from_new] = loop;
   v("stamp_ns", stamp_ns);

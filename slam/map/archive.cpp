@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include "slam/core/error.hpp"
 #include "slam/core/labels.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace archive {

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "slam/core/camera.hpp"
-#include "slam/core/fields.hpp"
 #include "slam/core/ids.hpp"
 #include "slam/core/se3.hpp"
+#include "slam/io/fields.hpp"
 #include "slam/map/map.hpp"
 
 namespace mh::archive {
@@ -132,19 +132,19 @@ template <class A, class Tag>
 void fields(A& a, const Id<Tag>& id) {
   a(id.value);
 }
-template <class A, Either<Eigen::Vector3d> T>
+template <class A, MaybeConst<Eigen::Vector3d> T>
 void fields(A& a, T& v) {
   a(v.x(), v.y(), v.z());
 }
-template <class A, Either<Matrix6d> T>
+template <class A, MaybeConst<Matrix6d> T>
 void fields(A& a, T& m) {
   for (Eigen::Index i = 0; i < 36; ++i) a(m(i / 6, i % 6));
 }
-template <class A, Either<Vector6d> T>
+template <class A, MaybeConst<Vector6d> T>
 void fields(A& a, T& v) {
   for (int i = 0; i < 6; ++i) a(v[i]);
 }
-template <class A, Either<SE3> T>
+template <class A, MaybeConst<SE3> T>
 void fields(A& a, T& pose) {
   Eigen::Matrix3d rotation = pose.rotation();
   Eigen::Vector3d translation = pose.translation();
@@ -158,43 +158,43 @@ void fields(A& a, T& pose) {
     pose = SE3(rotation, translation);
   }
 }
-template <class A, Either<std::pair<std::uint32_t, std::uint32_t>> T>
+template <class A, MaybeConst<std::pair<std::uint32_t, std::uint32_t>> T>
 void fields(A& a, T& pair) {
   a(pair.first, pair.second);
 }
-template <class A, Either<Keypoint> T>
+template <class A, MaybeConst<Keypoint> T>
 void fields(A& a, T& keypoint) {
   auto& [u_px, v_px, depth_m, angle_rad, octave, label] = keypoint;
   a(u_px, v_px, depth_m, angle_rad, octave, label);
 }
-template <class A, Either<Features> T>
+template <class A, MaybeConst<Features> T>
 void fields(A& a, T& features) {
   auto& [keypoints, descriptors] = features;
   a(keypoints, descriptors);
   if constexpr (A::kReads)
     a.require(keypoints.size() == descriptors.size(), "keypoints and descriptors differ in number");
 }
-template <class A, Either<WeightedMember> T>
+template <class A, MaybeConst<WeightedMember> T>
 void fields(A& a, T& member) {
   auto& [id, weight] = member;
   a(id, weight);
 }
-template <class A, Either<AugmentedVector> T>
+template <class A, MaybeConst<AugmentedVector> T>
 void fields(A& a, T& vector) {
   auto& [labels, words] = vector;
   a(labels, words);
 }
-template <class A, Either<WordIndex> T>
+template <class A, MaybeConst<WordIndex> T>
 void fields(A& a, T& index) {
   auto& [vector, by_node] = index;
   a(vector, by_node);
 }
-template <class A, Either<Keyframe::Neighbor> T>
+template <class A, MaybeConst<Keyframe::Neighbor> T>
 void fields(A& a, T& neighbor) {
   auto& [id, shared] = neighbor;
   a(id, shared);
 }
-template <class A, Either<Keyframe> T>
+template <class A, MaybeConst<Keyframe> T>
 void fields(A& a, T& keyframe) {
   // The grid is rebuilt from the keypoints.
   auto& [id, stamp_ns, camera_from_world, features, grid, words, landmarks, covisible, erased,
@@ -202,12 +202,12 @@ void fields(A& a, T& keyframe) {
   a(id, stamp_ns, camera_from_world, features, words, landmarks, covisible, erased, parent,
     camera_from_parent);
 }
-template <class A, Either<Observation> T>
+template <class A, MaybeConst<Observation> T>
 void fields(A& a, T& observation) {
   auto& [keyframe, feature] = observation;
   a(keyframe, feature);
 }
-template <class A, Either<Landmark> T>
+template <class A, MaybeConst<Landmark> T>
 void fields(A& a, T& landmark) {
   auto& [id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
          max_distance_m, first_keyframe, visible, found, erased, described] = landmark;
@@ -216,12 +216,12 @@ void fields(A& a, T& landmark) {
   a(id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
     max_distance_m, first_keyframe, visible, found);
 }
-template <class A, Either<Distortion> T>
+template <class A, MaybeConst<Distortion> T>
 void fields(A& a, T& distortion) {
   auto& [k1, k2, p1, p2, k3, k4, k5, k6] = distortion;
   a(k1, k2, p1, p2, k3, k4, k5, k6);
 }
-template <class A, Either<Camera> T>
+template <class A, MaybeConst<Camera> T>
 void fields(A& a, T& camera) {
   auto& [width_px, height_px, fx_px, fy_px, cx_px, cy_px, distortion, rate_hz, baseline_m,
          disparity_sigma_px] = camera;

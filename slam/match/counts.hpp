@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "slam/core/fields.hpp"
+#include "slam/io/fields.hpp"
 
 namespace mh {
 
@@ -34,7 +34,7 @@ struct MatcherCounts {
   MatcherCounts& operator+=(const MatcherCounts& other);
 };
 
-template <Either<MatcherCounts> C, class Visit>
+template <MaybeConst<MatcherCounts> C, class Visit>
 void fields(C& counts, Visit& v) {
   auto& [compared, penalized, rejected_by_xi, ratio_helped] = counts;
   v("compared", compared);

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "slam/core/words.hpp"
+#include "slam/io/words.hpp"
 
 namespace mh {
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "slam/occupancy/map_image.hpp"
 
 namespace mh {

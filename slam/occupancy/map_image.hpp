@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 
 #include "slam/core/grid2d.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 #include "slam/occupancy/occupancy_grid.hpp"
 
 namespace mh {

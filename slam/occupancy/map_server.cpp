@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 #include <yaml-cpp/emitter.h>
 
-#include "slam/core/counted.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/legible.hpp"
-#include "slam/core/lower_case.hpp"
-#include "slam/core/suggest.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/lower_case.hpp"
+#include "slam/io/printable.hpp"
+#include "slam/io/suggest.hpp"
+#include "slam/io/yaml.hpp"
 #include "slam/occupancy/map_image.hpp"
 #include "slam/occupancy/occupancy_grid.hpp"
 
@@ -95,7 +95,7 @@ std::vector<int> text_pixels(std::string_view text, std::size_t size, const std:
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || stop != word.data() + word.size())
       throw InputError(fmt::format("{}: pixel {} is '{}', not a number", file, pixels.size() + 1,
-                                   legible(std::string(word.substr(0, 20)))));
+                                   printable(std::string(word.substr(0, 20)))));
     pixels.push_back(value);
     text.remove_prefix(word.size());
   }

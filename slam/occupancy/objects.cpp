@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/lower_case.hpp"
-#include "slam/core/suggest.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/lower_case.hpp"
+#include "slam/io/suggest.hpp"
 
 namespace mh {
 namespace {

@@ -23,8 +23,8 @@
 #include <octomap/OcTree.h>
 #include <xxhash.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/occupancy/counts_reader.hpp"
 #include "slam/occupancy/octomap_file.hpp"
 #include "slam/occupancy/voxel_tree.hpp"

@@ -53,7 +53,7 @@ std::optional<TrackedPose> search_everywhere(const SlamState& state, Tracker& tr
   const InStage stage(observers, Stage::kRelocalization);
   RelocalizationResult found =
       relocalize(with_words(frame, state, observers), context_of(state, observers, report), stream,
-                 nullptr, &tracker.released_scores);
+                 nullptr, &tracker.stale_scores);
   report.relocalization = found.stage;
   report.candidates = found.candidates;
   if (!found.camera_from_world) return std::nullopt;
@@ -84,7 +84,7 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
   const SlamConfig& config = state.config;
   const SlamContext context = context_of(state, observers, report);
   if (auto located = follow(state, tracker, frame, context, observers)) {
-    weigh(*located, tracker, frame.stamp_ns, config.track);
+    fuse_with_prediction(*located, tracker, frame.stamp_ns, config.track);
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }

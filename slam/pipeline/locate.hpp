@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "slam/pipeline/prepared_frame.hpp"
-#include "slam/track/carry.hpp"
+#include "slam/track/dead_reckon.hpp"
 
 namespace mh {
 
@@ -12,7 +12,7 @@ namespace mh {
 SlamContext context_of(const SlamState& state, const StepObservers& observers, StepReport& report);
 
 /// Localizes a frame in the map: by tracking from previous frames; if that fails, by
-/// relocalization. Reads the map, never writes it; of the tracker, only released_scores changes.
+/// relocalization. Reads the map, never writes it; of the tracker, only stale_scores changes.
 std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report);

@@ -14,46 +14,46 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/map/archive.hpp"
 #include "slam/pipeline/settings.hpp"
 
 namespace mh {
 namespace archive {
 
-template <class A, Either<LastFrame> T>
+template <class A, MaybeConst<LastFrame> T>
 void fields(A& a, T& last) {
   auto& [stamp_ns, camera_from_world, features, landmarks] = last;
   a(stamp_ns, camera_from_world, features, landmarks);
 }
-template <class A, Either<Motion> T>
+template <class A, MaybeConst<Motion> T>
 void fields(A& a, T& motion) {
   auto& [velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance] = motion;
   a(velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance);
 }
-template <class A, Either<ReleasedScores::Score> T>
+template <class A, MaybeConst<StaleScores::Score> T>
 void fields(A& a, T& score) {
   auto& [similarity, query] = score;
   a(similarity, query);
 }
-template <class A, Either<ReleasedScores> T>
+template <class A, MaybeConst<StaleScores> T>
 void fields(A& a, T& scores) {
   auto& [of, queries] = scores;
   a(of, queries);
 }
-template <class A, Either<Tracker> T>
+template <class A, MaybeConst<Tracker> T>
 void fields(A& a, T& tracker) {
-  auto& [last, velocity_per_s, motion, reference, frames_since_keyframe, coasting,
-         released_scores] = tracker;
-  a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, released_scores);
+  auto& [last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, stale_scores] =
+      tracker;
+  a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, stale_scores);
 }
-template <class A, Either<LoopMemory> T>
+template <class A, MaybeConst<LoopMemory> T>
 void fields(A& a, T& memory) {
   auto& [drift, keyframe, agreeing] = memory;
   a(drift, keyframe, agreeing);
 }
-template <class A, Either<TrackedFrame> T>
+template <class A, MaybeConst<TrackedFrame> T>
 void fields(A& a, T& frame) {
   auto& [reference, camera_from_reference] = frame;
   a(reference, camera_from_reference);
@@ -84,9 +84,9 @@ TrackedFrames read_tracked_frames(Reader& reader, const Map& map) {
 }
 
 void check(const Reader& reader, const Tracker& tracker, const Map& map) {
-  const ReleasedScores& scores = tracker.released_scores;
+  const StaleScores& scores = tracker.stale_scores;
   reader.require(scores.of.size() <= map.keyframes().size(), "the number of released scores");
-  for (const ReleasedScores::Score& score : scores.of)
+  for (const StaleScores::Score& score : scores.of)
     reader.require(score.query >= 0 && score.query <= scores.queries, "a released score's query");
   if (!tracker.last) return;
   reader.require(tracker.last->landmarks.size() == tracker.last->features.size(),

@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/lower_case.hpp"
-#include "slam/core/settings_io.hpp"
-#include "slam/core/text_file.hpp"
 #include "slam/features/undistort.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/lower_case.hpp"
+#include "slam/io/settings_io.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "slam/config/slam.hpp"
 #include "slam/core/camera.hpp"
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
 #include "slam/features/undistort.hpp"
+#include "slam/io/error.hpp"
 #include "slam/vocabulary/word_index.hpp"
 
 namespace mh {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "slam/pipeline/add_keyframe.hpp"
 #include "slam/pipeline/locate.hpp"
 #include "slam/pipeline/slam.hpp"
@@ -72,7 +72,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   auto located = locate(state, state.tracker, frame, stream, observers, report);
   if (!located) {
-    located = carry(state.tracker, stamp_ns, frame.features, context);
+    located = dead_reckon(state.tracker, stamp_ns, frame.features, context);
     if (located) report.status = TrackStatus::kTracked;
   }
   if (!located) {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "slam/core/words.hpp"
+#include "slam/io/words.hpp"
 
 namespace mh {
 

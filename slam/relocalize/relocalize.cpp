@@ -42,7 +42,7 @@ namespace {
 
 /// Stores the similarities of the keyframes that pass equation 4, as ORB-SLAM2 does for each query.
 void store(const std::vector<InvertedIndex::Score>& scores, Overlap what, double alpha,
-           ReleasedScores& released) {
+           StaleScores& released) {
   ++released.queries;
   int most = 0;
   for (const InvertedIndex::Score& score : scores) most = std::max(most, overlap(score, what));
@@ -54,7 +54,7 @@ void store(const std::vector<InvertedIndex::Score>& scores, Overlap what, double
 }  // namespace
 
 KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
-                                   const SemanticConfig& config, ReleasedScores* released) {
+                                   const SemanticConfig& config, StaleScores* released) {
   // Keyframes that share nothing fail equation 3 and can be skipped.
   const std::vector<InvertedIndex::Score> scores = map.sharing(query);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
@@ -71,9 +71,8 @@ KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
   SummedScores summed;
   const auto similarity = [&](KeyframeId k) {
     if (of[k.value] == nullptr) return 0.0;
-    const ReleasedScores::Score score = released != nullptr
-                                            ? released->of[k.value]
-                                            : ReleasedScores::Score{of[k.value]->similarity};
+    const StaleScores::Score score =
+        released != nullptr ? released->of[k.value] : StaleScores::Score{of[k.value]->similarity};
     ++summed.terms;
     summed.weight += score.similarity;
     if (released == nullptr || score.query == released->queries) return score.similarity;
@@ -146,9 +145,9 @@ void prefer_near(std::vector<Candidate<KeyframeId>>& candidates, const Map& map,
 }  // namespace
 
 KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,
-                                    ReleasedScores* released) {
+                                    StaleScores* released) {
   const NeighborScores neighbors = config.relocalize.neighbor_scores;
-  ReleasedScores cleared;
+  StaleScores cleared;
   if (neighbors != NeighborScores::kAsReleased)
     released = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
   const SemanticConfig& rules = config.semantics;
@@ -174,7 +173,7 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 }
 
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo, ReleasedScores* released) {
+                                AttemptMemo* memo, StaleScores* released) {
   const SlamConfig& config = context.config;
   const auto selection = choose_candidates(context.map, query, config, released);
   std::vector<KeyframeId> candidates;

@@ -11,7 +11,7 @@
 #include "slam/match/context.hpp"
 #include "slam/relocalize/candidate_trial.hpp"
 #include "slam/relocalize/outcome.hpp"
-#include "slam/relocalize/released_scores.hpp"
+#include "slam/relocalize/stale_scores.hpp"
 #include "slam/semantics/candidate_selection.hpp"
 
 namespace mh {
@@ -40,8 +40,7 @@ struct KeyframeSelection : CandidateSelection<KeyframeId> {
 /// @param released  first receives this query's similarities, then supplies those of equation 5;
 /// null: each similarity is computed for this query
 KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
-                                   const SemanticConfig& config,
-                                   ReleasedScores* released = nullptr);
+                                   const SemanticConfig& config, StaleScores* released = nullptr);
 
 /// The attempts at one query so far, by candidate, under one stream and one trial_key(). Searches
 /// that differ only in which candidates they choose can reuse them.
@@ -59,7 +58,7 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 /// @param released  of earlier queries. Read and updated only under NeighborScores::kAsReleased,
 /// and must then not be null
 KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,
-                                    ReleasedScores* released);
+                                    StaleScores* released);
 
 /// Tries one keyframe as relocalize() tries its candidates.
 CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,
@@ -72,6 +71,6 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 /// @param released  of earlier queries. Read and updated only under NeighborScores::kAsReleased,
 /// and must then not be null
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo = nullptr, ReleasedScores* released = nullptr);
+                                AttemptMemo* memo = nullptr, StaleScores* released = nullptr);
 
 }  // namespace mh

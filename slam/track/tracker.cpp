@@ -35,7 +35,7 @@ void remember(Tracker& tracker, LastFrame frame, KeyframeId reference,
 
 void forget(Tracker& tracker) {
   Tracker fresh;
-  fresh.released_scores = std::move(tracker.released_scores);
+  fresh.stale_scores = std::move(tracker.stale_scores);
   tracker = std::move(fresh);
 }
 

@@ -8,7 +8,7 @@
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/se3.hpp"
 #include "slam/features/features.hpp"
-#include "slam/relocalize/released_scores.hpp"
+#include "slam/relocalize/stale_scores.hpp"
 #include "slam/track/motion.hpp"
 
 namespace mh {
@@ -31,8 +31,8 @@ struct Tracker {
   std::optional<Motion> motion;            ///< over all frames since tracking began
   KeyframeId reference;                    ///< keyframe that shares the most landmarks
   int frames_since_keyframe = 0;
-  bool coasting = false;           ///< lost since `last`, but still within coast_s
-  ReleasedScores released_scores;  ///< outlive losses
+  bool coasting = false;     ///< lost since `last`, but still within coast_s
+  StaleScores stale_scores;  ///< outlive losses
 
   bool tracking() const { return last.has_value() && !coasting; }
 };

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "slam/vocabulary/tree.hpp"
 
 namespace mh {

@@ -16,9 +16,9 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/text_file.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/text_file.hpp"
 #include "slam/vocabulary/tree.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
 #include "slam/vocabulary/kmedians.hpp"
 #include "slam/vocabulary/tree.hpp"
 #include "slam/vocabulary/vocabulary.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "slam/core/held_bytes.hpp"
 #include "slam/features/features.hpp"
+#include "slam/io/held_bytes.hpp"
 
 namespace mh {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/messages/message_file.hpp"
+#include "scenes/recordings/messages/message_file.hpp"
 
 #include "tests/fuzz/messages.hpp"
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "slam/core/files.hpp"
 #include "slam/detect/detector.hpp"
+#include "slam/io/files.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {

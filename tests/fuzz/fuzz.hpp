@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 

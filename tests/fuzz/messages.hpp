@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "scenes/recorded/ros/sequence.hpp"
+#include "scenes/recordings/ros/sequence.hpp"
 #include "slam/core/random.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

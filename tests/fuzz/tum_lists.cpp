@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/recorded/tum_list.hpp"
+#include "scenes/recordings/tum_list.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -22,7 +22,7 @@ from sites import Site, sites_of
 
 HERE = Path(__file__).resolve().parent
 SOURCES = ('slam', 'bench', 'sim/sensors')
-PASSED_OVER = ('bench/micro/',)
+PASSED_OVER = ('bench/lab/micro/',)
 # The kinds that are drawn in turn; logic counts among the relations.
 KINDS = ('relation', 'arithmetic', 'constant', 'arguments', 'statement')
 KIND_OF = {'logic': 'relation'}

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "robots/navigation/floor_grid.hpp"
 #include "robots/navigation/plan.hpp"
-#include "slam/core/error.hpp"
+#include "sim/motion/floor_grid.hpp"
+#include "slam/io/error.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "robots/navigation/smooth.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

@@ -15,9 +15,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include "robots/model/robot_keys.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

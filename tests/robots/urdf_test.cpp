@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "robots/model/robot.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """apart.py ROOMS ROOT: what drives a robot cannot reach the truth.
 
-By the link lines: `navigation` links, directly or through others, nothing but the robot's own model
-and the core: no scene, no simulator, no bench. By its files: none includes a header of those.
+By the link lines: `robots` links, directly or through others, nothing but the core: no scene, no
+simulator, no bench. By its files: none includes a header of those.
 """
 import os
 import re
@@ -11,9 +11,8 @@ import sys
 
 from rooms import read_rooms
 
-MAY = {"navigation", "robots", "core"}
+MAY = {"robots", "core", "io"}
 TRUTH = ("scenes/", "sim/", "bench/")
-OF_THE_TRUTH = {"floor_grid.hpp", "floor_grid.cpp"}  # of the library `floor`
 
 
 def linked(rooms, name, found):
@@ -28,12 +27,12 @@ def linked(rooms, name, found):
 
 def faults(rooms, root):
     """A line for each way from the navigation to the truth."""
-    found = [f"navigation links {name}" for name in sorted(linked(rooms, "navigation", set()) - MAY)]
+    found = [f"robots links {name}" for name in sorted(linked(rooms, "robots", set()) - MAY)]
     folder = os.path.join(root, "robots/navigation")
-    for file in sorted(set(os.listdir(folder)) - OF_THE_TRUTH):
+    for file in sorted(os.listdir(folder)):
         with open(os.path.join(folder, file), encoding="utf-8") as text:
             for header in re.findall(r'^#include "([^"]+)"', text.read(), re.M):
-                if header.startswith(TRUTH) or os.path.basename(header) in OF_THE_TRUTH:
+                if header.startswith(TRUTH):
                     found.append(f"robots/navigation/{file} includes {header}")
     return found
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""rooms.py check ROOMS ROOT: files include only what their target links; no circle of targets.
+"""rooms.py check ROOMS ROOT: files include only what their target links; no circle of targets, nor of
+the folders that share one (those of scenes/ apart: a scene is loaded by its formats, which make scenes).
 
 ROOMS is made/rooms.txt of the build folder, which CMake writes: NAME|SOURCES|PUBLIC|PRIVATE.
 """
@@ -64,10 +65,36 @@ def violations(rooms, root):
     return found
 
 
+def folder_circle(root, tops=("bench", "robots", "sim", "slam")):
+    """The first circle of includes among folders; empty if there is none."""
+    edges = {}
+    for top in tops:
+        for folder, _, files in os.walk(os.path.join(root, top)):
+            here = os.path.relpath(folder, root)
+            for file in sorted(f for f in files if f.endswith((".hpp", ".cpp"))):
+                with open(os.path.join(folder, file), encoding="utf-8") as text:
+                    to = map(os.path.dirname, re.findall(r'^#include "([^"]+)"', text.read(), re.M))
+                    edges.setdefault(here, set()).update(t for t in to if t not in ("", here))
+    done = set()
+
+    def walk(folder, path):
+        if folder in path:
+            return [*path[path.index(folder):], folder]
+        if folder in done:
+            return []
+        found = next(filter(None, (walk(f, (*path, folder)) for f in sorted(edges.get(folder, ())))), [])
+        done.add(folder)
+        return found
+
+    return next(filter(None, (walk(f, ()) for f in sorted(edges))), [])
+
+
 def main(task, made, root):
     assert task == "check"
     with open(made, encoding="utf-8") as text:
         found = violations(read_rooms(text.read()), root)
+    if circle_of := folder_circle(root):
+        found.append("circle of folders: " + " -> ".join(circle_of))
     print("\n".join(found) or "every include follows a link line")
     return bool(found)
 

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 from apart import faults
-from rooms import read_rooms, violations
+from rooms import folder_circle, read_rooms, violations
 
 ROOMS = """low|a/low.cpp|Eigen3::Eigen|
 inner|b/inner.cpp||mh::low
@@ -55,15 +55,25 @@ class Violations(unittest.TestCase):
             drive = os.path.join(root, "robots/navigation/drive.cpp")
             with open(drive, "w", encoding="utf-8") as text:
                 text.write('#include "slam/core/se3.hpp"\n')
-            rooms = read_rooms(apart + "navigation|d.cpp|mh::robots|\n")
-            self.assertEqual(faults(rooms, root), [])
-            rooms = read_rooms(apart.replace("c.cpp|mh::core|", "c.cpp||mh::scenes") +
-                               "navigation|d.cpp|mh::robots|\n")
-            self.assertEqual(faults(rooms, root), ["navigation links scenes"])
+            self.assertEqual(faults(read_rooms(apart), root), [])
+            rooms = read_rooms(apart.replace("c.cpp|mh::core|", "c.cpp||mh::scenes"))
+            self.assertEqual(faults(rooms, root), ["robots links scenes"])
             with open(drive, "w", encoding="utf-8") as text:
                 text.write('#include "scenes/scene.hpp"\n')
             self.assertEqual(faults(rooms, root)[1:],
                              ["robots/navigation/drive.cpp includes scenes/scene.hpp"])
+
+    def test_a_circle_of_folders_is_found(self):
+        with tempfile.TemporaryDirectory() as root:
+            for file, header in (("slam/a/x.hpp", "slam/b/y.hpp"), ("slam/b/y.hpp", "slam/c/z.hpp"),
+                                 ("slam/c/z.cpp", "slam/c/w.hpp")):
+                os.makedirs(os.path.join(root, os.path.dirname(file)), exist_ok=True)
+                with open(os.path.join(root, file), "w", encoding="utf-8") as text:
+                    text.write(f'#include "{header}"\n')
+            self.assertEqual(folder_circle(root), [])
+            with open(os.path.join(root, "slam/c/z.cpp"), "a", encoding="utf-8") as text:
+                text.write('#include "slam/a/x.hpp"\n')
+            self.assertEqual(folder_circle(root), ["slam/a", "slam/b", "slam/c", "slam/a"])
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/plan/suite.hpp"
-#include "bench/world/world.hpp"
+#include "bench/protocol/world/world.hpp"
+#include "bench/suite/suite.hpp"
 #include "scenes/load.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "sim/world/travel.hpp"

@@ -4,11 +4,11 @@
 // run without the fault passes.
 #include <gtest/gtest.h>
 
-#include "bench/check/from_runs.hpp"
-#include "bench/check/gate.hpp"
-#include "bench/check/report.hpp"
+#include "bench/results/gate/from_runs.hpp"
+#include "bench/results/gate/gate.hpp"
+#include "bench/results/gate/report.hpp"
 #include "bench/run/run_one.hpp"
-#include "bench/systems/ours.hpp"
+#include "bench/systems/builtin.hpp"
 #include "slam/config/slam.hpp"
 #include "source_dir.hpp"
 
@@ -39,7 +39,7 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
     SlamConfig config;
     config = spec.slam;
     fault.settings(config);
-    return make_our_system(world.mapping->camera(), config, world.vocabulary);
+    return make_builtin_system(world.mapping->camera(), config, world.vocabulary);
   };
   return figures(run_one(spec, world, tools));
 }

@@ -10,7 +10,7 @@
 
 #include "scenes/load.hpp"
 #include "scenes/mesh_io/mesh_io.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "tests/scenes/scanned_room.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 

@@ -15,7 +15,7 @@
 #include "scenes/house/house.hpp"
 #include "scenes/house/plan_file.hpp"
 #include "scenes/load.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "slam/core/files.hpp"
-#include "slam/core/read_record.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/read_record.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {

@@ -11,9 +11,9 @@
 #include <set>
 
 #include "scenes/furniture/furniture.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "scenes/materials/noise.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

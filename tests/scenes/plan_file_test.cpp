@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "slam/core/yaml.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {

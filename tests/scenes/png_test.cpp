@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/images/png.hpp"
+#include "scenes/recordings/images/png.hpp"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>

@@ -13,7 +13,7 @@
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "scenes/scannet/sens.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {

@@ -14,7 +14,7 @@
 #include "scenes/scannet/annotation.hpp"
 #include "scenes/scannet/label_table.hpp"
 #include "scenes/scannet/scene_info.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {

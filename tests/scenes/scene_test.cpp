@@ -6,7 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 

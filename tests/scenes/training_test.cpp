@@ -8,7 +8,7 @@
 
 #include "scenes/materials/materials.hpp"
 #include "scenes/training/patterns.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

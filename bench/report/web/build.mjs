@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the bundle that `modelhouse report` copies: node build.mjs [FOLDER]
-// (default: bench/pages/bundle). Its first line holds a digest of everything it is made from.
+// (default: bench/report/pages/bundle). Its first line holds a digest of everything it is made from.
 import { build } from "esbuild";
 import { mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
@@ -18,7 +18,7 @@ function filesBelow(folder, from = "") {
   });
 }
 
-/** FNV-1a, 64 bits: bench/pages/write.cpp computes the same. */
+/** FNV-1a, 64 bits: bench/report/pages/write.cpp computes the same. */
 function digestOfSources() {
   let sum = 0xcbf29ce484222325n;
   const add = (bytes) => {

@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "slam/core/held_bytes.hpp"
+#include "slam/io/held_bytes.hpp"
 
 namespace mh::gltf {
 

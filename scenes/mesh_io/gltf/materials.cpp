@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "scenes/mesh_io/percent.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh::gltf {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "bench/audit/summary.hpp"
 #include "bench/audit/write.hpp"
-#include "bench/provenance/json_fields.hpp"
-#include "slam/core/error.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "slam/io/error.hpp"
 #include "slam/pipeline/map_file.hpp"
 #include "tests/bench/audit/box_room_run.hpp"
 

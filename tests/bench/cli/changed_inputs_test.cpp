@@ -14,8 +14,8 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "tests/bench/cli/small_suite.hpp"
 
 namespace mh {

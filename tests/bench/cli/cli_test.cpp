@@ -20,11 +20,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/protocol/config.hpp"
+#include "bench/suite/protocol_config.hpp"
 #include "scenes/image_file.hpp"
 #include "sim/sensors/config.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/settings_io.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/settings_io.hpp"
 #include "source_dir.hpp"
 #include "tests/bench/cli/small_suite.hpp"
 

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "scenes/recorded/tum_folder.hpp"
+#include "scenes/recordings/tum_folder.hpp"
 #include "sim/sensors/config.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "tests/slam/detect/made_networks.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "tests/bench/cli/small_suite.hpp"
 
 namespace mh {

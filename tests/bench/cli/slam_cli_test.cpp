@@ -12,10 +12,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "scenes/recorded/open_sequence.hpp"
-#include "scenes/recorded/tum_folder.hpp"
-#include "slam/core/files.hpp"
+#include "scenes/recordings/open_sequence.hpp"
+#include "scenes/recordings/tum_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/files.hpp"
 #include "slam/pipeline/settings.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/plan/runs.hpp"
-#include "bench/results/run_result.hpp"
-#include "slam/core/files.hpp"
+#include "bench/protocol/run_result.hpp"
+#include "bench/suite/runs.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 

@@ -11,16 +11,16 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/inputs/recorded_camera.hpp"
-#include "bench/metrics/evaluate.hpp"
+#include "bench/protocol/metrics/evaluate.hpp"
 #include "bench/run/frame_log.hpp"
 #include "bench/run/run_one.hpp"
-#include "bench/systems/ours.hpp"
+#include "bench/suite/recorded_camera.hpp"
+#include "bench/systems/builtin.hpp"
 #include "bench/systems/stage_clock.hpp"
-#include "scenes/recorded/frame_sequence.hpp"
-#include "scenes/recorded/tum_folder.hpp"
-#include "slam/core/error.hpp"
+#include "scenes/recordings/frame_sequence.hpp"
+#include "scenes/recordings/tum_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/error.hpp"
 #include "slam/pipeline/map_file.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
@@ -87,13 +87,13 @@ SlamRun run_slam(SlamState& state, const Sequence& sequence, const Feed& feed = 
     run.reports[call.index] = report;
     feed.after_frame();
   };
-  const OurSystemOptions ours{.observers = feed.observers, .small_map = feed.small_map};
+  const BuiltinOptions ours{.observers = feed.observers, .small_map = feed.small_map};
   RunSpec spec;
   spec.seed = 7;
   spec.protocol = live_feed();
   spec.points = {state.config.semantics};
   if (feed.localize) {
-    const auto frozen = make_our_system(state, ours);
+    const auto frozen = make_builtin_system(state, ours);
     frozen->freeze();
     Localization found =
         localize_sequence(*frozen, sequence, spec.protocol, RandomStream(7), watch);
@@ -104,7 +104,7 @@ SlamRun run_slam(SlamState& state, const Sequence& sequence, const Feed& feed = 
     world.mapping = {std::shared_ptr<const Sequence>(), &sequence};  // owned by the caller
     RunResult result = run_one(
         spec, world,
-        {.system = [&](const RunSpec&, const World&) { return make_our_system(state, ours); },
+        {.system = [&](const RunSpec&, const World&) { return make_builtin_system(state, ours); },
          .observe = watch,
          .first = feed.first,
          .occupancy = false});

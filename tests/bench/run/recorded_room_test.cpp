@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/plan/suite.hpp"
-#include "bench/provenance/digest.hpp"
 #include "bench/run/run_one.hpp"
-#include "scenes/recorded/class_map.hpp"
-#include "scenes/recorded/frame_files.hpp"
-#include "scenes/recorded/tum_folder.hpp"
+#include "bench/suite/suite.hpp"
+#include "scenes/recordings/class_map.hpp"
+#include "scenes/recordings/frame_files.hpp"
+#include "scenes/recordings/tum_folder.hpp"
+#include "slam/core/digest.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

@@ -13,11 +13,6 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "bench/inputs/inputs.hpp"
-#include "bench/inputs/run_key.hpp"
-#include "bench/plan/runs.hpp"
-#include "bench/plan/spec_json.hpp"
-#include "bench/provenance/digest.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/summary.hpp"
@@ -25,13 +20,18 @@
 #include "bench/run/run.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/store/store.hpp"
-#include "bench/systems/ours.hpp"
-#include "scenes/recorded/frame_files.hpp"
-#include "scenes/recorded/open_sequence.hpp"
-#include "scenes/recorded/scannet_folder.hpp"
-#include "scenes/recorded/sequence_writer.hpp"
-#include "slam/core/files.hpp"
+#include "bench/suite/inputs.hpp"
+#include "bench/suite/run_key.hpp"
+#include "bench/suite/runs.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "bench/systems/builtin.hpp"
+#include "scenes/recordings/frame_files.hpp"
+#include "scenes/recordings/open_sequence.hpp"
+#include "scenes/recordings/scannet_folder.hpp"
+#include "scenes/recordings/sequence_writer.hpp"
+#include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/files.hpp"
 #include "slam/pipeline/settings.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
@@ -109,9 +109,9 @@ class Recorded : public testing::Test {
   RunResult run(const World& world) const { return run_one(spec_, world, tools()); }
   RunTools tools() const {
     return {.folder = folder_, .system = [](const RunSpec& spec, const World& place) {
-              return make_our_system(place.mapping->camera(),
-                                     testing_support::box_room_settings(spec.points.front()),
-                                     vocabulary());
+              return make_builtin_system(place.mapping->camera(),
+                                         testing_support::box_room_settings(spec.points.front()),
+                                         vocabulary());
             }};
   }
   /// The run's environment, system and labels.

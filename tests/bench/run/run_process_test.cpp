@@ -14,8 +14,8 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {

@@ -15,9 +15,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "bench/metrics/trajectory_score.hpp"
-#include "bench/plan/shipped.hpp"
-#include "bench/plan/suite.hpp"
+#include "bench/protocol/metrics/trajectory_score.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/suite_json.hpp"
 #include "bench/report/sweep.hpp"
@@ -25,13 +23,15 @@
 #include "bench/report/topdown.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/scenes.hpp"
-#include "bench/verify/verify.hpp"
+#include "bench/run/verify.hpp"
+#include "bench/suite/shipped.hpp"
+#include "bench/suite/suite.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/config/slam.hpp"
-#include "slam/core/counted.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/temporary_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/run/slurm.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/plan/runs.hpp"
-#include "bench/provenance/digest.hpp"
 #include "bench/results/summary.hpp"
 #include "bench/run/run_one.hpp"
+#include "bench/suite/runs.hpp"
+#include "slam/core/digest.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

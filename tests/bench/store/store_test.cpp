@@ -19,14 +19,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/plan/runs.hpp"
 #include "bench/report/export.hpp"
 #include "bench/report/json.hpp"
 #include "bench/run/pool.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/run_process.hpp"
-#include "slam/core/file_errors.hpp"
-#include "slam/core/files.hpp"
+#include "bench/suite/runs.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {

@@ -17,8 +17,8 @@
 #include "bench/protocol/query.hpp"
 #include "bench/systems/library.hpp"
 #include "bench/systems/outside_error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/core/labels.hpp"
+#include "slam/io/files.hpp"
 #include "tests/bench/protocol/fake_system.hpp"
 
 namespace mh {

@@ -19,8 +19,8 @@
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "tests/bench/protocol/fake_system.hpp"
 
 namespace mh {

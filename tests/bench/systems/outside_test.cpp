@@ -7,17 +7,17 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "bench/metrics/trajectory_score.hpp"
+#include "bench/protocol/metrics/trajectory_score.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/score.hpp"
-#include "bench/provenance/digest.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/library.hpp"
 #include "bench/systems/recorded_run.hpp"
-#include "scenes/recorded/frame_files.hpp"
+#include "scenes/recordings/frame_files.hpp"
 #include "scenes/training/training.hpp"
 #include "sim/sensors/sensors.hpp"
-#include "slam/core/files.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/files.hpp"
 #include "tests/slam/core/made_sequence.hpp"
 
 namespace mh {

@@ -10,7 +10,7 @@
 #include "scenes/generate/generate.hpp"
 #include "scenes/house/house.hpp"
 #include "sim/motion/replay.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "source_dir.hpp"
 #include "tests/sim/boxes.hpp"
 #include "tests/sim/motion/limits_kept.hpp"

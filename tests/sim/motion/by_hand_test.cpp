@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "robots/navigation/floor_grid.hpp"
 #include "scenes/house/house.hpp"
-#include "slam/core/error.hpp"
+#include "sim/motion/floor_grid.hpp"
+#include "slam/io/error.hpp"
 #include "source_dir.hpp"
 #include "tests/sim/boxes.hpp"
 

@@ -8,9 +8,9 @@
 
 #include "sim/motion/commanded_base.hpp"
 #include "sim/motion/sensing.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "tests/sim/boxes.hpp"
 #include "tests/sim/motion/limits_kept.hpp"
 

@@ -13,7 +13,7 @@
 #include "sim/motion/path.hpp"
 #include "sim/motion/reference.hpp"
 #include "sim/motion/sensing.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

@@ -5,7 +5,7 @@
 
 #include "sim/motion/motion.hpp"
 #include "sim/motion/path.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

@@ -9,7 +9,7 @@
 
 #include "scenes/house/house.hpp"
 #include "sim/motion/motion.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "source_dir.hpp"
 #include "tests/sim/boxes.hpp"
 #include "tests/sim/motion/nearest_view.hpp"

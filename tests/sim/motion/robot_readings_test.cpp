@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/files.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

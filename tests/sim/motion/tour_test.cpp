@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "sim/motion/motion.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

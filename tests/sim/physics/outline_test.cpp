@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "robots/navigation/floor_grid.hpp"
 #include "scenes/band.hpp"
 #include "scenes/load.hpp"
+#include "sim/motion/floor_grid.hpp"
 #include "sim/physics/planar_world.hpp"
 #include "slam/core/random.hpp"
 #include "source_dir.hpp"

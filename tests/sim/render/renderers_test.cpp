@@ -8,7 +8,7 @@
 #include "sim/render/agreement.hpp"
 #include "sim/render/color.hpp"
 #include "sim/render/renderer.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "tests/sim/scene_builder.hpp"
 
 namespace mh {

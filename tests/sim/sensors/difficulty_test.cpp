@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

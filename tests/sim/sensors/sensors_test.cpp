@@ -11,8 +11,8 @@
 #include <optional>
 #include <set>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/world/sequence.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "tests/sim/scene_builder.hpp"
 
 namespace mh {

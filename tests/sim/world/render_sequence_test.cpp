@@ -10,13 +10,13 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "bench/inputs/recorded_camera.hpp"
-#include "scenes/recorded/frame_files.hpp"
-#include "scenes/recorded/scannet_folder.hpp"
-#include "scenes/recorded/tum_folder.hpp"
+#include "bench/suite/recorded_camera.hpp"
+#include "scenes/recordings/frame_files.hpp"
+#include "scenes/recordings/scannet_folder.hpp"
+#include "scenes/recordings/tum_folder.hpp"
 #include "scenes/scannet/label_table.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

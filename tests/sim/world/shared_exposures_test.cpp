@@ -16,7 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/world/sequence.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "tests/sim/scene_builder.hpp"
 
 namespace mh {

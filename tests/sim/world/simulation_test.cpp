@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/provenance/digest.hpp"
 #include "scenes/load.hpp"
 #include "sim/motion/commands.hpp"
 #include "sim/world/lit_scene.hpp"
-#include "slam/core/error.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/io/error.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {

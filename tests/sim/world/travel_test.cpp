@@ -2,8 +2,8 @@
 // Motions on floors as scanners and other programs leave them.
 #include "sim/world/travel.hpp"
 #include "sim/motion/replay.hpp"
-#include "slam/core/temporary_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "scenes/floor.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "tests/scenes/scanned_room.hpp"
 #include "tests/sim/boxes.hpp"
 

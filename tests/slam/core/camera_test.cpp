@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 namespace mh {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/temporary_folder.hpp"
 #include "slam/detect/detector.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
 #include "slam/detect/detected_sequence.hpp"
+#include "slam/io/error.hpp"
 #include "tests/slam/core/made_sequence.hpp"
 
 namespace mh {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/detect/heads.hpp"
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 
 #include <gtest/gtest.h>
 

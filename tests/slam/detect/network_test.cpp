@@ -9,12 +9,12 @@
 #include <filesystem>
 #include <limits>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
-#include "slam/core/read_record.hpp"
-#include "slam/core/temporary_folder.hpp"
 #include "slam/detect/detected_sequence.hpp"
 #include "slam/detect/detector.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "slam/io/read_record.hpp"
+#include "slam/io/temporary_folder.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/core/made_sequence.hpp"
 #include "tests/slam/detect/made_networks.hpp"

@@ -11,7 +11,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "tests/slam/features/texture.hpp"
 
 namespace mh {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/occupancy/cost_map.hpp"
 #include "slam/occupancy/map_image.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
 #include "slam/occupancy/floor_frame.hpp"
 #include "tests/slam/occupancy/box_room.hpp"
 #include "tests/slam/occupancy/made_map.hpp"

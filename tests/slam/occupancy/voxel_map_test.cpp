@@ -12,8 +12,8 @@
 #include <octomap/OcTree.h>
 #include <xxhash.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/occupancy/objects.hpp"
 #include "tests/slam/occupancy/box_room.hpp"
 #include "tests/slam/occupancy/made_map.hpp"

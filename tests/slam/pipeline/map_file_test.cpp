@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/pipeline/map_file.hpp"
 #include "slam/pipeline/settings.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
@@ -204,12 +204,12 @@ class Layout {
     put<std::uint32_t>(t.reference.value);
     put<std::int32_t>(t.frames_since_keyframe);
     put<std::uint8_t>(t.coasting);
-    put<std::uint64_t>(t.released_scores.of.size());
-    for (const auto& [similarity, query] : t.released_scores.of) {
+    put<std::uint64_t>(t.stale_scores.of.size());
+    for (const auto& [similarity, query] : t.stale_scores.of) {
       put<double>(similarity);
       put<std::int32_t>(query);
     }
-    put<std::int32_t>(t.released_scores.queries);
+    put<std::int32_t>(t.stale_scores.queries);
   }
 
   std::string out_;
@@ -324,10 +324,10 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
           [=](Parts& p) { p.state.tracker.last->landmarks[0].value = landmarks; });
   refuses("the reference keyframe", [=](Parts& p) { p.state.tracker.reference.value = keyframes; });
   refuses("a released score's query", [](Parts& p) {
-    p.state.tracker.released_scores = {.of = {{0.5, 2}}, .queries = 1};
+    p.state.tracker.stale_scores = {.of = {{0.5, 2}}, .queries = 1};
   });
   refuses("the number of released scores",
-          [=](Parts& p) { p.state.tracker.released_scores.of.resize(keyframes + 1); });
+          [=](Parts& p) { p.state.tracker.stale_scores.of.resize(keyframes + 1); });
   refuses("a tracked frame's keyframe",
           [=](Parts& p) { p.state.tracked_frames.begin()->second.reference.value = keyframes; });
   // Both sides store which keyframe sees which landmark.
@@ -344,7 +344,7 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
   state.loop_memory = {.drift = SE3::exp((Vector6d() << 1, 2, 3, 0.4, 0.5, 0.6).finished()),
                        .keyframe = KeyframeId{1},
                        .agreeing = 1};
-  state.tracker.released_scores = {.of = {{0.25, 1}, {0.5, 3}}, .queries = 3};
+  state.tracker.stale_scores = {.of = {{0.25, 1}, {0.5, 3}}, .queries = 3};
   for (const SlamState& of : {state, start()}) {
     const std::string bytes = framed(Layout(of).bytes());
     EXPECT_TRUE(bytes == encode_slam(of))

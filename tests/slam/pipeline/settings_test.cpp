@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "slam/config/by_name.hpp"
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/pipeline/settings.hpp"
 #include "source_dir.hpp"
 

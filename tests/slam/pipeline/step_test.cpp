@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
+#include "slam/io/error.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

@@ -119,33 +119,33 @@ Map map_of_neighbors() {
   return map;
 }
 
-TEST(ReleasedScores, OfNeighborsAreThoseOfEarlierQueries) {
+TEST(StaleScores, OfNeighborsAreThoseOfEarlierQueries) {
   const Map map = map_of_neighbors();
   const AugmentedVector near_first = vector_of({}, {1, 2, 3, 4}),
                         near_second = vector_of({}, {5, 6, 7, 9});
   const SemanticConfig config{.alpha = 0.8, .beta = 0.0, .overlap = Overlap::kWords};
-  const auto score = [&](ReleasedScores* released) {
+  const auto score = [&](StaleScores* released) {
     return select_keyframes(map, near_first, config, released).candidates.at(0).score;
   };
   // Four words of one's own share each: similarity 1 with the first, 1/4 with the second, which
   // shares one word of four; the second query shares three of four with the second keyframe.
   EXPECT_DOUBLE_EQ(score(nullptr), 1.25);
-  ReleasedScores released;
+  StaleScores released;
   EXPECT_DOUBLE_EQ(score(&released), 1.0) << "nothing was ever computed for the neighbor";
   select_keyframes(map, near_second, config, &released);
   EXPECT_DOUBLE_EQ(score(&released), 1.75) << "the other query's similarity was not used";
   EXPECT_DOUBLE_EQ(score(nullptr), 1.25);
 }
 
-TEST(ReleasedScores, AreCountedByTheQueryThatLeftThem) {
+TEST(StaleScores, AreCountedByTheQueryThatLeftThem) {
   const Map map = map_of_neighbors();
   const AugmentedVector near_first = vector_of({}, {1, 2, 3, 4}),
                         near_second = vector_of({}, {5, 6, 7, 9});
   const SemanticConfig config{.alpha = 0.8, .beta = 0.0, .overlap = Overlap::kWords};
-  const auto summed = [&](ReleasedScores* released) {
+  const auto summed = [&](StaleScores* released) {
     return select_keyframes(map, near_first, config, released).summed;
   };
-  ReleasedScores released;
+  StaleScores released;
   const SummedScores unscored = summed(&released);
   EXPECT_EQ(unscored.terms, 2);
   EXPECT_EQ(unscored.unscored, 1);
@@ -168,7 +168,7 @@ TEST(ReleasedScores, AreCountedByTheQueryThatLeftThem) {
   EXPECT_DOUBLE_EQ(fresh.weight, 1.25);
 }
 
-TEST(ReleasedScores, ThatAreClearedAreThoseOfAFirstQuery) {
+TEST(StaleScores, ThatAreClearedAreThoseOfAFirstQuery) {
   Map map = map_of_neighbors();
   Keyframe other;  // similarity 0.8: more than beta of 1, not of 1.25
   other.words.vector = vector_of({}, {1, 2, 3, 4, 8});
@@ -182,7 +182,7 @@ TEST(ReleasedScores, ThatAreClearedAreThoseOfAFirstQuery) {
     SlamConfig config;
     config.semantics = {.alpha = 0.8, .beta = 0.75, .overlap = Overlap::kWords};
     config.relocalize.neighbor_scores = neighbors;
-    ReleasedScores released;
+    StaleScores released;
     return relocalize({features, grid, words}, {Camera{}, config, map, counts}, RandomStream(1),
                       nullptr, &released)
         .candidates.final;

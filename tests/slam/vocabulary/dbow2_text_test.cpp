@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 #include "slam/vocabulary/tree.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 

@@ -12,9 +12,9 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
-#include "slam/core/error.hpp"
-#include "slam/core/files.hpp"
 #include "slam/core/random.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh {
 namespace {

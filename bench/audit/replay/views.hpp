@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "bench/protocol/run_result.hpp"
+#include "bench/protocol/world/world.hpp"
+#include "slam/pipeline/slam.hpp"
+
+namespace mh {
+
+/// Images are at most this wide: twelve thousand bytes each.
+inline constexpr int kViewWidth_px = 320;
+
+/// What a run saw: the image of each keyframe with its keypoints, and for each query of the first
+/// parameter point its image, the candidates of Algorithm 1 at its first attempt, and the matches
+/// by words with each, right or wrong by the truth of the scene. Pixels are those of the images.
+/// @param frozen  the run's finished map; its queries are asked again on the side
+nlohmann::ordered_json views_json(const RunResult& run, const World& world, SlamState& frozen);
+
+}  // namespace mh

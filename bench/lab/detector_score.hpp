@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "bench/protocol/metrics/average_precision.hpp"
+#include "sim/sensors/labels.hpp"
+#include "sim/sensors/visible_objects.hpp"
+#include "slam/detect/detected.hpp"
+
+namespace mh {
+
+/// What became of an object, or of a detection, at the detector's own least score: `truth` is void
+/// for a detection of nothing, `found` for an object that was missed. A detection belongs to the
+/// free object that it overlaps by at least 0.5, of its own class if there is one, else most.
+struct Outcome {
+  ClassId truth = kVoid, found = kVoid;
+  friend auto operator<=>(const Outcome&, const Outcome&) = default;
+};
+
+/// Of one class of ours that COCO has.
+struct ClassScore {
+  ClassId class_id = kVoid;
+  AveragePrecision precision;
+  std::size_t objects = 0, right = 0, wrong_class = 0;  ///< at the detector's own least score
+};
+
+/// How labels made of boxes agree with the exact classes of the pixels.
+struct LabelScore {
+  double right_share = 0;  ///< of the pixels that got a class: those that got their own
+  double found_share = 0;  ///< of the pixels of objects that COCO has: those that got their class
+};
+
+struct DetectorScore {
+  std::size_t images = 0;
+  std::vector<ClassScore> classes;  ///< that occur, by id
+  /// Means over the classes that occur (of a size, for the sizes).
+  AveragePrecision mean;
+  std::map<Outcome, std::size_t> outcomes;
+  /// Detections of nothing: by their class, and the class of most pixels of their box.
+  std::map<std::pair<ClassId, ClassId>, std::size_t> false_alarms;
+  std::size_t badly_placed =
+      0;                       ///< overlap an object of their class by 0.1 to 0.5; no false alarms
+  DetectorConfig dials;        ///< of the simulated detector; NaN where nothing measured it
+  LabelScore box, foreground;  ///< by BoxFill; NaN where nothing measured it
+};
+
+/// Dials, but for those that were measured (see DetectorScore::dials).
+DetectorConfig with_measured(DetectorConfig dials, const DetectorConfig& measured);
+
+/// Judges a detector by exact images. Objects are the visible parts of instances of COCO's classes;
+/// those of fewer than kMinBoxPixels pixels neither count nor are false.
+class DetectorJudge {
+ public:
+  /// @param confidence  least score of a box that counts outside of average precision
+  explicit DetectorJudge(double confidence) : confidence_(confidence) {}
+
+  /// @param found    in pixels of the exact image, best first
+  /// @param depth_m  as sensed, for the labels; may be empty
+  /// @returns the objects that were missed
+  std::vector<VisibleObject> add(const RenderedFrame& exact, const std::vector<DetectedBox>& found,
+                                 const Grid2d<float>& depth_m = {});
+  DetectorScore score() const;
+
+ private:
+  void add_precision(const std::vector<VisibleObject>& objects,
+                     const std::vector<DetectedBox>& found);
+  std::vector<VisibleObject> add_outcomes(const RenderedFrame& exact,
+                                          const std::vector<VisibleObject>& objects,
+                                          const std::vector<DetectedBox>& found);
+  void add_labels(const RenderedFrame& exact, const std::vector<DetectedBox>& found,
+                  const Grid2d<float>& depth_m);
+
+  struct BoxesOfClass {
+    std::vector<TruthBox> truths;
+    std::vector<ScoredBox> found;
+  };
+  struct Pixels {
+    std::size_t labeled = 0, right = 0, of_objects = 0;
+  };
+  double confidence_;
+  std::size_t images_ = 0, badly_placed_ = 0;
+  std::map<ClassId, BoxesOfClass> boxes_;
+  std::map<Outcome, std::size_t> outcomes_;
+  std::map<std::pair<ClassId, ClassId>, std::size_t> false_alarms_;
+  std::size_t of_size_[3] = {}, found_of_size_[3] = {};
+  double squared_strays_ = 0;
+  std::size_t sides_ = 0;
+  Pixels box_, foreground_;
+};
+
+/// The boxes of the simulated detector, as a real one would give them.
+std::vector<DetectedBox> as_detected(const std::vector<Detection>& detections);
+
+}  // namespace mh

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/lab/image_statistics.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// The names of the first environments of each category.
+/// @param per_category  at most so many of each; 0: all
+std::vector<std::string> generated_rooms(int per_category);
+
+/// One of several moments spread evenly over a scan, with the poses before and after it that
+/// determine its blur.
+struct ScanMoment {
+  Trajectory around;
+  std::size_t at = 0;  ///< which of them is the moment
+};
+/// @param k  of `count` moments, from 0
+ScanMoment scan_moment(const Trajectory& scan, std::size_t k, std::size_t count);
+
+/// The frames of one environment, or of one recording.
+struct MeasuredPlace {
+  std::string name;
+  std::vector<ImageStatistics> frames;
+  double at(std::size_t quantity, double share) const;  ///< percentile over its frames
+};
+
+/// Percentiles 5, 25, 50, 75, 95 of each quantity, measured on real frames.
+struct RealFrames {
+  std::string name, source;
+  std::array<std::array<double, 5>, kImageQuantityCount> percentiles;
+};
+inline constexpr std::array<double, 5> kShares = {0.05, 0.25, 0.5, 0.75, 0.95};
+
+/// Reads assets/real_frames.yaml. @throws InputError naming file, line and value
+std::vector<RealFrames> load_real_frames(const std::filesystem::path& file);
+
+/// How one quantity of places compares to real frames.
+struct RealismRow {
+  std::array<double, 5> ours;        ///< percentiles over all frames
+  double median_of_places = 0;       ///< of the places' medians
+  bool in_range = false;             ///< it is between the real frames' 25th and 75th percentiles
+  double spread_ratio = 0;           ///< 5th to 95th percentile over frames: ours / theirs
+  std::vector<std::size_t> outside;  ///< places whose median is beyond their 5th or 95th
+};
+RealismRow compare(const std::vector<MeasuredPlace>& places, const RealFrames& real,
+                   std::size_t quantity);
+
+}  // namespace mh

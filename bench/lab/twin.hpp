@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/lab/image_statistics.hpp"
+#include "slam/config/features.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/sequence.hpp"
+#include "slam/features/features.hpp"
+
+namespace mh {
+
+/// The frames of a recording whose true poses are known, in the scene's frame; what a twin can be
+/// rendered for. A recorded frame without a pose is left out.
+class PosedFrames : public Sequence {
+ public:
+  /// @param scene_from_recording  from the frame of the recording's truth to that of its scene
+  /// @throws InputError if fewer than two poses are known
+  PosedFrames(std::unique_ptr<Sequence> all, const SE3& scene_from_recording,
+              std::size_t at_most = SIZE_MAX);
+
+  const Camera& camera() const override { return all_->camera(); }
+  std::size_t size() const override { return index_.size(); }
+  Stamp stamp_ns(std::size_t i) const override { return poses_[i].stamp_ns; }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    return all_->frame(index_[i], noise);
+  }
+  const Trajectory* truth() const override { return &poses_; }
+  std::size_t left_out() const { return left_out_; }
+
+ private:
+  std::unique_ptr<Sequence> all_;
+  std::vector<std::size_t> index_;
+  Trajectory poses_;
+  std::size_t left_out_ = 0;
+};
+
+/// What becomes of an image's keypoints in another image from the same pose.
+struct KeypointAgreement {
+  std::size_t keypoints = 0;  ///< of the first image
+  std::size_t repeated = 0;   ///< the other has a keypoint within 3 px and one octave
+  std::size_t matched = 0;  ///< the most similar one within 20 px is one of these, at most 50 bits
+  std::size_t mismatched = 0;  ///< the most similar one within 20 px, at most 50 bits, is another
+};
+KeypointAgreement agreement(const Features& first, const Features& other);
+
+/// A recorded frame beside the rendering from its pose.
+struct TwinFrame {
+  Stamp stamp_ns = 0;
+  ImageStatistics recorded{}, rendered{};                     ///< as measure_image()
+  double recorded_depth_share = 0, rendered_depth_share = 0;  ///< of pixels with a return
+  /// Median over pixels where both have a return; absent if none has.
+  std::optional<double> depth_difference_m;  ///< |rendered - recorded|
+  KeypointAgreement across;                  ///< recorded keypoints, in the rendering
+  KeypointAgreement noise;  ///< rendered keypoints, in another rendering of the level's noise
+};
+
+/// Compares every so many frames of a recording with its twin.
+/// @param twin  of the same length and stamps
+/// @param progress  share done; may be empty
+/// @returns those that both can deliver
+std::vector<TwinFrame> compare_twins(const Sequence& recorded, const Sequence& twin,
+                                     const FeatureConfig& features, std::size_t every,
+                                     const std::function<void(double)>& progress = {});
+
+/// A quantity over all frames compared: medians of the recording and the twin.
+struct TwinRow {
+  std::string key, name;
+  double recorded = 0, rendered = 0;
+};
+/// Medians of every quantity, in a fixed order. Shares of keypoints are over all frames.
+std::vector<TwinRow> summarize(const std::vector<TwinFrame>& frames);
+
+}  // namespace mh

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scenes/recordings/tum_folder.hpp"
+#include "slam/core/se3.hpp"
+#include "slam/features/features.hpp"
+#include "slam/semantics/augmented_vector.hpp"
+#include "slam/vocabulary/vocabulary.hpp"
+
+namespace mh {
+
+/// An image with a known pose, to judge which others show the same place.
+struct PlacedView {
+  Stamp stamp_ns = 0;
+  SE3 world_from_camera;
+  Features features;
+  Grid2d<float> depth_m;  ///< every kStep-th pixel of every kStep-th row
+  static constexpr int kStep = 8;
+};
+
+/// Share of the points measured by `a` that `b` measured too: in its image, and at most 10 %
+/// farther from the camera than its depth there. 0 if `a` measured nothing.
+double overlap(const PlacedView& a, const PlacedView& b, const Camera& camera);
+
+struct VocabularyScoreConfig {
+  double min_overlap = 0.5;  ///< views with at least this overlap show the same place
+  double min_gap_s = 2.0;    ///< within one sequence, views nearer in time are not candidates
+  int every = 1;             ///< take every n-th image of a sequence, >= 1
+  FeatureConfig features;
+};
+
+/// How well words alone retrieve the views of a place.
+struct VocabularyScore {
+  int views = 0;                     ///< candidates
+  int queries = 0;                   ///< that have a true neighbor among their candidates
+  double words_per_view = 0;         ///< different words, of the queries
+  std::optional<double> label_mass;  ///< mean share of labels at gamma = 1; none without labels
+  double precision = 0;              ///< share of queries whose most similar candidate is true
+  double average_precision = 0;      ///< mean over queries (area under the precision-recall curve)
+  double chance = 0;                 ///< mean share of true neighbors among candidates
+};
+
+/// Reads a folder in TUM's layout with its groundtruth.txt; images without a pose within 0.02 s are
+/// left out. @param notes  receives what else was left out @throws InputError naming file and line.
+std::vector<PlacedView> load_placed_views(const std::filesystem::path& folder,
+                                          const RecordedCamera& camera,
+                                          const VocabularyScoreConfig& config,
+                                          std::vector<std::string>& notes);
+
+/// Ranks the views by l1_similarity() to each query, ties by their order. Without queries, each
+/// view is a query for the others. @throws InputError if no query has a true neighbor.
+VocabularyScore score_vocabulary(const Vocabulary& vocabulary, std::span<const PlacedView> views,
+                                 std::span<const PlacedView> queries, const Camera& camera,
+                                 const VocabularyScoreConfig& config);
+
+}  // namespace mh

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "bench/protocol/metrics/metric.hpp"
+#include "bench/protocol/metrics/query_summary.hpp"
+
+namespace mh {
+
+/// Every metric of one run: those of its mapping by name, those of its queries as
+/// "held_out.success".
+std::span<const Metric> all_metrics();
+
+/// Returns the metric of a query set under its name among those of a run.
+Metric of_set(QuerySet set, Metric metric);
+
+/// Finds a metric that the gate may judge; nullptr if there is none of that name.
+const Metric* find_measure(std::string_view name);
+
+}  // namespace mh

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/protocol/call_times.hpp"
+#include "bench/protocol/mapping.hpp"
+#include "bench/protocol/metrics/query_summary.hpp"
+#include "bench/protocol/metrics/trajectory_score.hpp"
+#include "bench/protocol/score.hpp"
+#include "bench/suite/place_facts.hpp"
+#include "bench/suite/runs.hpp"
+#include "slam/core/trajectory.hpp"
+#include "slam/occupancy/occupancy_grid.hpp"
+#include "slam/occupancy/voxel_map.hpp"
+
+namespace mh {
+
+/// The answers under one of the run's parameter points.
+struct PointResult {
+  std::vector<QueryScore> held_out;
+  std::vector<QueryScore> second_tour = {};  ///< never pooled with held_out
+  std::vector<QueryScore> graded = {};       ///< nor with these
+};
+
+/// When and where a run's times were measured: times of different sessions are not comparable.
+struct Circumstances {
+  std::string host;
+  std::string session_start;  ///< when the command that made the run started, UTC; empty: unknown
+  int jobs = 0;               ///< runs that it executed in parallel
+  double load = 0;            ///< load average of the last minute, per processor
+};
+
+/// Everything that one run produced.
+struct RunResult {
+  RunSpec spec;
+  PlaceFacts place;
+  Trajectory truth;  ///< of every frame of the mapping tour
+  MappingOutcome mapping;
+  Trajectory estimate;
+  TrajectoryScore trajectory;
+  EstimateFrames frames;
+  std::vector<PointResult> points;         ///< as spec.points
+  std::shared_ptr<const VoxelMap> volume;  ///< keyframe depth at its final poses, dock frame
+  OccupancyGrid grid;                      ///< the part of it that obstructs a robot
+  std::uint64_t map_digest = 0;            ///< of trajectory and grid
+  CallTimes times;                         ///< not deterministic: never part of results.json
+  // Not deterministic either. CPU time spent on making the frames, and on products that are neither
+  // SLAM nor scored: octree, grid, images.
+  double frames_s = 0, products_s = 0;
+  double wall_s = 0;
+  Circumstances circumstances;
+};
+
+/// A run that failed.
+struct FailedRun {
+  RunSpec spec;
+  std::string error;
+};
+
+inline const std::vector<QueryScore>& queries(const PointResult& point, QuerySet set) {
+  return of_query_set(point, set);
+}
+
+/// Calls visit(query) for every query of a run: by point, then set, then query order.
+template <class Visit>
+void for_each_query(const RunResult& run, Visit visit) {
+  for (const PointResult& point : run.points)
+    for (const QuerySet set : kQuerySets)
+      for (const QueryScore& query : queries(point, set)) visit(query);
+}
+
+}  // namespace mh

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "bench/protocol/grade.hpp"
+#include "bench/suite/graded_spec.hpp"
+#include "bench/suite/place_facts.hpp"
+#include "robots/model/robot.hpp"
+#include "scenes/scene.hpp"
+#include "sim/render/renderer.hpp"
+#include "sim/sensors/labels.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "slam/core/sequence.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// One graded query: its moment, and the motion around it (blur, and the lag of the exposure).
+struct GradedQuery {
+  Trajectory clip;
+  std::size_t at = 0;  ///< the query, in the clip
+  QueryGrade grade;
+};
+
+struct GradedQueries {
+  std::vector<GradedQuery> list;  ///< by cell, then by draw, then by speed
+  std::vector<GradedCell> cells;  ///< by distance, then by angle
+};
+
+/// What graded queries are drawn from.
+struct GradedPlace {
+  const Scene& queried;  ///< may be another scene than was mapped
+  std::shared_ptr<const Renderer> mapped_renderer, queried_renderer;
+  const Robot& robot;
+  const Trajectory& offered;  ///< true poses of the frames offered for mapping
+  bool by_hand = false;       ///< the mapping was a scan by hand, not a drive
+};
+
+/// Draws queries until each cell has its number, or so many draws were made that it hardly can get
+/// it. For a robot: at rest on the floor that it can reach, turned anyhow. For a scan by hand:
+/// moments of other scans, each played at every speed; faster, the same poses pass in less time.
+/// No two queries are nearer than 0.1 (m + rad) to each other.
+/// @throws InputError if there is no floor.
+GradedQueries draw_graded(const GradedSpec& spec, const GradedPlace& place);
+
+/// The distance and angle of the truly nearest mapped view, 1 rad equivalent to 1 m. Both absent if
+/// there is none.
+QueryGrade grade_of(const Trajectory& mapped, const SE3& world_from_camera);
+
+/// The frames of graded queries, ten seconds apart.
+class GradedSequence : public Sequence {
+ public:
+  GradedSequence(std::shared_ptr<const Renderer> renderer, const Camera& camera,
+                 std::vector<GradedQuery> queries, const SensorConfig& sensors, LabelMode labels);
+  const Camera& camera() const override { return camera_; }
+  std::size_t size() const override { return queries_.size(); }
+  Stamp stamp_ns(std::size_t i) const override { return truth_[i].stamp_ns; }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override;
+  const Trajectory* truth() const override { return &truth_; }
+
+ private:
+  std::shared_ptr<const Renderer> renderer_;
+  Camera camera_;
+  std::vector<GradedQuery> queries_;
+  SensorConfig sensors_;
+  LabelMode labels_;
+  Trajectory truth_;
+};
+
+}  // namespace mh

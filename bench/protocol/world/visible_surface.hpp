@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/render/renderer.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/trajectory.hpp"
+
+namespace mh {
+
+/// The camera with the same view in an image of another width; the height follows.
+Camera smaller(const Camera& camera, int width_px);
+
+/// What a path's views show of a scene, by its mesh.
+class VisibleSurface {
+ public:
+  /// @param apart_m  of the path's views, the next is used that is this far from the last one used,
+  ///                 1 rad equivalent to 1 m
+  VisibleSurface(std::shared_ptr<const Renderer> renderer, const Camera& camera,
+                 const Trajectory& path, double apart_m = 0.1);
+
+  /// The share of a view's surface that at least one of the path's views shows: in its image, and
+  /// not behind something by more than 8 cm or 4 % of the depth. 0 if no surface is in sight.
+  /// @param renderer  of the view's scene, which may be another than the path's
+  double share(const Renderer& renderer, const SE3& world_from_camera) const;
+
+ private:
+  struct View {
+    SE3 camera_from_world;
+    Grid2d<float> depth_m;
+  };
+  Camera camera_, sparse_;  ///< of the path's views, and of the one that is judged
+  std::vector<View> views_;
+};
+
+}  // namespace mh

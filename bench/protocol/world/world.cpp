@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/world/world.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "bench/protocol/mapping.hpp"
+#include "bench/protocol/world/cached_detections.hpp"
+#include "bench/protocol/world/cached_light.hpp"
+#include "bench/protocol/world/first_frames.hpp"
+#include "bench/suite/inputs.hpp"
+#include "bench/suite/recorded_camera.hpp"
+#include "scenes/load.hpp"
+#include "sim/sensors/shutter.hpp"
+#include "sim/world/lit_scene.hpp"
+#include "sim/world/sequence.hpp"
+#include "sim/world/travel.hpp"
+#include "slam/core/digest.hpp"
+#include "slam/core/interpolate.hpp"
+#include "slam/core/path_length.hpp"
+#include "slam/io/error.hpp"
+
+namespace mh {
+namespace {
+
+PathFacts facts(const DrivenPath& path) {
+  const std::size_t frames = path.camera.size();
+  return {frames,
+          frames,
+          path.length_m,
+          path.turned_in_place_rad,
+          path.contact_time_s,
+          path.max_penetration_m};
+}
+
+PathFacts recorded_path(const Sequence& sequence) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  PathFacts path{.frames = sequence.size(),
+                 .length_m = kUnknown,
+                 .turned_in_place_rad = kUnknown,
+                 .contact_time_s = kUnknown,
+                 .max_penetration_m = kUnknown};
+  const Trajectory* truth = sequence.truth();
+  if (truth == nullptr) return path;
+  path.length_m = path_length_m(*truth);
+  for (std::size_t i = 0; i < sequence.size(); ++i)
+    if (interpolated_pose(*truth, sequence.stamp_ns(i), kMaxTruthGap_ns)) ++path.true_poses;
+  return path;
+}
+
+/// Facts that simulated places and recordings have in common.
+PlaceFacts common_facts(const World& world) {
+  PlaceFacts f;
+  if (world.vocabulary) {
+    f.vocabulary_digest = world.vocabulary->digest();
+    f.vocabulary_words = world.vocabulary->size();
+  }
+  f.cut = world.cut;
+  f.notes = world.notes;
+  f.inputs = world.inputs;
+  return f;
+}
+
+PlaceFacts recorded_facts(const World& world, const RunSpec& spec) {
+  const auto digest_of = [&](const char* name) {
+    const auto input = std::ranges::find(world.inputs, name, &InputDigest::name);
+    return input == world.inputs.end() ? 0 : input->digest;
+  };
+  const auto truth = [](const Sequence& sequence) {
+    return sequence.truth() ? digest(*sequence.truth()) : 0;
+  };
+  PlaceFacts f = common_facts(world);
+  f.scene = split_sequence(spec.environment.sequence).second.stem().string();
+  f.scene_digest = digest_of("sequence");
+  f.path_digest = truth(*world.mapping);
+  f.mapping = recorded_path(*world.mapping);
+  if (!world.second) return f;
+  f.scene_digest = chained(f.scene_digest, digest_of("queries"));
+  f.path_digest = chained(f.path_digest, truth(*world.second));
+  f.second = recorded_path(*world.second);
+  return f;
+}
+
+}  // namespace
+
+void simulate(World& world, LabelMode labels, const SharedImages& images) {
+  const SimulatedPlace& p = *world.simulated;
+  const auto sequence = [&](const char* name, const auto& renderer, const DrivenPath& path,
+                            const auto& pedestrian_scene) {
+    auto made = std::make_shared<SimulatedSequence>(renderer, p.robot.camera, path.camera,
+                                                    p.sensors, labels, pedestrian_scene);
+    if (!images.folder.empty()) made->share(images, name);
+    return made;
+  };
+  world.mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene);
+  if (p.second)
+    world.second =
+        sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second, nullptr);
+  if (!p.graded.list.empty())
+    world.graded =
+        std::make_shared<GradedSequence>(p.second_renderer ? p.second_renderer : p.renderer,
+                                         p.robot.camera, p.graded.list, p.sensors, labels);
+}
+
+PlaceFacts facts(const World& world, const RunSpec& spec) {
+  if (!world.simulated) return recorded_facts(world, spec);
+  const SimulatedPlace& place = *world.simulated;
+  PlaceFacts f = common_facts(world);
+  f.scene = place.scene->name;
+  f.robot = place.robot.name;
+  f.scene_digest = digest(*place.scene);
+  f.path_digest = digest(place.mapping.camera);
+  f.mapping = facts(place.mapping);
+  if (place.second_scene) f.scene_digest = chained(f.scene_digest, digest(*place.second_scene));
+  f.graded = place.graded.cells;
+  if (place.second) {
+    f.second = facts(*place.second);
+    f.path_digest = chained(f.path_digest, digest(place.second->camera));
+  }
+  if (world.graded) f.path_digest = chained(f.path_digest, digest(*world.graded->truth()));
+  return f;
+}
+
+namespace {
+
+std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& world) {
+  if (spec.vocabulary.empty()) return nullptr;
+  return std::make_shared<const Vocabulary>(noted(world.inputs, "vocabulary", spec.vocabulary, [&] {
+    return Vocabulary::load(spec.vocabulary);
+  }));
+}
+
+/// Opens the recordings of a run, with the inputs of everything except an outside program.
+World open_recordings(const RunSpec& spec) {
+  const Environment& e = spec.environment;
+  World world;
+  const auto open = [&](const char* name, const std::string& sequence) {
+    Settings calibration;
+    OpenedRecording opened = noted(world.inputs, name, split_sequence(sequence).second, [&] {
+      return open_recorded(e, sequence, spec.labels == LabelMode::kRecorded, &calibration);
+    });
+    if (const double readout_s = calibration.slam.track.readout_s;
+        readout_s > 0 && !e.suite_states_readout && !world.readout_s) {
+      world.readout_s = readout_s;
+      world.notes.push_back(fmt::format("track.readout_s: {:g}, of its calibration", readout_s));
+    }
+    for (const std::string& note : opened.notes)
+      world.notes.push_back(without_place(note, sequence));
+    const std::size_t all = opened.sequence->size();
+    world.cut = world.cut || (spec.max_frames && *spec.max_frames < all);
+    return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all));
+  };
+  world.mapping = open("sequence", e.sequence);
+  if (e.queries) world.second = open("queries", *e.queries);
+  world.vocabulary = load_vocabulary(spec, world);
+  return world;
+}
+
+/// Draws the graded queries of a run.
+/// @pre the world has its scenes, robot and mapping path
+GradedQueries graded_queries(const RunSpec& spec, const SimulatedPlace& world) {
+  Trajectory offered;
+  for (const std::size_t i : offered_frames(world.mapping.camera.size(), spec.protocol))
+    offered.push_back(world.mapping.camera[i]);
+  return draw_graded(
+      *spec.graded,
+      {.queried = world.second_scene ? *world.second_scene : *world.scene,
+       .mapped_renderer = world.renderer,
+       .queried_renderer = world.second_renderer ? world.second_renderer : world.renderer,
+       .robot = world.robot,
+       .offered = offered,
+       .by_hand = !is_driven(spec.environment.mapping_tour)});
+}
+
+/// Builds the world with the inputs of everything except an outside program.
+World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
+            const BakeWatch& baked) {
+  const Environment& environment = spec.environment;
+  World built;
+  SimulatedPlace& world = built.simulated.emplace();
+  const auto input = [&](const char* name, const std::filesystem::path& source, auto&& load) {
+    return noted(built.inputs, name, source, load);
+  };
+  const auto shorten = [&](DrivenPath& path) {
+    if (spec.max_frames && cut(path, *spec.max_frames)) built.cut = true;
+  };
+  world.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
+  built.vocabulary = load_vocabulary(spec, built);
+  world.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
+  if (environment.sensors)
+    world.sensors = input("sensors", *environment.sensors,
+                          [&] { return load_sensor_config(*environment.sensors); });
+  world.sensors = with_dials(world.sensors, spec.labels);
+  world.robot.camera = with_lens(world.robot.camera, world.sensors);
+  if (environment.kidnapped_tour)
+    input("kidnapped_tour", *environment.kidnapped_tour,
+          [&] { return load_tour(*environment.kidnapped_tour); });
+  std::optional<Pedestrian> pedestrian;
+  if (environment.pedestrian)
+    pedestrian = input("pedestrian", *environment.pedestrian,
+                       [&] { return load_pedestrian(*environment.pedestrian); });
+
+  const auto lit_scene = [&](const char* name, const std::filesystem::path& file) {
+    Scene scene = input(name, file, [&] { return load_scene(file, nullptr, environment.frame); });
+    light_from_cache(scene, threads, cache, say, baked);
+    return std::make_shared<const Scene>(std::move(scene));
+  };
+  const auto scene = lit_scene("scene", environment.scene);
+  world.scene = scene;
+  world.renderer = make_scene_renderer(*scene);
+  if (pedestrian)
+    world.pedestrian_scene = make_pedestrian_scene(*scene, world.renderer, *pedestrian);
+
+  const auto lose_frames = [&](DrivenPath& path) {
+    const RandomStream same_for_every_trial(0);
+    path.camera = arriving_frames(path.camera, world.sensors, same_for_every_trial);
+    path.base = arriving_frames(path.base, world.sensors, same_for_every_trial);
+  };
+  const double rate_hz = world.robot.camera.rate_hz;
+  const auto obstacles = [&](std::size_t frames_before) {
+    std::vector<MovingObstacle> others;
+    if (pedestrian)
+      others.push_back(
+          as_obstacle(*scene, *pedestrian, static_cast<double>(frames_before) / rate_hz));
+    return others;
+  };
+  const auto along = [&](const Scene& in, const std::string& motion,
+                         const std::vector<MovingObstacle>& others = {}) {
+    DrivenPath path =
+        hurried(travel(in, world.robot, motion, others), motion, world.sensors, rate_hz);
+    if (say && !path.moved.empty()) say("warning: " + path.moved);
+    return path;
+  };
+  world.mapping = input("mapping_tour", environment.mapping_tour,
+                        [&] { return along(*scene, environment.mapping_tour, obstacles(0)); });
+  if (environment.kidnapped_tour) {
+    const DrivenPath elsewhere =
+        along(*scene, *environment.kidnapped_tour, obstacles(world.mapping.camera.size()));
+    world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
+  }
+  lose_frames(world.mapping);
+  shorten(world.mapping);
+  if (environment.query_scene) {
+    world.second_scene = lit_scene("query_scene", *environment.query_scene);
+    world.second_renderer = make_scene_renderer(*world.second_scene);
+  }
+  if (spec.graded) world.graded = graded_queries(spec, world);
+  if (!environment.query_tour) return built;
+  world.second = input("query_tour", *environment.query_tour, [&] {
+    return along(world.second_scene ? *world.second_scene : *scene, *environment.query_tour);
+  });
+  lose_frames(*world.second);
+  shorten(*world.second);
+  return built;
+}
+
+/// Replaces the labels of both sequences by a detector's.
+void add_detector(World& world, const DetectorSpec& spec, const Cache& cache, const Say& say) {
+  const std::shared_ptr<const Detector> detector =
+      noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
+  for (std::shared_ptr<const Sequence>* sequence : {&world.mapping, &world.second, &world.graded})
+    if (*sequence != nullptr) {
+      if (const std::string note = detector->check_frames(stamps_of(**sequence)); !note.empty())
+        if (say) say("warning: " + note);
+      *sequence = std::make_shared<DetectedSequence>(std::move(*sequence), detector,
+                                                     spec.settings.fill, detections_in(cache));
+    }
+}
+
+}  // namespace
+
+World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
+                  const BakeWatch& baked, const SharedImages& images) {
+  World world;
+  if (spec.environment.is_recorded()) {
+    const ReadScope scope;
+    world = open_recordings(spec);
+    world.held = scope.record();
+  } else {
+    world = build(spec, threads, cache, say, baked);
+  }
+  if (world.simulated) simulate(world, spec.labels.mode, images);
+  if (spec.labels.detector) add_detector(world, *spec.labels.detector, cache, say);
+  const ReadScope scope;
+  std::ranges::move(inputs_of_program(spec.system), std::back_inserter(world.inputs));
+  world.held.append(scope.record());
+  std::ranges::sort(world.inputs, {}, &InputDigest::name);
+  return world;
+}
+
+}  // namespace mh

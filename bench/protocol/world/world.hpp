@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/protocol/metrics/query_summary.hpp"
+#include "bench/protocol/world/cached_light.hpp"
+#include "bench/protocol/world/graded.hpp"
+#include "bench/suite/cache.hpp"
+#include "bench/suite/place_facts.hpp"
+#include "bench/suite/runs.hpp"
+#include "robots/model/robot.hpp"
+#include "scenes/scene.hpp"
+#include "sim/motion/motion.hpp"
+#include "sim/render/bake.hpp"
+#include "sim/render/renderer.hpp"
+#include "sim/sensors/labels.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "sim/world/pedestrian.hpp"
+#include "sim/world/shared_exposures.hpp"
+#include "slam/core/sequence.hpp"
+#include "slam/io/read_record.hpp"
+#include "slam/vocabulary/vocabulary.hpp"
+
+namespace mh {
+
+/// A simulated place, lit, with its driven paths.
+struct SimulatedPlace {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const Renderer> renderer;
+  Robot robot;
+  DrivenPath mapping;
+  std::optional<DrivenPath> second;           ///< the second tour, if the environment has one
+  std::shared_ptr<const Scene> second_scene;  ///< the second tour's scene; null: the same scene
+  std::shared_ptr<const Renderer> second_renderer;  ///< of that scene; null: the same renderer
+  std::shared_ptr<const PedestrianScene>
+      pedestrian_scene;  ///< with the pedestrians that are present during the mapping; or null
+  SensorConfig sensors;  ///< the level
+  GradedQueries graded;  ///< empty if the run asks none
+};
+
+/// The environment of one run, built once and then only read.
+struct World {
+  std::shared_ptr<const Sequence> mapping;      ///< what is mapped
+  std::shared_ptr<const Sequence> second;       ///< what is queried in addition; or null
+  std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
+  std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
+  std::shared_ptr<const Vocabulary> vocabulary;
+  /// Of the recordings' rolling shutter by their calibration, in the place of the run's
+  /// `track.readout_s`; absent: the run's counts.
+  std::optional<double> readout_s = {};
+  bool cut = false;                     ///< the sequences were cut after RunSpec::max_frames
+  std::vector<std::string> notes = {};  ///< PlaceFacts::notes
+  std::vector<InputDigest> inputs;      ///< what was read to build it, by name
+  ReadRecord held = {};  ///< files of it that are read again: a recording's, an outside program's
+};
+
+/// What the queries of a set are frames of; null if there are none.
+inline const Sequence* sequence_of(const World& world, QuerySet set) {
+  return set == QuerySet::kHeldOut      ? world.mapping.get()
+         : set == QuerySet::kSecondTour ? world.second.get()
+                                        : world.graded.get();
+}
+
+/// Rebuilds the sequences of a simulated world from its existing paths.
+/// @param images  as of build_world()
+void simulate(World& world, LabelMode labels, const SharedImages& images = {});
+
+/// What results record of it.
+PlaceFacts facts(const World& world, const RunSpec& spec);
+
+/// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours; or opens
+/// its recordings. Reports baking through `say`, since it takes long.
+/// @param images  of all runs in this environment at this level, and of no other
+/// @throws InputError if a file is bad or a tour cannot be driven.
+World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
+                  const BakeWatch& baked = {}, const SharedImages& images = {});
+
+}  // namespace mh

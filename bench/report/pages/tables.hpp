@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/report/pages/source.hpp"
+#include "bench/results/scenes.hpp"
+
+namespace mh {
+
+/// A system with the labels that it sees, and how pages and plots call it: "semantic, exact" or
+/// "semantic" if there is one kind.
+struct Arm {
+  std::size_t system = 0;
+  std::string labels, name;
+};
+/// In the suite's order, in which they have their colors.
+std::vector<Arm> arms_of(const Suite& suite);
+
+/// The labels that a system sees: "none" if it looks at none.
+std::string labels_seen(const Suite& suite, std::size_t system, const Labels& labels);
+
+/// Whether a row holds answers that no other one repeats: a system that sees no labels has the same
+/// in the rows of every kind.
+bool is_own_row(const Suite& suite, std::size_t system, const Labels& labels);
+
+/// What the words of the tables mean, with the suite's thresholds.
+std::string definitions_text(const Suite& suite);
+
+/// The paper's Table 1: a row per category and system; null for a suite of one environment.
+nlohmann::ordered_json table1_json(const Suite& suite, std::span<const CategoryRow> rows);
+
+/// The paper's Table 2: a row per level, labels, query set and system; the published figures where
+/// the suite names them (`published`).
+nlohmann::ordered_json table2_json(const Suite& suite, std::span<const CategoryRow> rows);
+
+/// Section 3.3.3: keyframes left after each step of Algorithm 1, as shares; the published ones
+/// where the suite names them.
+nlohmann::ordered_json candidates_json(const Suite& suite, std::span<const CategoryRow> rows);
+
+/// A row per run: what it is, whether it failed, every metric at its first point, its cost.
+nlohmann::ordered_json runs_json(const PagesSource& source);
+
+/// A row per query of every run and point, with its cause where an audit states one.
+/// @param only  this run alone; null: all
+nlohmann::ordered_json queries_json(const PagesSource& source, const RunResult* only = nullptr);
+
+/// The rows of audit.json and, apart, those of single environments; null without an audit.
+nlohmann::ordered_json audit_tables_json(const PagesSource& source);
+
+}  // namespace mh

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/protocol/metrics/measures.hpp"
+#include "bench/results/gate/figures.hpp"
+#include "bench/suite/gate_config.hpp"
+
+namespace mh {
+
+/// Of a system that is not repeatable, so many trials are needed.
+inline constexpr int kFewestRuns = 5;
+
+/// How one measure of one system changed in one scenario.
+enum class ChangeVerdict { kSame, kWithin, kBetter, kWorse };
+std::string_view name(ChangeVerdict verdict);
+
+struct Change {
+  std::string scenario, system;
+  const Metric* measure = nullptr;
+  std::size_t pairs = 0;                          ///< seeds
+  std::optional<double> before = {}, after = {};  ///< medians over the seeds that have the figure
+  /// Median over the seeds of after - before. Infinite where most seeds lost or gained the figure:
+  /// a lost figure is treated as the worst possible.
+  double change = 0;
+  double tolerance = 0;
+  /// A true worsening of this size is detected with 80 % power: tolerance + 0.84 standard errors of
+  /// the median paired change. That is the error due to chance alone for a different but no worse
+  /// program: before and after drawn independently, with the spread over the baseline's seeds, so
+  /// 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 / queries above the
+  /// tolerance. Of a system that is not repeatable, before and after are drawn anew each time, with
+  /// the spread over the runs of both; its change must exceed the tolerance by 1.86 standard errors
+  /// to be more than chance, and `detectable` holds that as well.
+  double detectable = 0;
+  bool repeatable = true;
+  ChangeVerdict verdict = ChangeVerdict::kSame;
+};
+
+struct GateResult {
+  std::vector<Change> changes;  ///< by scenario and system in the baseline's order, then measure
+  std::size_t runs = 0;
+  std::size_t identical = 0;              ///< runs whose digest equals the baseline's
+  std::vector<std::string> unrepeatable;  ///< runs that differ on the same program and machine,
+                                          ///< of systems that are to repeat
+  /// Measures with a tolerance but no figure, before or now: "corridor, plain-pepper: ate_rmse_m".
+  std::vector<std::string> not_measured = {};
+  bool same_origin = false;  ///< program, machine and settings are those of the baseline
+  std::vector<std::string> changed_settings = {};  ///< settings that differ from the baseline's
+  bool settings_known = true;                      ///< whether the baseline records its settings
+
+  std::size_t worse() const;
+  std::size_t better() const;
+  bool passed() const { return worse() == 0 && unrepeatable.empty(); }
+};
+
+/// Pairs the runs by scenario, system and seed and judges each median paired change.
+/// @param same_origin  the baseline was made by this same program with these settings on this kind
+///                     of machine, so that every digest must match
+/// @throws InputError if the two contain different runs.
+GateResult compare(std::span<const RunFigures> baseline, std::span<const RunFigures> current,
+                   const GateConfig& config, bool same_origin);
+
+/// "blank_corridor semantic-exact-pepper 3"
+std::string run_name(const RunFigures& run);
+
+}  // namespace mh

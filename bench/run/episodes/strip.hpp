@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "bench/run/episodes/episode.hpp"
+
+namespace mh {
+
+/// Collects an episode as it happens, for its log and its image.
+class EpisodeRecord {
+ public:
+  /// @param map  outlives it
+  EpisodeRecord(const RobotMap& map, const EpisodeStart& start) : map_(map), start_(start) {}
+
+  /// An EpisodeObserver.
+  void add(const EpisodeMoment& moment);
+
+  /// A line for each decision, and one per second in between: time, state, true and believed pose,
+  /// what the SLAM system answered.
+  /// Places are in the world's frame, except where the robot itself speaks of its map.
+  std::string log(const EpisodeScore& score) const;
+  /// The same of an episode that did not come to its end.
+  std::string log_so_far() const;
+  /// A strip of frames in order, and below it the robot's own map with where it was put, where it
+  /// drove, where it believed to be, and the paths that it planned; in its map's frame.
+  /// @param title  "semantic, start 3"
+  cv::Mat strip(const std::string& title, const EpisodeScore& score) const;
+
+ private:
+  struct Shot {
+    double time_s = 0;
+    std::string caption;
+    cv::Mat small;  ///< 8-bit BGR
+    Pose2 world_from_base;
+  };
+  struct Step {
+    double time_s = 0;
+    Pose2 world_from_base;
+    std::optional<Pose2> believed;
+  };
+  std::vector<const Shot*> chosen_shots() const;
+
+  const RobotMap& map_;
+  const EpisodeStart& start_;
+  Pose2 world_from_map_;
+  std::vector<Shot> shots_;
+  std::vector<Step> steps_;
+  std::vector<std::vector<Eigen::Vector2d>> plans_;  ///< map frame
+  std::vector<std::string> lines_;
+  double next_line_s_ = 0;
+};
+
+}  // namespace mh

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/maps/laser_scans.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bench/run/maps/map_study.hpp"
+#include "scenes/floor.hpp"
+#include "sim/motion/sensing.hpp"
+#include "sim/physics/planar_world.hpp"
+#include "slam/io/error.hpp"
+
+namespace mh {
+
+void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
+               std::span<const std::vector<float>> lasers_m) {
+  for (std::size_t l = 0; l < equipment.lasers.size(); ++l) {
+    const LaserScanner& laser = equipment.lasers[l];
+    scans.add_scan(map_from_base * laser.base_from_laser,
+                   {.first_angle_rad = -0.5 * laser.field_of_view_rad,
+                    .angle_increment_rad = laser.field_of_view_rad / (laser.rays - 1),
+                    .min_range_m = laser.min_range_m,
+                    .max_range_m = laser.max_range_m,
+                    .ranges_m = lasers_m[l]});
+  }
+}
+
+struct SceneLasers::Impl {
+  Impl(const Scene& scene, Robot r)
+      : level(scene), robot(std::move(r)), world(*level, robot, Eigen::Vector2d::Zero(), 0) {}
+  LevelScene level;
+  Robot robot;
+  PlanarWorld world;
+};
+
+SceneLasers::SceneLasers(const Scene& scene, Robot robot) {
+  if (!robot.equipment || robot.equipment->lasers.empty())
+    throw InputError(
+        fmt::format("robot '{}' has no lasers (its file: equipment.lasers)", robot.name));
+  impl_ = std::make_unique<Impl>(scene, std::move(robot));
+}
+SceneLasers::~SceneLasers() = default;
+SceneLasers::SceneLasers(SceneLasers&&) noexcept = default;
+
+ScanGrid SceneLasers::scans(const Trajectory& map_from_camera, const Trajectory& world_from_camera,
+                            double resolution_m) const {
+  const Robot& robot = impl_->robot;
+  const SE3 camera_from_base = robot.base_from_camera.inverse(),
+            level_from_world = impl_->level.world_from_level().inverse();
+  ScanGrid scans(resolution_m);
+  for (const TimedPose& pose : map_from_camera) {
+    const TimedPose* is_at = pose_at(world_from_camera, pose.stamp_ns);
+    if (is_at == nullptr) continue;
+    const SE3 level_from_base = level_from_world * is_at->world_from_camera * camera_from_base;
+    const RobotReading read = read_ranges(impl_->world, *robot.equipment, level_from_base);
+    add_scans(scans, *robot.equipment, pose.world_from_camera * camera_from_base, read.lasers_m);
+  }
+  return scans;
+}
+
+}  // namespace mh

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "bench/run/maps/map_study.hpp"
+#include "scenes/recordings/messages/message_writer.hpp"
+
+namespace mh {
+
+/// Writes what RViz and Foxglove show of a map, once each, in frame `map`, at time 0: `/map` (the
+/// grid), `/global_costmap/costmap` (its costs as Nav2 publishes them), `/objects` (a box and a
+/// name for each), `/voxels` (the occupied ones in the colors of their classes).
+/// @throws as the writer does
+void write_map_messages(MessageWriter& file, const VoxelMap& map, const MapStudy& study);
+
+/// Whether a file is one that write_map_messages() made, to be replaced.
+bool holds_map_messages(const std::filesystem::path& file);
+
+}  // namespace mh

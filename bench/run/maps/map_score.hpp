@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bench/run/maps/true_space.hpp"
+#include "scenes/scene.hpp"
+#include "slam/occupancy/objects.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
+#include "slam/occupancy/voxel_map.hpp"
+
+namespace mh {
+
+/// A share, as counts.
+struct Share {
+  std::size_t good = 0, all = 0;
+  void add(bool is_good) { good += is_good ? 1 : 0, ++all; }
+  double value() const {
+    return all == 0 ? 0.0 : static_cast<double>(good) / static_cast<double>(all);
+  }
+};
+
+/// A voxel map against the exact mesh. "Seen": by exact rays from the true poses of the same
+/// keyframes, within the depth model's range, through pixels in which the sensor had a return.
+struct VoxelScore {
+  Share occupied_precision;  ///< occupied voxels with a true surface within one cell
+  Share occupied_recall;     ///< true surfaces that were seen, with an occupied voxel within one
+  Share free_precision;      ///< free voxels that no surface touches, in open space
+  Share free_within_one;     ///< free voxels with open space within one cell
+  Share free_recall;         ///< open space that was seen free and is free in the map
+};
+
+/// @param exact  the same keyframes with exact depth at their true poses: what could be seen
+VoxelScore score_voxels(const VoxelMap& map, const VoxelMap& exact, const TrueSpace& truth);
+
+/// A grid against the true floor plan, both cut to the same cells.
+struct GridScore {
+  Share iou;       ///< of free cells: free in both, of free in either
+  Share iou_seen;  ///< the same over cells that the grid knows
+};
+/// @pre equal resolutions, origins at multiples of it
+GridScore score_grid(const OccupancyGrid& grid, const OccupancyGrid& plan);
+
+/// A true object and what was found of it.
+struct TrueObject {
+  std::string name;
+  ClassId class_id = kVoid;
+  Eigen::Vector3d center_m, size_m;
+  bool found = false;
+  double away_m = -1;  ///< distance to the nearest object of its class; -1: there is none
+};
+
+struct ObjectScore {
+  Share recall;  ///< true objects of at least the least size with one of the class within reach
+  /// Found objects of that size within reach of a true one of the class, of any size.
+  Share precision;
+  std::vector<TrueObject> objects;
+};
+
+/// @param least_m  the least length of the longest side of an object
+/// @param reach_m  between centers
+ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scene,
+                          double least_m = 0.4, double reach_m = 0.25);
+
+}  // namespace mh

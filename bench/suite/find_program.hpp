@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/suite/outside_program.hpp"
+
+namespace mh {
+
+/// Checks before any work that the library exists, or that the first program of an outside command
+/// exists and is executable, looked up as /bin/sh will: by its path from the program's folder, or
+/// on PATH. A first word that is not understood (see files_of) is not checked.
+/// @throws InputError naming the suite's line, system, command and program.
+void require_program(const OutsideProgram& program);
+
+/// A file that an outside program consists of or reads, as far as the suite names it.
+struct ProgramFile {
+  std::string word;            ///< as written in the suite
+  std::filesystem::path file;  ///< its path
+};
+
+/// Lists the command's first program that is not a shell builtin or keyword, as /bin/sh will find
+/// it; every other word of the command that names a regular file relative to the program's folder
+/// (also after a '='); library, settings and inputs. Each once. Quotes, backslashes, a leading ~
+/// and environment variables are understood. Left out: what does not exist or cannot be read, what
+/// > or tee writes to, relative words after a `cd`, and words with a placeholder, a pattern, a
+/// substitution or a variable that the command sets.
+std::vector<ProgramFile> files_of(const OutsideProgram& program);
+
+/// Returns a warning if a command that names no inputs starts a program that is not among its
+/// files: cached results would survive a change of the program. Empty otherwise.
+std::string unseen_program(const OutsideProgram& program);
+
+}  // namespace mh

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/suite/suite.hpp"
+#include "slam/config/semantics.hpp"
+
+namespace mh {
+
+/// One run: a system maps an environment once and answers the queries. Self-contained: everything
+/// that determines the result is here or in the files that it names.
+struct RunSpec {
+  std::string name;  ///< unique in the suite, valid as a folder name: "semantic-exact-pepper-0"
+  Environment environment;
+  std::filesystem::path level, vocabulary;
+  SystemSpec system;
+  Labels labels;
+  int trial = 0;
+  std::uint64_t seed = 0;  ///< of the trial
+  SharedSlamConfig slam;   ///< mapping settings; neutral for the plain system
+  /// Settings of the queries: for each, one pass over all queries on the same map. At least one.
+  std::vector<SemanticConfig> points;
+  ProtocolConfig protocol;
+  std::optional<GradedSpec> graded = {};
+  std::optional<std::size_t> max_frames;
+};
+
+/// Settings as a system sees them: neutral semantics for the plain one, none for an outside
+/// program.
+SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings);
+
+/// The parameter points of a suite: those of its sweep, otherwise its own settings only.
+std::vector<SharedSlamConfig> parameter_points(const Suite& suite);
+
+/// Returns every run, ordered by environment, level, trial, parameters, system, labels. The plain
+/// system never uses labels (its own test checks this), so it runs once and is compared with every
+/// kind of label. A parameter that a system ignores adds no runs and no points for it: of a sweep,
+/// the plain system takes the points that differ in alpha or beta, an outside program none.
+std::vector<RunSpec> expand(const Suite& suite);
+
+}  // namespace mh

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/suite/suite.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "bench/suite/gate_config.hpp"
+#include "bench/suite/names.hpp"
+#include "bench/suite/runs.hpp"
+#include "scenes/scannet/files.hpp"
+#include "slam/config/by_name.hpp"
+#include "slam/config/slam.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/file_errors.hpp"
+#include "slam/io/settings_io.hpp"
+#include "slam/io/suggest.hpp"
+#include "slam/io/text_file.hpp"
+#include "slam/pipeline/settings.hpp"
+
+namespace mh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
+constexpr Names<Measure, 2> kMeasures{
+    {{"correct", Measure::kCorrect}, {"success", Measure::kSuccess}}};
+
+/// @throws InputError at this place if no system of the suite has the name.
+std::size_t system_named(const YamlReader& node, const std::vector<SystemSpec>& systems) {
+  const std::string name = node.as_string();
+  const auto found = std::ranges::find(systems, name, &SystemSpec::name);
+  if (found == systems.end()) {
+    const auto known = words_of(systems, [](const SystemSpec& s) { return s.name; });
+    node.fail(fmt::format("'{}' is not one of the suite's systems{}", name, hint(name, known)));
+  }
+  return static_cast<std::size_t>(found - systems.begin());
+}
+
+/// Reads pairs of different systems, each once; default: semantic and plain.
+std::vector<SystemPair> read_compare(YamlReader& yaml, const std::vector<SystemSpec>& systems) {
+  std::vector<SystemPair> pairs;
+  const auto node = yaml.find("compare");
+  if (!node) {
+    const auto own = [&](SystemKind kind) {
+      return static_cast<std::size_t>(std::ranges::find(systems, name(kind), &SystemSpec::name) -
+                                      systems.begin());
+    };
+    const SystemPair pair{own(SystemKind::kSemantic), own(SystemKind::kPlain)};
+    if (pair.first < systems.size() && pair.second < systems.size()) pairs.push_back(pair);
+    return pairs;
+  }
+  for (const YamlReader& item : node->items()) {
+    const std::vector<YamlReader> names = item.items();
+    if (names.size() != 2) item.fail("must be two systems: [first, second]");
+    const SystemPair pair{system_named(names[0], systems), system_named(names[1], systems)};
+    if (pair.first == pair.second) item.fail("compares a system with itself");
+    if (std::ranges::find(pairs, pair) != pairs.end()) item.fail("stands twice");
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+Environment& only_environment(Suite& suite, const char* option) {
+  if (suite.environments.size() != 1)
+    throw InputError(fmt::format("{}: {} needs a suite of one environment, this has {}",
+                                 suite.file.string(), option, suite.environments.size()));
+  if (suite.environments.front().is_recorded())
+    throw InputError(fmt::format("{}: {} is of scenes, and '{}' is a recording",
+                                 suite.file.string(), option, suite.environments.front().name));
+  return suite.environments.front();
+}
+
+/// Reads the levels of scenes; adds the one of recordings if there are any.
+std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, const Suite& suite) {
+  const auto is_recorded = [](const Environment& e) { return e.is_recorded(); };
+  std::vector<fs::path> levels;
+  if (!std::ranges::all_of(suite.environments, is_recorded)) {
+    std::set<std::string> names;
+    for (const YamlReader& level : items_of(yaml.at("levels"))) {
+      levels.push_back(named_file(level, paths, Shipped::kLevel));
+      const std::string name = level_name(levels.back());
+      if (!names.insert(name).second) level.fail(fmt::format("'{}' stands twice", name));
+      if (name == kRecordedLevel) level.fail("is what the level of recordings is called");
+    }
+  } else if (const auto named = yaml.find("levels")) {
+    named->fail("are settings of simulated sensors: a suite of recordings has none");
+  }
+  if (std::ranges::any_of(suite.environments, is_recorded)) levels.emplace_back(kRecordedLevel);
+  return levels;
+}
+
+/// Boxes of files are of the frames of one sequence.
+void check_boxes(const YamlReader& node, const Labels& labels, const Suite& suite) {
+  if (!labels.detector || labels.detector->boxes.empty()) return;
+  for (const Environment& e : suite.environments)
+    if (e.query_tour || e.queries)
+      node.fail(fmt::format(
+          "boxes are of the frames of one sequence, and '{}' has a second to be queried", e.name));
+}
+
+/// Reads the kinds of labels: each must fit some environment, and each environment needs at least
+/// one.
+std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
+                                const fs::path& folder) {
+  std::vector<Labels> all;
+  for (const YamlReader& node : items_of(list)) {
+    const Labels labels = read_label_source(node, folder);
+    const auto same = [&](const Labels& l) { return name(l) == name(labels); };
+    if (std::ranges::any_of(all, same)) node.fail(fmt::format("'{}' stands twice", name(labels)));
+    check_boxes(node, labels, suite);
+    all.push_back(labels);
+    if (std::ranges::any_of(suite.environments,
+                            [&](const Environment& e) { return fits(e, labels); }))
+      continue;
+    node.fail(labels.mode == LabelMode::kRecorded
+                  ? "'recorded' labels are a recording's (`sequence`), and no environment is one"
+                  : fmt::format("'{}' labels are drawn of a simulated scene; recordings have "
+                                "'recorded' ones, a detector's or 'none'",
+                                name(labels)));
+  }
+  for (const Environment& e : suite.environments)
+    if (std::ranges::none_of(all, [&](const Labels& labels) { return fits(e, labels); }))
+      list.fail(fmt::format("none of them is for '{}', which is {}", e.name,
+                            e.is_recorded() ? "a recording: 'recorded', a detector's or 'none'"
+                                            : "a scene: 'exact', 'none' or another"));
+  return all;
+}
+
+/// A study states its design before its evaluation begins, and its suite names that text by digest:
+/// a design that changed meanwhile is refused.
+void check_design(YamlReader study, const SuitePaths& paths) {
+  const fs::path file = named_file(study.at("design"), paths);
+  const std::string stated = study.string("xxh3");
+  study.finish();
+  if (!paths.must_exist) return;
+  const std::string text = read_text(file);
+  const std::string found = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+  if (found != stated)
+    study.at("xxh3").fail(
+        fmt::format("the design {} has changed since it was stated: its xxh3 is {}, not '{}'. "
+                    "Restore it, or state a new study",
+                    file.string(), found, stated));
+}
+
+/// Whether two points of the sweep differ for any system.
+bool any_system_varies(const Suite& suite) {
+  const std::vector<SharedSlamConfig>& points = suite.sweep.points;
+  return points.size() < 2 || std::ranges::any_of(suite.systems, [&](const SystemSpec& system) {
+           const SlamConfig first = settings_of(system, points.front());
+           return std::ranges::any_of(points, [&](const SlamConfig& point) {
+             return !(settings_of(system, point) == first);
+           });
+         });
+}
+
+/// The value of a variable of the suite. @throws InputError if it was not set.
+std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
+  const auto value = overrides.set.find(name);
+  if (value == overrides.set.end())
+    throw InputError(fmt::format(
+        "'${{{0}}}' is not set: --set {0}=VALUE does{1}", name,
+        overrides.set.empty() ? "" : fmt::format(" (set is '{}')", overrides.set.begin()->first)));
+  return value->second;
+}
+
+/// The section `parameters` that --vary stands for: on one map where that is possible.
+YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
+  const bool fixed =
+      std::ranges::all_of(vary, [](const auto& of) { return of.first.starts_with("semantics."); });
+  std::string text = fmt::format("map: {}\n", fixed ? "fixed" : "rebuilt");
+  for (const auto& [name, values] : vary) text += fmt::format("{}: [{}]\n", name, values);
+  return YamlReader::parse(text, "--vary");
+}
+
+}  // namespace
+
+std::string_view name(Measure measure) {
+  return name_of(measure, kMeasures);
+}
+
+bool fits(const Environment& environment, const Labels& labels) {
+  return labels.mode == LabelMode::kNone ||
+         environment.is_recorded() == (labels.mode == LabelMode::kRecorded);
+}
+bool fits(const Environment& environment, const fs::path& level) {
+  return environment.is_recorded() == (level == kRecordedLevel);
+}
+std::string level_name(const fs::path& level) {
+  return level.stem().string();
+}
+
+Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
+  return parse_suite(read_text(file), file, overrides);
+}
+
+Suite parse_suite(const std::string& content, const fs::path& file, const SuiteOverrides& overrides,
+                  bool files_must_exist) {
+  std::set<std::string> asked;
+  YamlReader yaml = YamlReader::parse(content, file.string(), [&](const std::string& name) {
+    asked.insert(name);
+    return value_of(name, overrides);
+  });
+  for (const auto& [name, value] : overrides.set)
+    if (!asked.contains(name))
+      throw InputError(
+          fmt::format("{}: --set {}: nothing in it is called ${{{}}}{}", file.string(), name, name,
+                      is_setting(name) ? "; a setting of SLAM stands in the suite, under `slam:`"
+                                       : did_you_mean(name, {asked.begin(), asked.end()})));
+  const SuitePaths paths{file.parent_path(), files_must_exist, overrides.found};
+
+  Suite suite;
+  suite.file = file;
+  suite.text = content;
+  suite.name = yaml.string("name", file.stem().string());
+  if (yaml.has("name")) check_folder_name(yaml.at("name"), suite.name);
+  std::optional<fs::path> robot;
+  if (const auto node = yaml.find("robot")) robot = named_file(*node, paths, Shipped::kRobot);
+  Environments environments = read_environments(yaml.at("environments"), paths, robot);
+  suite.environments = std::move(environments.list);
+  suite.found = std::move(environments.found);
+  suite.notes = std::move(environments.notes);
+  suite.set = overrides.set;
+  suite.levels = read_levels(yaml, paths, suite);
+  std::set<std::string> names;
+  for (const YamlReader& system : items_of(yaml.at("systems"))) {
+    for (SystemSpec& spec : read_systems(system, paths)) {
+      if (!names.insert(spec.name).second) system.fail(fmt::format("'{}' stands twice", spec.name));
+      suite.systems.push_back(std::move(spec));
+    }
+  }
+  suite.compare = read_compare(yaml, suite.systems);
+  if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, &SystemSpec::takes_settings))
+    suite.vocabulary = named_file(yaml.at("vocabulary"), paths, Shipped::kVocabulary);
+  suite.labels = read_labels(yaml.at("labels"), suite, paths.folder);
+  suite.trials = static_cast<int>(yaml.integer_or("trials", suite.trials, 1, 1000));
+  suite.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 0, INT64_MAX / 2));
+  if (const auto study = yaml.find("study")) check_design(*study, paths);
+  if (const auto published = yaml.find("published"))
+    suite.published = one_of(*published, kPublished);
+  if (const auto measure = yaml.find("measure")) suite.measure = one_of(*measure, kMeasures);
+  bool states_readout = false;
+  if (auto slam = yaml.find("slam")) {
+    states_readout = slam->has("track") && slam->at("track").has("readout_s");
+    suite.slam = read_slam_config(*slam);
+    slam->finish();
+  }
+  const auto sweep =
+      overrides.vary.empty() ? yaml.find("parameters") : std::optional(sweep_of(overrides.vary));
+  if (!overrides.vary.empty() && yaml.has("parameters"))
+    yaml.at("parameters").fail("the suite has a sweep of its own: leave --vary out");
+  if (sweep) {
+    suite.sweep = read_sweep(*sweep, suite.slam);
+    if (yaml.has("study"))
+      sweep->fail(
+          "a sweep in a stated study would choose among its points by the rooms that evaluate "
+          "them. "
+          "Sweep over tuning rooms, in a suite without 'study', and state the point chosen");
+    if (!any_system_varies(suite))
+      sweep->fail(
+          "no system of the suite uses what is varied: the plain one ignores what is of "
+          "labels, an outside one all settings of SLAM");
+  }
+  if (yaml.has("episodes")) suite.protocol = live_feed();  // nobody takes a robot back
+  SettingsReader protocol(yaml);
+  protocol.section("protocol");
+  fields(suite.protocol, protocol);
+  protocol.finish();
+  if (suite.protocol.test_interval == 1)
+    yaml.at("protocol").at("test_interval").fail("would hold out every frame");
+  if (suite.protocol.test_interval == 0)
+    for (const Environment& e : suite.environments)
+      if (e.query_tour || e.queries) {
+        suite.notes.push_back(
+            fmt::format("{}: protocol.test_interval is 0: no frame is queried, not even of the "
+                        "second tour of '{}'",
+                        file.string(), e.name));
+        break;
+      }
+  if (const auto graded = yaml.find("graded")) {
+    suite.graded = read_graded(*graded);
+    for (const Environment& e : suite.environments)
+      if (e.is_recorded())
+        graded->fail(
+            fmt::format("queries are drawn from a scene, and '{}' is a recording", e.name));
+  }
+  if (const auto episodes = yaml.find("episodes")) {
+    suite.episodes = read_episodes(*episodes, paths);
+    for (const Environment& e : suite.environments)
+      if (e.is_recorded())
+        episodes->fail(fmt::format("a robot drives in a scene, and '{}' is a recording", e.name));
+  }
+  if (const auto margin = yaml.find("non_inferiority_margin"))
+    suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
+  if (const auto check = yaml.find("check")) {
+    std::vector<std::string> names_of_all;
+    for (const Environment& e : suite.environments) names_of_all.push_back(e.name);
+    suite.gate = read_gate(*check, names_of_all);
+  }
+  yaml.finish();
+  states_readout = states_readout || std::ranges::count(suite.sweep.varied, "track.readout_s") > 0;
+  for (const SystemSpec& system : suite.systems)
+    for (const auto& [setting, value] : system.settings)
+      states_readout = states_readout || setting == "track.readout_s";
+  for (Environment& e : suite.environments)
+    e.suite_states_readout = states_readout && e.is_recorded();
+
+  if (overrides.scene) {
+    if (files_must_exist && !is_scannet_scene(*overrides.scene)) require_readable(*overrides.scene);
+    Environment& environment = only_environment(suite, "--scene");
+    environment.scene = *overrides.scene;
+    environment.frame = {};
+    suite.scene_replaced = true;
+  }
+  if (overrides.frame.up) only_environment(suite, "--up").frame.up = overrides.frame.up;
+  if (overrides.frame.floor_z_m)
+    only_environment(suite, "--floor-z").frame.floor_z_m = overrides.frame.floor_z_m;
+  if (overrides.trials) suite.trials = *overrides.trials;
+  suite.max_frames = overrides.max_frames;
+  return suite;
+}
+
+}  // namespace mh

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/suite/environment.hpp"
+#include "bench/suite/episodes_spec.hpp"
+#include "bench/suite/gate_config.hpp"
+#include "bench/suite/graded_spec.hpp"
+#include "bench/suite/labels.hpp"
+#include "bench/suite/parameters.hpp"
+#include "bench/suite/protocol_config.hpp"
+#include "bench/suite/system_spec.hpp"
+#include "sim/sensors/sensors.hpp"
+#include "slam/config/shared.hpp"
+
+namespace mh {
+
+/// A table of the paper that a suite reproduces.
+enum class Published { kTable2 };
+
+/// By which share of a system's answers it is judged.
+enum class Measure { kCorrect, kSuccess };
+
+/// Two systems of a suite, by index.
+struct SystemPair {
+  std::size_t first = 0, second = 0;
+  friend bool operator==(const SystemPair&, const SystemPair&) = default;
+};
+
+/// "correct", "success"
+std::string_view name(Measure measure);
+
+/// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
+struct Suite {
+  std::string name;
+  std::filesystem::path file;
+  std::string text;  ///< of the file, as it was read
+  std::vector<Environment> environments;
+  std::filesystem::path vocabulary;  ///< empty if no system needs it
+  /// Sensor levels, as paths of their files; kRecordedLevel is last if there are recordings.
+  std::vector<std::filesystem::path> levels;
+  std::vector<SystemSpec> systems;
+  std::vector<Labels> labels;
+  int trials = 1;
+  std::uint64_t seed = 0;  ///< trial t uses seed + t
+  SharedSlamConfig slam;
+  Sweep sweep;
+  ProtocolConfig protocol;
+  std::optional<GradedSpec> graded;  ///< asked in every environment
+  /// Kidnappings of a robot that drives by its map; `bench` then runs these and no queries.
+  std::optional<EpisodesSpec> episodes;
+  /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
+  /// `plain`, if the suite has both.
+  std::vector<SystemPair> compare;
+  /// What decides which system is better; the other share stands beside it.
+  Measure measure = Measure::kCorrect;
+  /// The first of a pair is non-inferior if the confidence interval of its share by `measure` minus
+  /// the second's lies above -margin. Fixed in the suite, before any measurement.
+  std::optional<double> non_inferiority_margin;
+  std::optional<Published> published;      ///< results to show next to the measured ones
+  GateConfig gate;                         ///< what `modelhouse check` tolerates
+  std::optional<std::size_t> max_frames;   ///< truncates the tours: for a quick look
+  bool scene_replaced = false;             ///< SuiteOverrides::scene was set
+  std::map<std::string, std::string> set;  ///< as in SuiteOverrides
+  FoundRecordings found;                   ///< recordings that the suite's patterns matched
+  std::vector<std::string> notes;          ///< what it leaves out, one line each
+};
+
+/// What the command line may override in a suite.
+struct SuiteOverrides {
+  std::optional<std::filesystem::path> scene = {};
+  SceneFrame frame = {};  ///< of that scene or, if none is given, of the suite's only scene
+  std::optional<int> trials = {};
+  std::optional<std::size_t> max_frames = {};
+  /// Values that replace `${name}` in the suite's text.
+  std::map<std::string, std::string> set = {};
+  /// A sweep in the place of the section `parameters`: settings and their values, "500,1000".
+  std::map<std::string, std::string> vary = {};
+  /// For a suite read back from a results file: what its patterns found, so as not to search again.
+  FoundRecordings found = {};
+};
+
+/// Reads a suite (YAML); its paths are relative to its own folder and must exist.
+/// @throws InputError naming file, line, field and value.
+Suite load_suite(const std::filesystem::path& file, const SuiteOverrides& overrides = {});
+
+/// Parses the text of a suite. The file itself need not exist anymore; if `files_must_exist` is
+/// false, the files that it names need not exist either.
+Suite parse_suite(const std::string& content, const std::filesystem::path& file,
+                  const SuiteOverrides& overrides = {}, bool files_must_exist = true);
+
+/// The level name of recordings, whose noise is already in the data; no level file has this name.
+inline constexpr const char* kRecordedLevel = "recorded";
+
+/// Whether runs of an environment may use these labels: a recording has recorded labels, a scene
+/// simulated ones; both may run without labels or with those of a real detector.
+bool fits(const Environment& environment, const Labels& labels);
+/// Whether an environment is run at this level. Recordings are run only at kRecordedLevel, scenes
+/// only at other levels.
+bool fits(const Environment& environment, const std::filesystem::path& level);
+
+std::string level_name(const std::filesystem::path& level);
+
+}  // namespace mh

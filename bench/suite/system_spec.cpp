@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/suite/system_spec.hpp"
+
+#include <fmt/format.h>
+
+#include "bench/suite/names.hpp"
+#include "slam/config/by_name.hpp"
+#include "slam/io/error.hpp"
+#include "slam/pipeline/settings.hpp"
+
+namespace mh {
+namespace {
+
+constexpr Names<SystemKind, 2> kOurs{
+    {{"semantic", SystemKind::kSemantic}, {"plain", SystemKind::kPlain}}};
+constexpr Names<OutsideMode, 2> kModes{
+    {{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
+constexpr double kLongest_s = 1e7;
+
+void read_command(YamlReader& node, OutsideProgram& program) {
+  program.command = node.string("command");
+  program.mode = one_of(node.at("protocol"), kModes);
+  const bool is_trajectory = program.mode == OutsideMode::kTrajectory;
+  if (const auto other = node.find(is_trajectory ? "reply_limit_s" : "run_limit_s"))
+    other->fail(fmt::format("is of protocol '{}'", is_trajectory ? "conversation" : "trajectory"));
+  program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
+  program.reply_limit_s = node.number_or("reply_limit_s", program.reply_limit_s, 0.01, kLongest_s);
+  program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
+  program.disk_limit_mb = node.number_or("disk_limit_mb", program.disk_limit_mb, 0.0, 1e9);
+}
+
+void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& paths) {
+  program.mode = OutsideMode::kLibrary;
+  program.library = node.string("library");
+  for (const char* key :
+       {"command", "protocol", "run_limit_s", "reply_limit_s", "memory_limit_mb", "disk_limit_mb"})
+    if (const auto other = node.find(key))
+      other->fail("is of a command: a library runs in the bench's own process");
+  if (const auto settings = node.find("settings")) {
+    named_file(*settings, paths);
+    program.settings = settings->as_string();
+  }
+}
+
+/// A program for each combination of the values of its command's own placeholders.
+std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
+  std::vector<SystemSpec> all{spec};
+  for (const auto& [placeholder, list] : vary.entries()) {
+    const std::vector<YamlReader> values = list.items();
+    if (values.empty()) list.fail("has no value");
+    if (fill_in(spec.outside.command, placeholder, "") == spec.outside.command)
+      list.fail(fmt::format("{{{}}} is not in the command", placeholder));
+    std::vector<SystemSpec> more;
+    for (const SystemSpec& one : all)
+      for (const YamlReader& value : values) {
+        SystemSpec& with = more.emplace_back(one);
+        with.name += fmt::format("_{}_{}", placeholder, value.as_string());
+        check_folder_name(value, with.name);
+        with.outside.name = with.name;
+        with.outside.command = fill_in(one.outside.command, placeholder, value.as_string());
+      }
+    all = std::move(more);
+  }
+  return all;
+}
+
+/// Reads one of ours under another name.
+void read_variant(YamlReader& node, SystemSpec& spec) {
+  spec.kind = one_of(node.at("system"), kOurs);
+  YamlReader slam = node.at("slam");
+  read_slam_config(slam);  // checks the names and values
+  slam.finish();
+  for (auto& [section, keys] : slam.entries()) {
+    if (section == "base")
+      spec.settings.emplace_back("relocalize.acceptance", keys);
+    else
+      for (const auto& [key, value] : keys.entries())
+        spec.settings.emplace_back(section + "." + key, value);
+  }
+  if (spec.settings.empty()) slam.fail("sets nothing: it would be '" + node.string("system") + "'");
+  node.finish();
+}
+
+}  // namespace
+
+std::string_view name(SystemKind kind) {
+  return kind == SystemKind::kOutside ? "outside" : name_of(kind, kOurs);
+}
+std::string_view name(OutsideMode mode) {
+  return mode == OutsideMode::kLibrary ? "library" : name_of(mode, kModes);
+}
+
+std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
+  SystemSpec spec;
+  if (!node.is_map()) {
+    spec.kind = one_of(node, kOurs);
+    spec.name = name(spec.kind);
+    return {spec};
+  }
+  spec.name = node.string("name");
+  check_folder_name(node.at("name"), spec.name);
+  if (value_of(spec.name, kOurs))
+    node.at("name").fail("'" + spec.name + "' is one of Modelhouse's own systems");
+  if (node.has("system")) {
+    read_variant(node, spec);
+    return {spec};
+  }
+  spec.kind = SystemKind::kOutside;
+  OutsideProgram& program = spec.outside;
+  program.name = spec.name;
+  program.folder = paths.folder.empty() ? "." : paths.folder;
+  const bool is_library = node.find("library").has_value();
+  const char* key = is_library ? "library" : "command";
+  program.place = fmt::format("{}:{}", node.file(), node.at(key).line());
+  if (is_library)
+    read_library(node, program, paths);
+  else
+    read_command(node, program);
+  if (const auto inputs = node.find("inputs"))
+    for (const YamlReader& input : inputs->items()) {
+      named_file(input, paths);
+      program.inputs.push_back(input.as_string());
+    }
+  spec.repeatable = node.boolean("repeatable", spec.repeatable);
+  std::vector<SystemSpec> all{spec};
+  if (const auto vary = node.find("vary")) {
+    if (is_library) vary->fail("is of a command: a library reads its `settings`");
+    all = varied(spec, *vary);
+  }
+  node.finish();
+  try {
+    for (const SystemSpec& one : all) validate(one.outside);
+  } catch (const InputError& error) {
+    node.at(key).fail(error.what());
+  }
+  return all;
+}
+
+}  // namespace mh

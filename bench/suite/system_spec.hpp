@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/suite/environment.hpp"
+#include "bench/suite/outside_program.hpp"
+#include "slam/io/yaml.hpp"
+
+namespace mh {
+
+enum class SystemKind { kSemantic, kPlain, kOutside };
+std::string_view name(SystemKind kind);
+
+/// The mode of an outside system: trajectory, conversation (as written in suites) or library.
+std::string_view name(OutsideMode mode);
+
+/// A system under test, as a suite names it.
+struct SystemSpec {
+  SystemKind kind = SystemKind::kSemantic;
+  std::string name = "semantic";
+  OutsideProgram outside;  ///< only for an outside system
+  /// Settings of its own, by full name (slam/config/by_name.hpp), in place of the suite's: only of
+  /// ours under another name.
+  std::vector<std::pair<std::string, YamlReader>> settings = {};
+
+  /// Equal runs give equal bits. If not, the gate judges it by the spread over its runs.
+  bool repeatable = true;
+
+  // Its capabilities; no other code checks its kind.
+  bool is_outside() const { return kind == SystemKind::kOutside; }
+  /// Its code runs in the process of the bench that asks it.
+  bool is_library() const { return is_outside() && outside.mode == OutsideMode::kLibrary; }
+  bool sees_labels() const { return kind != SystemKind::kPlain; }
+  /// Has the settings of SlamConfig. It needs a vocabulary, and reports candidates, matches and how
+  /// far a relocalization got; for an outside system all of that is optional.
+  bool takes_settings() const {
+    return kind == SystemKind::kSemantic || kind == SystemKind::kPlain;
+  }
+  /// Answers queries: all but programs that return a trajectory.
+  bool is_asked() const { return !is_outside() || outside.mode != OutsideMode::kTrajectory; }
+  /// Its finished map is kept for later runs: it implements System::save() and restore().
+  bool saves_map() const { return takes_settings(); }
+  /// Labels affect its matching: equation 2.
+  bool weighs_labels() const { return takes_settings() && sees_labels(); }
+};
+
+/// Reads `semantic`, `plain`, one of these under another name with settings of its own, {name,
+/// system: plain, slam: {...}}, or a mapping {name, command, protocol: trajectory | conversation}
+/// with `run_limit_s`, `reply_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
+/// `repeatable: false`, and `inputs`, a list of files. The command runs in the suite's folder. Or a
+/// mapping {name, library} with `settings`, a file, `repeatable` and `inputs`.
+/// @returns that system; a command with `vary: {n: [500, 1000]}` is one for each combination of
+/// values, which stand for {n} in it and in names: "orb_n_500", "orb_n_1000"
+/// @throws InputError naming file, line, field and value; an input that must exist and does not.
+std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths);
+
+}  // namespace mh

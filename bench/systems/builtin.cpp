@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/systems/builtin.hpp"
+
+#include <cassert>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "slam/pipeline/map_file.hpp"
+#include "slam/relocalize/candidate_trial.hpp"
+
+namespace mh {
+namespace {
+
+/// Keyframes left by Algorithm 1, and of which queries its sums are.
+Candidates as_candidates(const CandidateCounts& c, double gamma) {
+  Candidates candidates{.keyframes = c.keyframes,
+                        .c1 = c.c1,
+                        .c2 = c.c2,
+                        .c3 = c.c3,
+                        .final = c.final,
+                        .label_mass = c.label_mass,
+                        .gamma = gamma};
+  const SummedScores& summed = c.summed;
+  if (summed.terms == 0) return candidates;
+  candidates.unscored = static_cast<double>(summed.unscored) / summed.terms;
+  candidates.stale = static_cast<double>(summed.stale) / summed.terms;
+  if (summed.weight > 0) candidates.stale_weight = summed.stale_weight / summed.weight;
+  if (summed.stale > 0) candidates.stale_age = static_cast<double>(summed.stale_age) / summed.stale;
+  return candidates;
+}
+
+/// @param state  after the step
+SystemReport as_report(const StepReport& step, const SlamState& state) {
+  SystemReport report{.status = step.status,
+                      .world_from_camera = step.world_from_camera,
+                      .keypoints = step.keypoints,
+                      .inliers = step.inliers,
+                      .keyframe_added = step.keyframe_added,
+                      .loop = step.loop,
+                      .relocalization = step.relocalization,
+                      .candidates = {},
+                      .matches = step.matches};
+  if (step.candidates)
+    report.candidates = as_candidates(*step.candidates, state.config.semantics.gamma);
+  return report;
+}
+
+class BuiltinSession : public RelocalizationSession {
+ public:
+  /// @param released  what earlier sessions left, and this one leaves to the next; may be null
+  BuiltinSession(const SlamState& frozen, const StepObservers& observers,
+                 StaleScores* released = nullptr)
+      : frozen_(frozen), observers_(observers), released_(released) {
+    if (released_ != nullptr) tracker_.stale_scores = *released_;
+  }
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    const StepReport report = localize(frozen_, tracker_, frame, stream, observers_);
+    if (released_ != nullptr) *released_ = tracker_.stale_scores;
+    return as_report(report, frozen_);
+  }
+
+ private:
+  const SlamState& frozen_;  // the system that opened the session outlives it, like the observers
+  const StepObservers& observers_;
+  StaleScores* released_;
+  Tracker tracker_;
+};
+
+/// Results of the attempts of one query, by stream and by the settings that affect them.
+class BuiltinMemo : public QueryMemo {
+ public:
+  LocalizeMemo& of(RandomStream stream, const SemanticConfig& settings) {
+    return known_[{stream.key(), trial_key(settings)}];
+  }
+
+ private:
+  std::map<std::pair<std::uint64_t, TrialKey>, LocalizeMemo> known_;
+};
+
+/// A session that uses a memo while it is lost.
+class RememberingSession : public RelocalizationSession {
+ public:
+  RememberingSession(const SlamState& frozen, BuiltinMemo& memo) : frozen_(frozen), memo_(memo) {}
+
+  SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
+    if (found_) {  // a frame after the one in which it was found: rare
+      localize(frozen_, tracker_, found_->first, found_->second);
+      found_.reset();
+    }
+    if (tracker_.last) return as_report(localize(frozen_, tracker_, frame, stream), frozen_);
+    const StepReport report =
+        localize(frozen_, frame, stream, memo_.of(stream, frozen_.config.semantics));
+    if (report.status != TrackStatus::kLost) found_.emplace(frame, stream);
+    return as_report(report, frozen_);
+  }
+
+ private:
+  const SlamState& frozen_;
+  BuiltinMemo& memo_;
+  Tracker tracker_;
+  std::optional<std::pair<RgbdFrame, RandomStream>> found_;  ///< not yet in tracker_
+};
+
+class BuiltinSystem : public System {
+ public:
+  explicit BuiltinSystem(SlamState own)
+      : own_(std::make_unique<SlamState>(std::move(own))), state_(*own_) {}
+  BuiltinSystem(SlamState& state, const BuiltinOptions& options)
+      : state_(state), options_(options), found_(!state.tracked_frames.empty()) {}
+
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
+    assert(!frozen_);
+    const StepReport report = step(state_, frame, stream, options_.observers);
+    const bool lost = report.status == TrackStatus::kLost;
+    if (lost && found_ && state_.map.keyframe_count() <= options_.small_map)
+      if (auto first = begin_anew(frame, stream)) return *first;
+    found_ = found_ || !lost;
+    return as_report(report, state_);
+  }
+  void rewind() override { mh::rewind(state_); }
+  void reset() override { state_ = make_slam(state_.camera, state_.config, state_.vocabulary); }
+  void freeze() override { frozen_ = true; }
+  void set_query_settings(const SemanticConfig& settings) override {
+    assert(frozen_);
+    mh::set_query_settings(state_, settings);
+  }
+  std::string save() const override {
+    assert(frozen_);
+    return encode_slam(state_);
+  }
+  void restore(const std::string& saved) override {
+    state_ = decode_slam(saved, "saved map", state_.vocabulary);
+  }
+  Trajectory trajectory() const override { return mh::trajectory(state_); }
+  std::unique_ptr<QueryMemo> make_memo() const override { return std::make_unique<BuiltinMemo>(); }
+  std::unique_ptr<RelocalizationSession> open_session() const override {
+    assert(frozen_);
+    return std::make_unique<BuiltinSession>(state_, options_.observers, released());
+  }
+  std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
+    assert(frozen_);
+    if (released() != nullptr) return open_session();  // answers depend on those before: no memo
+    return std::make_unique<RememberingSession>(state_, static_cast<BuiltinMemo&>(memo));
+  }
+
+ private:
+  /// What the queries so far left under these settings; null if the settings do not ask for it.
+  StaleScores* released() const {
+    if (state_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return nullptr;
+    const SemanticConfig& s = state_.config.semantics;
+    const auto [place, is_new] =
+        released_.try_emplace({s.gamma, s.xi, s.alpha, s.beta, s.overlap, s.void_is_a_label});
+    if (is_new) place->second = state_.tracker.stale_scores;  // as mapping left them
+    return &place->second;
+  }
+
+  /// Starts a new map in place of this one, if the frame can initialize it.
+  std::optional<SystemReport> begin_anew(const RgbdFrame& frame, RandomStream stream) {
+    SlamState anew = make_slam(state_.camera, state_.config, state_.vocabulary);
+    const StepReport first = step(anew, frame, stream, options_.observers);
+    if (first.status != TrackStatus::kInitialized) return std::nullopt;
+    state_ = std::move(anew);
+    SystemReport report = as_report(first, state_);
+    report.map_reset = true;
+    return report;
+  }
+
+  std::unique_ptr<SlamState> own_;
+  SlamState& state_;
+  BuiltinOptions options_;
+  using QuerySettings = std::tuple<double, double, double, double, Overlap, bool>;
+  /// Under NeighborScores::kAsReleased sessions do share this: they depend on their order.
+  mutable std::map<QuerySettings, StaleScores> released_;
+  bool found_ = false;  ///< a frame was tracked in this map
+  bool frozen_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<System> make_builtin_system(const Camera& camera, const SlamConfig& config,
+                                            std::shared_ptr<const Vocabulary> vocabulary) {
+  return std::make_unique<BuiltinSystem>(make_slam(camera, config, std::move(vocabulary)));
+}
+
+std::unique_ptr<System> make_builtin_system(SlamState& state, const BuiltinOptions& options) {
+  return std::make_unique<BuiltinSystem>(state, options);
+}
+
+}  // namespace mh

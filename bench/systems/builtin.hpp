@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "bench/protocol/system.hpp"
+#include "slam/pipeline/slam.hpp"
+
+namespace mh {
+
+/// Modelhouse's own SLAM, semantic or plain depending on the configuration.
+/// @throws InputError / std::invalid_argument if camera or configuration are out of range.
+std::unique_ptr<System> make_builtin_system(const Camera& camera, const SlamConfig& config,
+                                            std::shared_ptr<const Vocabulary> vocabulary);
+
+struct BuiltinOptions {
+  StepObservers observers = {};
+  /// When tracking is lost, a map of at most this many keyframes is discarded at the first lost
+  /// frame that can start another, as the original ORB-SLAM2 does: such a map is soon rebuilt, and
+  /// a place seen briefly may never be seen again. 0: never.
+  int small_map = 0;
+};
+
+/// The same on a state that the caller owns and that outlives the system: a map that was loaded or
+/// will be saved.
+std::unique_ptr<System> make_builtin_system(SlamState& state, const BuiltinOptions& options);
+
+}  // namespace mh

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "scenes/recordings/open_sequence.hpp"
+
+namespace mh {
+
+/// ICL-NUIM's sequences with TUM-compatible images (Handa et al., ICRA 2014): TUM's folder, but
+/// frame numbers in place of stamps, depth listed before color, and true poses in the renderer's
+/// left-handed world. The calibration is the published one unless another is named.
+extern const SequenceReader kIclNuimReader;
+
+}  // namespace mh

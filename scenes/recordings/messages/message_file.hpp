@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scenes/recordings/messages/wire.hpp"
+#include "slam/io/held_bytes.hpp"
+
+namespace mh {
+
+/// One of the streams of messages in a file.
+struct MessageChannel {
+  std::string topic;
+  std::string type;  ///< "sensor_msgs/Image", in ROS 2 as well
+  /// How its messages are serialized; nullopt: not as ROS does.
+  std::optional<ros::Wire> wire;
+  friend bool operator==(const MessageChannel&, const MessageChannel&) = default;
+};
+
+/// Where a message stands in a file.
+struct MessagePlace {
+  static constexpr std::uint32_t kFile = UINT32_MAX;
+  std::uint32_t chunk = kFile;  ///< kFile: `at` counts from the file's beginning
+  std::uint64_t at = 0, size = 0;
+  std::int64_t received_ns = 0;  ///< when the recorder received it; 0 if the file does not say
+  std::size_t part = 0;          ///< which file, of a recording of several: the visitor's to set
+};
+
+/// A file of messages, MCAP or a ROS 1 bag, which stays mapped while it is used. Opening reads it
+/// once from beginning to end by its records, without the indexes: those of a recording that was
+/// cut short are missing, and others may lie. After that messages are read by their places; of the
+/// compressed chunks the last one used is kept.
+class MessageFile {
+ public:
+  /// Receives each message: its channel, its bytes (valid during the call), its place.
+  using Visit =
+      std::function<void(const MessageChannel&, std::string_view message, const MessagePlace&)>;
+
+  virtual ~MessageFile() = default;
+
+  const std::vector<MessageChannel>& channels() const { return channels_; }
+  std::size_t message_count() const { return messages_; }
+  /// What could not be used, one line each.
+  std::vector<std::string> notes() const;
+  /// The message at a place that a visit named. Safe to call from several threads.
+  /// @throws InputError "NAME: chunk at byte N: ..." if its chunk is damaged.
+  HeldBytes read(const MessagePlace& place) const;
+  const std::string& name() const { return name_; }
+
+ protected:
+  /// A part of the file, compressed or not, that holds records.
+  struct Chunk {
+    std::uint64_t at = 0;  ///< of its record, for messages to the user
+    std::string_view stored;
+    std::uint64_t size = 0;            ///< once decompressed
+    std::string compression;           ///< "", "none", "lz4", "zstd", "bz2"
+    std::optional<std::uint32_t> crc;  ///< of the decompressed bytes, by CRC-32
+  };
+
+  MessageFile(HeldBytes bytes, std::string name)
+      : file_(std::move(bytes)), name_(std::move(name)) {}
+
+  std::string_view bytes() const { return file_.view; }
+  /// Takes a chunk in; @returns its number. @throws InputError "claims ..." beyond what such a file
+  /// can hold.
+  std::uint32_t add_chunk(Chunk chunk);
+  /// The decompressed bytes of a chunk. @throws InputError "is ..." without a place.
+  HeldBytes open_chunk(std::uint32_t number) const;
+  /// Counts something that is left out; the first of its kind is described.
+  void leave_out(const std::string& kind, std::uint64_t at, const std::string& why);
+  /// The kind of what follows the last whole record.
+  static constexpr const char* kCut = "records cut short";
+  /// Whether anything of a kind was left out.
+  bool leaves_out(const std::string& kind) const { return left_out_.contains(kind); }
+  /// @returns the number of a channel, which is added if there is none like it
+  std::size_t channel(MessageChannel channel);
+  void count_message() { ++messages_; }
+
+ private:
+  struct LeftOut {
+    std::size_t count = 0;
+    std::string first;
+  };
+
+  HeldBytes file_;
+  std::string name_;
+  std::vector<MessageChannel> channels_;
+  std::size_t messages_ = 0;
+  std::map<std::string, LeftOut> left_out_;
+  std::vector<Chunk> chunks_;
+  std::uint64_t claimed_ = 0;          ///< bytes of all chunks, decompressed
+  mutable std::mutex mutex_;           ///< guards the members below
+  mutable std::vector<bool> checked_;  ///< by chunk: its CRC was found right
+  mutable std::uint32_t opened_ = MessagePlace::kFile;
+  mutable HeldBytes opened_bytes_;
+};
+
+/// Opens an MCAP file (https://mcap.dev/spec), whatever its profile; chunks none, lz4 or zstd.
+/// Summary, footer and unknown records are not needed.
+/// @throws InputError if it is not MCAP.
+std::unique_ptr<MessageFile> open_mcap(HeldBytes bytes, const std::string& name,
+                                       const MessageFile::Visit& visit);
+
+/// Opens a ROS 1 bag of version 2.0, indexed or not; chunks none, bz2 or lz4.
+/// @throws InputError if it is not a bag, of another version, or encrypted.
+std::unique_ptr<MessageFile> open_bag(HeldBytes bytes, const std::string& name,
+                                      const MessageFile::Visit& visit);
+
+}  // namespace mh

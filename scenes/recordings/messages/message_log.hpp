@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/recordings/messages/message_writer.hpp"
+#include "scenes/recordings/messages/wire.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// Serialized messages of several topics, in memory, to be written among others by their stamps.
+class MessageLog {
+ public:
+  struct Entry {
+    Stamp stamp_ns = 0;
+    std::size_t topic = 0;  ///< index into topics()
+    std::string message;
+  };
+
+  explicit MessageLog(ros::Wire wire) : wire_(wire) {}
+
+  template <class M>
+  std::size_t add_topic(std::string name, bool latched = false) {
+    topics_.push_back(topic_spec<M>(std::move(name), wire_, latched));
+    return topics_.size() - 1;
+  }
+  template <class M>
+  void add(std::size_t topic, Stamp stamp_ns, const M& message) {
+    entries_.push_back({stamp_ns, topic, ros::serialized(message, wire_)});
+  }
+  /// Orders the messages by stamp; those of one stamp stay as they were added.
+  void sort() { std::ranges::stable_sort(entries_, {}, &Entry::stamp_ns); }
+
+  ros::Wire wire() const { return wire_; }
+  const std::vector<TopicSpec>& topics() const { return topics_; }
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  ros::Wire wire_;
+  std::vector<TopicSpec> topics_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace mh

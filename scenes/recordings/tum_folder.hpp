@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "scenes/recordings/class_map.hpp"
+#include "scenes/recordings/frame_files.hpp"
+#include "scenes/recordings/sequence_writer.hpp"
+#include "slam/core/camera.hpp"
+#include "slam/core/rgbd_frame.hpp"
+
+namespace mh {
+
+/// What is needed to read a recorded sequence.
+struct RecordedCamera {
+  Camera camera;
+  double depth_per_meter = kDepthPerMeter;  ///< value of a depth pixel at one meter
+  bool exchange_red_blue = false;           ///< the files' first channel is blue
+  std::uint16_t no_depth = 0;               ///< a depth pixel without measurement, besides 0
+};
+
+/// A pair of color and depth images of a recording.
+struct RecordedFrame {
+  Stamp stamp_ns = 0;                           ///< of the color image
+  std::filesystem::path color, depth, classes;  ///< classes: empty if the recording has none
+};
+
+/// The list of pairs in a folder of TUM's or ETH3D's layout, associations.txt or associated.txt;
+/// empty if it holds neither.
+std::filesystem::path associations_in(const std::filesystem::path& folder);
+
+/// Reads a folder in TUM's layout: rgb.txt and depth.txt, or if one is missing associations.txt or
+/// associated.txt, and label.txt if present. Each color image is paired with the nearest depth
+/// image within 0.02 s, as in TUM's own association, or with the one listed next to it; color
+/// images without one are omitted. Frames are in the order of their stamps.
+/// @param notes  receives a line with the number of omitted ones, and one if they were sorted; may
+/// be null
+/// @throws InputError naming file and line.
+std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder,
+                                           std::vector<std::string>* notes = nullptr);
+
+/// Reads the images of one frame.
+/// @param classes  meaning of the ids in its label image; null: they are our classes, 8 bits
+/// @throws InputError naming the image.
+RgbdFrame read_frame(const RecordedFrame& frame, const RecordedCamera& camera,
+                     const ClassMap* classes = nullptr);
+
+/// Writes sequences in TUM's layout: rgb/ and depth/ (16 bit, 5000 per meter), label/ (class ids, 8
+/// bit), their lists, associations.txt, camera.yaml and camera_info.yaml; with ground truth also
+/// instance/ (16 bit), its list and groundtruth.txt. finish() writes the lists, so that a folder
+/// without them is recognized as incomplete.
+class TumWriter : public SequenceWriter {
+ public:
+  TumWriter(std::filesystem::path folder, const Camera& camera,
+            PngCompression png_compression = {});
+  /// Adds only what a system may see. label.txt lists the frames that have labels.
+  void add(const RgbdFrame& frame);
+  void add(std::size_t index, const ExactFrame& frame) override;
+  bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) override;
+  void finish() override;
+
+ private:
+  std::filesystem::path file_of(const char* part, Stamp stamp_ns) const;
+  void write(const char* part, Stamp stamp_ns, const cv::Mat& image);
+  void add_images(const RgbdFrame& frame);
+  void add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes);
+
+  std::filesystem::path folder_;
+  Camera camera_;
+  std::vector<int> png_;
+  std::mutex mutex_;                               ///< guards the members below
+  std::map<std::string, std::set<Stamp>> listed_;  ///< by part: stamps whose images exist
+  std::map<Stamp, SE3> truth_;
+};
+
+}  // namespace mh

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/lab/sheets.hpp"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+namespace mh {
+namespace {
+
+constexpr Rgb8 kBelow = {90, 150, 210}, kAbove = {10, 20, 30};
+
+/// One color for views that look down, another for those that look up.
+class DownOrUp : public Renderer {
+ public:
+  RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
+    const int w = camera.width_px, h = camera.height_px;
+    const bool down = world_from_camera.rotation()(2, 2) < 0;
+    return {Grid2d<Rgb8>(w, h, down ? kBelow : kAbove), Grid2d<float>(w, h, 2.0F),
+            Grid2d<ClassId>(w, h, ClassId{1}), Grid2d<InstanceId>(w, h, InstanceId{1})};
+  }
+};
+
+// Without any factor a tile shows what the renderer drew: what stands on the floor, so that the
+// view looks down.
+TEST(SensorSheets, BeginWithWhatTheRendererDrawsOfAViewThatLooksDown) {
+  Scene scene;
+  scene.rooms.push_back({"room", {{0, 0}, {4, 0}, {4, 4}, {0, 4}}});
+  const SensorSheets sheets = draw_sensor_sheets(scene, std::make_shared<DownOrUp>());
+  const cv::Vec3b drawn(kBelow.b, kBelow.g, kBelow.r);
+  const cv::Point first_tile(224, 240), first_frame(84, 135);  // their middles
+  EXPECT_EQ(sheets.color.at<cv::Vec3b>(first_tile), drawn);
+  EXPECT_EQ(sheets.frames.at<cv::Vec3b>(first_frame), drawn);
+}
+
+}  // namespace
+}  // namespace mh

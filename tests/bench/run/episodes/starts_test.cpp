@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/episodes/starts.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/run/episodes/episode_store.hpp"
+#include "bench/suite/suite.hpp"
+#include "scenes/load.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/temporary_folder.hpp"
+#include "tests/sim/boxes.hpp"
+
+namespace mh {
+namespace {
+
+constexpr const char* kSuite = R"(
+name: k
+robot: pepper
+environments: [{category: bathroom, scene: "generated:bathroom:0"}]
+vocabulary: vocabulary
+levels: [pepper]
+systems: [plain]
+labels: [exact]
+episodes:
+)";
+
+std::string refusal(const std::string& episodes) {
+  try {
+    parse_suite(kSuite + episodes, "k.yaml", {}, false);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(EpisodesSpec, IsReadAndItsMistakesAreNamed) {
+  const Suite suite = parse_suite(std::string(kSuite) +
+                                      "  starts: 3\n  goals: [refrigerator, bed]\n  variants:\n"
+                                      "  - {name: as_mapped}\n  - {name: dim, level: ideal}\n",
+                                  "k.yaml", {}, false);
+  ASSERT_TRUE(suite.episodes);
+  EXPECT_EQ(suite.episodes->starts, 3U);
+  EXPECT_EQ(suite.episodes->goals, (std::vector<std::string>{"refrigerator", "bed"}));
+  ASSERT_EQ(suite.episodes->variants.size(), 2U);
+  EXPECT_TRUE(suite.episodes->variants[1].level);
+
+  const std::string typo = refusal("  goals: [refrigratr]\n");
+  EXPECT_NE(typo.find("'refrigratr' is no class of things"), std::string::npos) << typo;
+  EXPECT_NE(typo.find("did you mean 'refrid"), std::string::npos) << typo;
+  EXPECT_NE(refusal("  goals: []\n").find("at least one"), std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  starts: 0\n").find("starts"), std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  variants: [{name: a}, {name: a}]\n").find("stands twice"),
+            std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  limit_s: 5\n  dark_s: 5\n").find("leaves nothing of"),
+            std::string::npos);
+  EXPECT_NE(refusal("  goals: [bed]\n  sleep: 1\n").find("sleep"), std::string::npos);
+}
+
+Scene room_with_a_bed() {
+  Scene scene = test::empty_room();
+  test::add_box(scene, "bed", {7, 7, 0}, {9, 9, 0.5F});
+  for (std::size_t f = scene.class_of.size() - 12; f < scene.class_of.size(); ++f)
+    scene.class_of[f] = *class_by_name("bed");
+  scene.instances.back().class_id = *class_by_name("bed");
+  return scene;
+}
+
+TEST(DrawStarts, AreOnTheFloorAndKnowTheShortestWay) {
+  const Scene scene = room_with_a_bed();
+  const Robot robot = test::pepper();
+  const EpisodesSpec spec{.starts = 12, .goals = {"toilet", "bed"}};
+  const std::vector<EpisodeStart> starts = draw_starts(spec, scene, robot);
+  ASSERT_EQ(starts.size(), 12U);
+  for (const EpisodeStart& start : starts) {
+    EXPECT_EQ(start.goal, "bed");  // there is no toilet
+    const double away_m = distance_to(start.boxes, start.place_m);
+    EXPECT_GE(away_m, 0.3);
+    EXPECT_GE(start.shortest_m, away_m - spec.arrival_m - 0.06);
+    EXPECT_LE(start.shortest_m, 1.15 * (away_m - spec.arrival_m) + 2.0);
+  }
+  EXPECT_GT((starts[0].place_m - starts[1].place_m).norm(), 0.05);
+  const std::vector<EpisodeStart> fewer =
+      draw_starts({.starts = 3, .goals = {"toilet", "bed"}}, scene, robot);
+  for (std::size_t i = 0; i < fewer.size(); ++i) EXPECT_EQ(fewer[i].place_m, starts[i].place_m);
+  EXPECT_THROW(draw_starts({.starts = 1, .goals = {"toilet"}}, scene, robot), InputError);
+}
+
+/// A bed and a sideboard stand flush against the two sides of a wall of 10 cm; it ends before x = 8
+/// m.
+Scene room_with_a_bed_behind_a_wall() {
+  Scene scene = test::empty_room();
+  const auto add = [&](const char* name, const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+    test::add_box(scene, name, low, high);
+    scene.instances.back().class_id = *class_by_name(name);
+    std::fill(scene.class_of.end() - 12, scene.class_of.end(), *class_by_name(name));
+  };
+  add("wall", {0, 5, 0}, {8, 5.1F, 2.5F});
+  add("bed", {3, 5.1F, 0}, {5, 7, 0.5F});
+  add("cabinet", {3, 4.6F, 0}, {5, 5, 0.8F});
+  return scene;
+}
+
+TEST(DrawStarts, NobodyArrivesThroughAWall) {
+  const std::vector<EpisodeStart> starts = draw_starts(
+      {.starts = 40, .goals = {"bed"}}, room_with_a_bed_behind_a_wall(), test::pepper());
+  const EpisodeStart& start = starts.front();
+  EXPECT_FALSE(is_arrival(start, {4, 4.2}, 1.0));  // 0.9 m away, behind sideboard and wall
+  EXPECT_FALSE(is_arrival(start, {2.6, 4.7}, 1.0));
+  EXPECT_TRUE(is_arrival(start, {4, 7.9}, 1.0));
+  EXPECT_TRUE(is_arrival(start, {2.6, 5.4}, 1.0));  // beside it, along the wall
+  EXPECT_FALSE(is_arrival(start, {4, 8.1}, 1.0));
+  int behind = 0;
+  for (const EpisodeStart& drawn : starts)
+    if (drawn.place_m.y() < 5) {
+      ++behind;  // past the end of the wall, then to 1 m beside the bed
+      const double to_gap_m = (drawn.place_m - Eigen::Vector2d(8, 5)).norm();
+      EXPECT_GE(drawn.shortest_m, to_gap_m + 2.0 - 0.1);
+    }
+  EXPECT_GT(behind, 5);
+}
+
+TEST(DrawStarts, NobodyArrivesFromAnotherRoomOfTheModelHouse) {
+  const Scene scene = load_scene(MH_SOURCE_DIR "/scenes/model_house/house.yaml");
+  const auto room_of = [&](const Eigen::Vector2d& place_m) {
+    return std::ranges::find_if(scene.rooms,
+                                [&](const Room& room) { return room.contains(place_m); });
+  };
+  for (const char* goal : {"refrigerator", "sofa", "bed", "desk"}) {
+    const EpisodeStart start =
+        draw_starts({.starts = 1, .goals = {goal}}, scene, test::pepper()).front();
+    ASSERT_EQ(start.boxes.size(), 1U) << goal;
+    const auto own = room_of(0.5 * (start.boxes[0].first + start.boxes[0].second));
+    ASSERT_NE(own, scene.rooms.end()) << goal;
+    int arrived = 0;
+    for (double y_m = 0.05; y_m < 8; y_m += 0.1)
+      for (double x_m = 0.05; x_m < 10; x_m += 0.1) {
+        const Eigen::Vector2d place_m(x_m, y_m);
+        const auto room = room_of(place_m);
+        if (room == scene.rooms.end() || distance_to(start.boxes, place_m) > 1) continue;
+        arrived += is_arrival(start, place_m, 1.0) ? 1 : 0;
+        EXPECT_TRUE(room == own || !is_arrival(start, place_m, 1.0)) << goal << x_m << " " << y_m;
+        EXPECT_TRUE(room != own || is_arrival(start, place_m, 1.0)) << goal << x_m << " " << y_m;
+      }
+    EXPECT_GT(arrived, 50) << goal;
+  }
+}
+
+TEST(EpisodeStore, KeepsEveryFieldAndReplacesAnEpisode) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path());
+  const std::filesystem::path file = folder.path() / "episodes.sqlite";
+  EpisodeScore score{.variant = "moved",
+                     .start = 4,
+                     .goal = "bed",
+                     .reason = "stuck",
+                     .time_s = 12.5,
+                     .located_s = 3.25,
+                     .length_m = 7,
+                     .collisions = 1,
+                     .digest = 0xfedcba9876543210ULL};
+  {
+    EpisodeStore store(file);
+    store.put("key", "run", score);
+    score.reason = "no_path";
+    store.put("key", "run", score);
+    score.start = 2;
+    score.located_s.reset();
+    store.put("key", "run", score);
+  }
+  EpisodeStore store(file);
+  const std::vector<EpisodeScore> back = store.load("key");
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(back[0].start, 2U);
+  EXPECT_FALSE(back[0].located_s);
+  EXPECT_EQ(back[1].start, 4U);
+  EXPECT_EQ(back[1].reason, "no_path");
+  EXPECT_EQ(back[1].located_s, 3.25);
+  EXPECT_EQ(back[1].collisions, 1);
+  EXPECT_EQ(back[1].digest, 0xfedcba9876543210ULL);
+  EXPECT_TRUE(store.load("another").empty());
+}
+
+}  // namespace
+}  // namespace mh

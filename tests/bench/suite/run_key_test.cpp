@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/suite/run_key.hpp"
+
+#include <fnmatch.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "bench/suite/inputs.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+#include "source_dir.hpp"
+#include "tests/bench/suite/other_build.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Pointer = Json::json_pointer;
+namespace fs = std::filesystem;
+
+/// What a run would read if each of its sources were one file, of whatever content.
+std::vector<InputDigest> inputs_of(const RunSpec& spec) {
+  std::vector<InputDigest> inputs = inputs_of_program(spec.system);
+  const auto add = [&](const char* name, const std::optional<fs::path>& source) {
+    if (source) noted(inputs, name, *source, [&] { return read_file(*source); });
+  };
+  const Environment& e = spec.environment;
+  add("scene", e.scene);
+  add("robot", e.robot);
+  add("mapping_tour", e.mapping_tour);
+  add("query_tour", e.query_tour);
+  add("query_scene", e.query_scene);
+  add("kidnapped_tour", e.kidnapped_tour);
+  add("sensors", e.sensors);
+  add("pedestrian", e.pedestrian);
+  add("level", spec.level);
+  add("vocabulary", spec.vocabulary);
+  return inputs;
+}
+
+std::string run_key_of(const RunSpec& spec) {
+  return run_key(spec, inputs_of(spec));
+}
+
+std::string map_key_of(const RunSpec& spec) {
+  return map_key(spec, inputs_of(spec));
+}
+
+/// A run's description with everything that may stand in one, and files of one content each.
+class RunKey : public testing::Test {
+ protected:
+  RunKey() {
+    const Environment environment{.name = "house",
+                                  .category = "houses",
+                                  .scene = file("scene.yaml"),
+                                  .robot = file("robot.yaml"),
+                                  .mapping_tour = file("mapping_tour.yaml"),
+                                  .frame = {.up = UpAxis::kY, .floor_z_m = 0.5},
+                                  .query_tour = file("query_tour.yaml"),
+                                  .query_scene = file("query_scene.yaml"),
+                                  .kidnapped_tour = file("kidnapped_tour.yaml"),
+                                  .sensors = file("sensors.yaml"),
+                                  .pedestrian = file("pedestrian.yaml")};
+    ours_ = {.name = "semantic-exact-pepper-0",
+             .environment = environment,
+             .level = file("pepper.yaml"),
+             .vocabulary = file("words"),
+             .system = {SystemKind::kSemantic, "semantic", {}},
+             .labels = LabelMode::kExact,
+             .trial = 1,
+             .seed = 3,
+             .slam = {},
+             .points = {SemanticConfig{}, SemanticConfig{.gamma = 0.5}},
+             .protocol = {},
+             .graded = GradedSpec{.distance_m = {0, 0.5, 2}, .angle_deg = {0, 60}},
+             .max_frames = 100};
+    theirs_ = ours_;
+    theirs_.system = {SystemKind::kOutside,
+                      "vo",
+                      {.name = "vo",
+                       .command = file("slam").string() + " {trajectory}",
+                       .folder = folder_,
+                       .inputs = {file("weights").string()}}};
+    other_ = file("other.yaml").string();
+    other_build = {};
+  }
+  ~RunKey() override { fs::remove_all(folder_); }
+
+  /// A file that holds its own name.
+  fs::path file(const std::string& name) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / name) << name;
+    return folder_ / name;
+  }
+
+  /// The description with another value at one place, one that can be read.
+  RunSpec with_another(const RunSpec& spec, const Pointer& place) const {
+    const Json json = to_json(spec);
+    const Json& old = json[place];
+    std::vector<Json> others = {other_,
+                                "conversation",
+                                "boxes",
+                                "plain",
+                                "words",
+                                "map",
+                                "interpolated",
+                                "z",
+                                "continue",
+                                "orb_slam2",
+                                "as_released",
+                                "new_noise",
+                                "side_by_side",
+                                "same_label",
+                                7};
+    if (old.is_boolean()) others = {!old.get<bool>()};
+    if (old.is_number_integer()) others = {old.get<int>() + 1};
+    if (old.is_number_float()) others = {old.get<double>() + 0.125};
+    for (const Json& other : others) {
+      if (other == old) continue;
+      Json changed = json;
+      changed[place] = other;
+      try {
+        RunSpec read = run_spec_from_json(changed);
+        if (to_json(read) != json) return read;
+      } catch (const InputError&) {
+        // no word of that field
+      }
+    }
+    ADD_FAILURE() << "no other value for " << place.to_string();
+    return spec;
+  }
+
+  /// The places in a description whose value may change without another key.
+  template <class Key>
+  std::set<std::string> free_places(const RunSpec& spec, Key key) const {
+    std::set<std::string> free;
+    const std::string before = key(spec);
+    const Json places = to_json(spec).flatten();
+    for (const auto& [place, value] : places.items())
+      if (key(with_another(spec, Pointer(place))) == before) free.insert(place);
+    return free;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("mh_run_key_" + std::to_string(getpid()));
+  std::string other_;
+  RunSpec ours_, theirs_;
+};
+
+const std::set<std::string> kNames = {"/name", "/environment/name", "/environment/category"};
+
+TEST_F(RunKey, ChangesWithEveryFieldOfARunButItsNames) {
+  ASSERT_EQ(run_key_of(ours_), run_key_of(ours_));
+  EXPECT_EQ(free_places(ours_, run_key_of), kNames);
+}
+
+TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideSystemButItsFolder) {
+  std::set<std::string> free = kNames;
+  free.insert("/system/outside/folder");
+  EXPECT_EQ(free_places(theirs_, run_key_of), free);
+  theirs_.system.outside = {.name = "vo",
+                            .mode = OutsideMode::kLibrary,
+                            .folder = folder_,
+                            .inputs = {file("weights").string()},
+                            .library = file("libvo.so").string(),
+                            .settings = file("vo.yaml").string()};
+  EXPECT_EQ(free_places(theirs_, run_key_of), free);
+}
+
+TEST_F(RunKey, OfAMapLeavesOutWhatOnlyItsQueriesDependOn) {
+  std::set<std::string> free = kNames;
+  free.insert({"/trial", "/system/name", "/environment/query_tour", "/environment/query_scene",
+               "/protocol/query_attempts", "/protocol/attempts", "/protocol/max_blank_frames",
+               "/protocol/correct_distance_m", "/protocol/correct_angle_deg", "/protocol/truth"});
+  const Json places = to_json(ours_).flatten();
+  for (const auto& [place, value] : places.items())
+    if (place.starts_with("/points/") || place.starts_with("/graded/")) free.insert(place);
+  EXPECT_EQ(free_places(ours_, map_key_of), free);
+}
+
+TEST_F(RunKey, ChangesWithAPointOrAnInputMoreAndWithWhatIsNotThere) {
+  const std::string before = run_key_of(ours_);
+  RunSpec changed = ours_;
+  changed.points.push_back(changed.points[0]);
+  EXPECT_NE(run_key_of(changed), before);
+  changed = ours_;
+  changed.max_frames.reset();
+  EXPECT_NE(run_key_of(changed), before);
+  EXPECT_NE(map_key_of(changed), map_key_of(ours_));
+  for (const auto field :
+       {&Environment::query_tour, &Environment::query_scene, &Environment::kidnapped_tour,
+        &Environment::sensors, &Environment::pedestrian}) {
+    changed = ours_;
+    (changed.environment.*field).reset();
+    EXPECT_NE(run_key_of(changed), before);
+  }
+  changed = theirs_;
+  changed.system.outside.inputs.clear();
+  EXPECT_NE(run_key_of(changed), run_key_of(theirs_));
+}
+
+// One file in the stead of another: both are read, so each counts under its own name.
+TEST_F(RunKey, TellsWhichFileIsWhich) {
+  RunSpec changed = ours_;
+  std::swap(changed.environment.query_tour, changed.environment.kidnapped_tour);
+  EXPECT_NE(run_key_of(changed), run_key_of(ours_));
+  changed = ours_;
+  std::swap(changed.level, changed.vocabulary);
+  EXPECT_NE(run_key_of(changed), run_key_of(ours_));
+}
+
+TEST_F(RunKey, ChangesWithTheContentOfEachFileAndNotWithItsPlace) {
+  for (const char* name :
+       {"scene.yaml", "robot.yaml", "mapping_tour.yaml", "query_tour.yaml", "query_scene.yaml",
+        "kidnapped_tour.yaml", "sensors.yaml", "pedestrian.yaml", "pepper.yaml", "words"}) {
+    const std::string before = run_key_of(ours_);
+    std::ofstream(folder_ / name) << name << " edited";
+    EXPECT_NE(run_key_of(ours_), before) << name;
+    std::ofstream(folder_ / name) << name;
+    EXPECT_EQ(run_key_of(ours_), before) << name;
+  }
+  const fs::path moved = folder_ / "moved";
+  fs::create_directories(moved);
+  RunSpec elsewhere = ours_;
+  Environment& e = elsewhere.environment;
+  for (fs::path* source :
+       {&elsewhere.level, &elsewhere.vocabulary, &e.scene, &e.robot, &e.mapping_tour,
+        &*e.query_tour, &*e.query_scene, &*e.kidnapped_tour, &*e.sensors, &*e.pedestrian}) {
+    const fs::path to = moved / source->filename();
+    fs::copy(*source, to);
+    *source = to;
+    EXPECT_EQ(run_key_of(elsewhere), run_key_of(ours_)) << to;
+    EXPECT_EQ(stored_spec(elsewhere), stored_spec(ours_)) << to;
+  }
+}
+
+TEST_F(RunKey, ChangesWithTheCodeAndTheBuildAndNotWithTheCommit) {
+  for (const auto& key : {run_key_of, map_key_of}) {
+    other_build = {};
+    const std::string before = key(ours_);
+    other_build.code = "2";
+    EXPECT_NE(key(ours_), before);
+    other_build = {};
+    other_build.compiler = "13";
+    EXPECT_NE(key(ours_), before);
+    other_build = {};
+    other_build.commit = "b";
+    EXPECT_EQ(key(ours_), before) << "a commit that leaves the code as it is";
+  }
+}
+
+}  // namespace
+}  // namespace mh
