@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/read_record.hpp"
 
 namespace mh {
 
@@ -18,6 +19,8 @@ RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noi
   RgbdFrame frame = [&] {
     try {
       return sequence.frame(i, noise);
+    } catch (const InputChanged&) {
+      throw;  // ends the run
     } catch (const InputError& error) {
       throw UnusableFrame(error.what());
     }

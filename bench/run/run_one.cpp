@@ -19,8 +19,8 @@
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
 #include "bench/systems/timed.hpp"
-#include "slam/core/digest.hpp"
 #include "scenes/recordings/open_sequence.hpp"
+#include "slam/core/digest.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 #include "slam/occupancy/occupancy_mapper.hpp"
@@ -65,26 +65,71 @@ class SequenceView : public Sequence {
   const Sequence& inner_;
 };
 
-/// The frames as a run sees them: the CPU time spent on making them is counted, and tests may
-/// change them.
+/// What the files of a world were when its key was made.
+class FilesAsKeyed {
+ public:
+  explicit FilesAsKeyed(const ReadRecord& held) {
+    for (const FileObservation& o : held.observations)
+      if (o.state.inode != 0) of_.emplace(o.path, o);
+  }
+  /// @throws InputChanged if any that was read now is another, though it may be put back since
+  void require(const ReadRecord& now) const {
+    for (const FileObservation& o : now.observations) {
+      const auto was = of_.find(o.path);
+      using enum FileObservation::Kind;
+      if (was == of_.end() || (o.kind != kRead && o.kind != kHeld && o.kind != kAbsent)) continue;
+      const bool same = o.kind == kRead && was->second.kind == kRead
+                            ? o.digest == was->second.digest
+                            : o.state == was->second.state;
+      if (!same)
+        throw InputChanged(fmt::format(
+            "{}: was changed while it was in use: start the command again", o.path.string()));
+    }
+  }
+
+ private:
+  std::map<fs::path, FileObservation> of_;
+};
+
+/// The frames as a run sees them: they are of the files of its key, the CPU time spent on making
+/// them is counted, and tests may change them.
 class WatchedFrames : public SequenceView {
  public:
   /// @param recording  where they come from; empty: they are simulated
   /// @param spent_s  grows by the time spent
-  WatchedFrames(const Sequence& inner, std::string recording, const RunTamper& tamper,
-                double& spent_s)
-      : SequenceView(inner), recording_(std::move(recording)), tamper_(tamper), spent_s_(spent_s) {}
+  WatchedFrames(const Sequence& inner, std::string recording, const FilesAsKeyed& files,
+                const RunTamper& tamper, double& spent_s)
+      : SequenceView(inner),
+        recording_(std::move(recording)),
+        files_(files),
+        tamper_(tamper),
+        spent_s_(spent_s) {}
   RgbdFrame frame(std::size_t i, RandomStream noise) const override try {
     const ProcessorTimer timer(spent_s_);
-    RgbdFrame frame = SequenceView::frame(i, noise);
+    RgbdFrame frame = checked(i, noise);
     if (tamper_.frame) tamper_.frame(i, frame);
     return frame;
+  } catch (const InputChanged&) {
+    throw;
   } catch (const InputError& error) {
     throw InputError(without_place(error.what(), recording_));
   }
 
  private:
+  RgbdFrame checked(std::size_t i, RandomStream noise) const {
+    const ReadScope reading;
+    try {
+      RgbdFrame frame = SequenceView::frame(i, noise);
+      files_.require(reading.record());
+      return frame;
+    } catch (const InputError&) {
+      files_.require(reading.record());  // it cannot be read, for it was not there
+      throw;
+    }
+  }
+
   const std::string recording_;
+  const FilesAsKeyed& files_;
   const RunTamper& tamper_;
   double& spent_s_;
 };
@@ -120,12 +165,12 @@ std::vector<std::size_t> asked_frames(QuerySet set, const Sequence& sequence,
 /// One set of queries.
 class QueryRound {
  public:
-  QueryRound(const RunSpec& spec, QuerySet set, const World& world, const RunTamper& tamper,
-             RunResult& run)
+  QueryRound(const RunSpec& spec, QuerySet set, const World& world, const FilesAsKeyed& files,
+             const RunTamper& tamper, RunResult& run)
       : spec_(spec),
         set_(set),
         world_(world),
-        frames_(*sequence_of(world, set), recording_of(spec.environment, set), tamper,
+        frames_(*sequence_of(world, set), recording_of(spec.environment, set), files, tamper,
                 run.frames_s),
         has_stamp_(increasing_stamps(frames_)),
         run_(run),
@@ -284,7 +329,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   run.place = facts(world, spec);
   if (mapping.truth() != nullptr) run.truth = *mapping.truth();
   OccupancyMapper mapper(camera);
-  const WatchedFrames frames(mapping, spec.environment.sequence, tamper, run.frames_s);
+  const FilesAsKeyed files(world.held);
+  const WatchedFrames frames(mapping, spec.environment.sequence, files, tamper, run.frames_s);
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
     if (!tools.occupancy) return;
@@ -350,7 +396,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.points.resize(spec.points.size());
     std::vector<QueryRound> rounds;
     for (const QuerySet set : kQuerySets)
-      if (sequence_of(world, set) != nullptr) rounds.emplace_back(spec, set, world, tamper, run);
+      if (sequence_of(world, set) != nullptr)
+        rounds.emplace_back(spec, set, world, files, tamper, run);
     for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
       const std::size_t end = end_of_alike(spec.points, p);
       system.set_query_settings(spec.points[p]);

@@ -28,11 +28,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "MHCACHE1";
+constexpr std::string_view kMagic = "MHCACHE2";
 constexpr std::size_t kHead = kMagic.size() + 2 * sizeof(std::uint64_t);
 
-std::string pack(std::string_view content) {
-  const std::uint64_t head[2] = {content.size(), digest_bytes(content.data(), content.size())};
+/// Of an entry's content and name: under another name it is as good as damaged.
+std::uint64_t digest_of(const fs::path& file, std::string_view content) {
+  const std::string name = (file.parent_path().filename() / file.filename()).string();
+  return digest_bytes(content.data(), content.size(), digest_bytes(name.data(), name.size()));
+}
+
+std::string pack(const fs::path& file, std::string_view content) {
+  const std::uint64_t head[2] = {content.size(), digest_of(file, content)};
   std::string packed(kMagic);
   packed.append(reinterpret_cast<const char*>(head), sizeof head);
   return packed.append(content);
@@ -74,7 +80,7 @@ bool has_magic(const fs::path& file) {
          head == kMagic;
 }
 
-/// nullopt if the file is missing, truncated or damaged.
+/// nullopt if the file is missing, truncated, damaged or another entry.
 std::optional<std::string> unpack(const fs::path& file) {
   if (!is_own_file(file)) return std::nullopt;
   const ReadScope no_input(ReadScope::Outer::kIgnores);
@@ -88,8 +94,7 @@ std::optional<std::string> unpack(const fs::path& file) {
   if (packed.size() < kHead || !packed.starts_with(kMagic)) return std::nullopt;
   std::memcpy(head, packed.data() + kMagic.size(), sizeof head);
   packed.erase(0, kHead);
-  if (packed.size() != head[0] || digest_bytes(packed.data(), packed.size()) != head[1])
-    return std::nullopt;
+  if (packed.size() != head[0] || digest_of(file, packed) != head[1]) return std::nullopt;
   return packed;
 }
 
@@ -188,7 +193,7 @@ std::string Cache::get(std::string_view kind, std::string_view key,
       if (fs::exists(fs::symlink_status(aside, error))) return content;
       fs::rename(file, aside);
     }
-    write_atomically(file, pack(content));
+    write_atomically(file, pack(file, content));
     keep_within_bounds(own, content.size());
   } catch (const std::exception&) {
     // Then nothing is cached; the work continues.

@@ -128,7 +128,7 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   from_child_ = out[0];
   size_before_mb_ = contents_of(folder_).mb;
   const std::string runs_in = program_.folder.string(), scratch = folder_.string();
-  const Hiding hiding(program_.hidden, needed_by(program_, folder_));
+  const Hiding hiding(program_.hidden, needed_by(program_, folder_), folder_);
   watcher_.emplace(WatchedCommand{
       .folder = runs_in.c_str(),
       .command = command_.c_str(),

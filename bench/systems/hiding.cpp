@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,6 +23,8 @@ namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kMemory = "/dev/shm";
 
 // ---- in the forked processes: only system calls
 
@@ -45,6 +48,22 @@ int enter_namespace(const std::string& user_map, const std::string& group_map) {
   if (!mapped) return errno;
   // What is mounted outside later still arrives; nothing goes the other way.
   return mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) == 0 ? 0 : errno;
+}
+
+/// A shared memory in which nothing is but a folder of it.
+/// @returns 0, or errno of the call that failed: then all is as it was
+int make_memory_private(const char* own) {
+  // Opened here, since a folder of the outer namespace cannot be mounted in this one.
+  const int folder = open(own, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (folder < 0) return errno;
+  if (mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, "mode=1777") != 0) return errno;
+  char link[32];
+  *fmt::format_to_n(link, sizeof link - 1, "/proc/self/fd/{}", folder).out = 0;
+  if (mkdir(own, 0700) == 0 && mount(link, own, nullptr, MS_BIND, nullptr) == 0)
+    return close(folder);
+  const int error = errno;
+  umount2(kMemory, MNT_DETACH);
+  return error;
 }
 
 int cover(const char* folder) {
@@ -80,10 +99,12 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 
 }  // namespace
 
-Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> needed)
+Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> needed,
+               const fs::path& own)
     : user_map_(fmt::format("{0} {0} 1\n", geteuid())),
       group_map_(fmt::format("{0} {0} 1\n", getegid())) {
   std::error_code error;
+  if (lies_in(own, kMemory)) own_ = own.string();
   std::set<fs::path> all;  // a folder before what it holds
   for (const fs::path& path : hidden)
     if (const fs::path real = fs::canonical(path, error); !error) all.insert(real);
@@ -113,7 +134,7 @@ Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> neede
 }
 
 void Hiding::apply() const {
-  if (folders_.empty() && files_.empty() && left_.empty()) return;
+  if (folders_.empty() && files_.empty() && left_.empty() && own_.empty()) return;
   int error = why_not(user_map_, group_map_);
   if (error == 0) error = enter_namespace(user_map_, group_map_);
   if (error != 0) {
@@ -123,12 +144,16 @@ void Hiding::apply() const {
     return;
   }
   std::string_view uncovered;
+  if (!own_.empty() && make_memory_private(own_.c_str()) != 0) uncovered = kMemory;
   for (const std::string& folder : folders_)
     if (cover(folder.c_str()) != 0) uncovered = folder;
   for (const std::string& file : files_)
     if (mount("/dev/null", file.c_str(), nullptr, MS_BIND, nullptr) != 0) uncovered = file;
-  say({"modelhouse: hidden from the program by a mount namespace: ", done_, left_,
-       uncovered.empty() ? "" : "; could not be hidden: ", uncovered, "\n"});
+  say({"modelhouse: hidden from the program by a mount namespace: ", done_,
+       own_.empty()    ? ""
+       : done_.empty() ? "what others have in shared memory"
+                       : ", what others have in shared memory",
+       left_, uncovered.empty() ? "" : "; could not be hidden: ", uncovered, "\n"});
 }
 
 }  // namespace mh

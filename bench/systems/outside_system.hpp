@@ -57,6 +57,11 @@ class OutsideSystem : public System {
   SystemReport reported(Question what, std::uint64_t session, const RgbdFrame& frame,
                         RandomStream stream, TrackStatus with_pose) const;
   void take(const Trajectory& finished);
+  /// When a session begins: a second after the last frame of the mapping.
+  Stamp after_mapping_ns() const {
+    constexpr Stamp kSecond_ns = 1'000'000'000;
+    return shown_.empty() ? 0 : *shown_.rbegin() + kSecond_ns;
+  }
 
   std::map<Stamp, SE3> poses_;
   std::set<Stamp> shown_;

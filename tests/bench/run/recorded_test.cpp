@@ -598,6 +598,42 @@ TEST_F(Recorded, AFileThatChangesUnderARunLeavesNeitherAMapNorAResult) {
   EXPECT_TRUE(made) << "a map of these images was kept";
 }
 
+// Others' images are put in their place for a moment, in which some frames are read.
+TEST_F(Recorded, AFolderThatIsAnotherForAMomentLeavesNoResult) {
+  record(room(), "tum", 0, 40);
+  const fs::path other = folder_ / "other";
+  fs::copy(room() / "rgb", other);
+  auto files = std::vector<fs::path>(fs::directory_iterator(other), {});
+  std::ranges::sort(files);
+  for (std::size_t i = 1; i < files.size(); ++i) write(files[i], read_file(files[0]));
+  const auto exchange = [&] {
+    fs::rename(room() / "rgb", folder_ / "aside");
+    fs::rename(other, room() / "rgb");
+    fs::rename(folder_ / "aside", other);
+  };
+  const World place = world();
+  for (const std::string during : {"frame 20 ", "queries"}) {
+    RunTools watched = tools();
+    RunTools plain = tools();
+    bool is_other = false;
+    watched.status = [&](std::string_view status) {
+      if (status.starts_with(during) != is_other) {
+        exchange();
+        is_other = !is_other;
+      }
+    };
+    std::string what = "no error";
+    try {
+      run_one(spec_, place, watched);
+    } catch (const InputChanged& error) {
+      what = error.what();
+    }
+    EXPECT_NE(what.find("was changed while it was in use"), std::string::npos) << what;
+    if (is_other) exchange();
+    EXPECT_NO_THROW(run_one(spec_, place, plain)) << during;
+  }
+}
+
 // The key of a run is made of all that lies there before anything runs, and of what the run read.
 TEST_F(Recorded, TheKeyIsTheSameWhetherLabelsAreLeftOutOrNot) {
   write(folder_ / "classes.yaml", "1: chair\n");

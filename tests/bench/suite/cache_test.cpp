@@ -80,6 +80,18 @@ TEST_F(CacheFolder, ADamagedEntryIsMadeAnew) {
   }
 }
 
+TEST_F(CacheFolder, AnEntryUnderAnothersNameIsMadeAnew) {
+  const Cache cache(folder_);
+  get(cache, "aa1");
+  get(cache, "aa2");
+  fs::copy_file(entry("aa1"), entry("aa2"), fs::copy_options::overwrite_existing);
+  const int before = made_;
+  get(cache, "aa2");
+  EXPECT_EQ(made_, before + 1);
+  get(cache, "aa1");
+  EXPECT_EQ(made_, before + 1);
+}
+
 TEST_F(CacheFolder, ForgetsWhatWasNotReadForLongest) {
   const Cache cache(folder_, 2500);
   const std::string kilobyte(1000, 'x');

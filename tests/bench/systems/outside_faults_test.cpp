@@ -17,6 +17,7 @@
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/outside_error.hpp"
+#include "bench/systems/outside_system.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "slam/io/error.hpp"
@@ -471,6 +472,62 @@ TEST_F(OutsideFaults, AProgramDoesNotSeeWhatIsHiddenFromIt) {
   EXPECT_HOLDS(inside,
                "; not hidden, since the program's own files are there: " + folder_.string() + "\n");
   EXPECT_EQ(inside.find("truth.tum:"), std::string::npos) << inside;
+}
+
+TEST_F(OutsideFaults, AConversationSeesNoOthersImages) {
+  const fs::path others = "/dev/shm/mh_of_another_" + std::to_string(getpid());
+  std::ofstream(others) << "an image";
+  const fs::path log = folder_ / "out" / "outside.log";
+  const OutsideProgram p =
+      program(OutsideMode::kConversation,
+              "ls /dev/shm >&2; cat /dev/shm/*/settings.yaml >&2; touch /dev/shm/left; echo gone");
+  error_of(p, [&] { make_conversation_system(p, camera_, 0, log); });
+  fs::remove(others);
+  const std::string said = read_file(log);
+  if (said.starts_with("modelhouse: nothing is hidden")) GTEST_SKIP() << said;
+  EXPECT_EQ(said.find("mh_of_another"), std::string::npos) << said;
+  EXPECT_HOLDS(said, "modelhouse-");  // its own folder, with what it is given
+  EXPECT_HOLDS(said, "Camera.fx");
+  EXPECT_FALSE(fs::exists("/dev/shm/left"));
+}
+
+/// Notes the stamps of what it is shown.
+class NotesStamps : public OutsideSystem {
+ public:
+  mutable std::vector<Stamp> stamps_ns;
+  void rewind() override {}
+
+ protected:
+  SystemReport ask(Question, std::uint64_t, const RgbdFrame& frame, RandomStream) const override {
+    stamps_ns.push_back(frame.stamp_ns);
+    SystemReport report;
+    report.world_from_camera = SE3();
+    return report;
+  }
+  void forget() override {}
+  std::optional<Trajectory> end_mapping() override { return std::nullopt; }
+  void fail(const std::string& what) const override { throw OutsideError(what); }
+};
+
+// Its own stamp, between two of mapped frames, would say where a held-out frame was taken.
+TEST(OutsideSessions, BeginAfterTheMappingAndKeepTheirPace) {
+  NotesStamps system;
+  RgbdFrame frame;
+  frame.color = Grid2d<Rgb8>(2, 2);
+  frame.depth_m = Grid2d<float>(2, 2, 1.0F);
+  const auto at = [&](Stamp stamp_ns) {
+    frame.stamp_ns = stamp_ns;
+    return frame;
+  };
+  for (const Stamp stamp_ns : {10, 30, 40}) system.track(at(stamp_ns), RandomStream(1));
+  system.freeze();
+  for (int session = 0; session < 2; ++session) {
+    const auto opened = system.open_session();
+    for (const Stamp stamp_ns : {20, 20, 25}) opened->feed(at(stamp_ns), RandomStream(1));
+  }
+  const Stamp later = 1'000'000'040;
+  EXPECT_EQ(system.stamps_ns,
+            (std::vector<Stamp>{10, 30, 40, later, later, later + 5, later, later, later + 5}));
 }
 
 TEST_F(OutsideFaults, WhatAProgramIsToldLiesBelowNoResults) {
