@@ -10,6 +10,7 @@
 
 #include "bench/protocol/placed.hpp"
 #include "bench/run/hidden.hpp"
+#include "bench/suite/find_program.hpp"
 #include "bench/suite/run_key.hpp"
 #include "bench/systems/builtin.hpp"
 #include "bench/systems/conversation.hpp"
@@ -22,6 +23,7 @@
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/counted.hpp"
+#include "slam/io/path_watch.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 #include "slam/occupancy/occupancy_mapper.hpp"
 
@@ -339,6 +341,13 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
 
+  // From before the program starts: what it reads is not seen here.
+  std::vector<fs::path> of_program;
+  if (spec.system.is_outside())
+    for (const ProgramFile& file : files_of(spec.system.outside)) of_program.push_back(file.file);
+  PathWatch program_paths(of_program);
+  require_unchanged(world.held);
+
   std::unique_ptr<System> inner =
       tools.system ? tools.system(spec, world)
                    : make_system(spec, world, tools.folder, tools.status, tools.hidden);
@@ -365,6 +374,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
             const ProcessorTimer timer(run.products_s);
             if (call.keyframe_added && tools.occupancy) mapper.keep(frame);
             if (tools.observe) tools.observe(call, frame, report);
+            program_paths.require_unmoved();
             work.reached(call.index + 1);
             tools.status(status_of(call, mapping.size()));
           },
@@ -414,6 +424,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
                                            .robot_height_m = world.simulated->robot.height_m});
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
   require_unchanged(world.held);
+  program_paths.require_unmoved();
   return run;
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/json_text.hpp"
@@ -102,7 +103,11 @@ std::optional<OccupancyGrid> grid_of(const PagesSource& source, const RunResult&
   const std::filesystem::path file = source.folder / run.spec.name / "map.yaml";
   if (source.folder.empty() || !is_file(file)) return std::nullopt;
   try {
-    return load_map_server(file);
+    OccupancyGrid grid = load_map_server(file);
+    // The files of another run may be there.
+    if (digest_bytes(grid.cells.data(), grid.cells.size(), digest(run.estimate)) != run.map_digest)
+      return std::nullopt;
+    return grid;
   } catch (const InputError&) {
     return std::nullopt;
   }
