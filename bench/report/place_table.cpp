@@ -209,9 +209,8 @@ std::string block_text(const Block& block, Extent extent) {
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
       level_name(suite.levels[row.level]), with_labels(row.labels), counted(suite.trials, "trial"),
       suite.trials == 1 ? "" : " (medians)", shortened(suite, block.all));
-  const std::string table = paper_table(block);
-  if (extent == Extent::kScreen) return text + (table.empty() ? mapping_details(block) : table);
-  text += table;
+  text += paper_table(block);
+  if (extent == Extent::kScreen) return text + mapping_details(block);
   for (const QuerySet set : kQuerySets)
     if (most_queries(block, set) > 0)
       text += query_details(block, set) + candidate_details(block, set);
