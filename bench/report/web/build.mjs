@@ -7,7 +7,7 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const out = resolve(process.argv[2] ?? join(here, "../../pages/bundle"));
+const out = resolve(process.argv[2] ?? join(here, "../pages/bundle"));
 
 /** Every file below a folder except installed packages, as paths from it. */
 function filesBelow(folder, from = "") {

@@ -100,7 +100,7 @@ TEST(AveragePrecision, IsThatOfPycocotools) {
         0.25882467194087827, 0.5252446929788069},
        {0.2641695977570601, 0.538266803226657, 0.23128128624201275, 0.18815676897360067,
         0.26162221789011636, 0.48807017543859654}}};
-  std::ifstream file(MH_SOURCE_DIR "/tests/bench/metrics/coco_case.json");
+  std::ifstream file(MH_SOURCE_DIR "/tests/bench/protocol/metrics/coco_case.json");
   const auto json = nlohmann::json::parse(file);
   for (std::size_t k = 0; k < kTheirs.size(); ++k) {
     const auto box = [](const nlohmann::json& row) {
