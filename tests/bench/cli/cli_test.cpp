@@ -542,7 +542,7 @@ TEST_F(CommandLine, TheManualGivesFlagsNoValueAndNamesOfFilesAsOneChoice) {
   for (const char* entry :
        {".TP\n\\fB\\-\\-json\\fR\n", ".TP\n\\fB\\-\\-help, \\-h\\fR\n",
         ".TP\n\\fB\\-\\-no\\-cache\\fR\n", "\\fB\\-\\-frames\\fR \\fIVALUE\\fR\n",
-        "\\fB\\-\\-robot\\fR \\fIFILE|pepper\\fR\n"})
+        "\\fB\\-\\-robot\\fR \\fIFILE|pepper|turtlebot3\\fR\n"})
     EXPECT_NE(out_.find(entry), std::string::npos) << entry;
 }
 
