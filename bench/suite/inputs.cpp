@@ -17,6 +17,7 @@
 #include "sim/world/travel.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/detect/detector.hpp"
+#include "slam/io/words.hpp"
 #include "slam/vocabulary/vocabulary.hpp"
 
 namespace mh {
@@ -35,23 +36,12 @@ std::string name_from(const fs::path& source, const fs::path& file) {
 }
 
 /// Equal words: equal reading, so that one file is read once.
-const char* word_of(SourceKind kind) {
-  switch (kind) {
-    case SourceKind::kScene:
-      return "scene";
-    case SourceKind::kMotion:
-      return "motion";
-    case SourceKind::kTour:
-      return "tour";
-    case SourceKind::kRobot:
-      return "robot";
-    case SourceKind::kLevel:
-      return "level";
-    case SourceKind::kPedestrian:
-      break;
-  }
-  return "pedestrian";
-}
+constexpr Names<SourceKind, 6> kKinds{{{"scene", SourceKind::kScene},
+                                       {"motion", SourceKind::kMotion},
+                                       {"tour", SourceKind::kTour},
+                                       {"robot", SourceKind::kRobot},
+                                       {"level", SourceKind::kLevel},
+                                       {"pedestrian", SourceKind::kPedestrian}}};
 
 }  // namespace
 
@@ -132,7 +122,7 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
        {false, true})  // they take the longest: what else is wrong is said first
     sources(e, [&](const WorldSource& source, const std::optional<fs::path>& path) {
       if (path && (source.kind == SourceKind::kScene) == of_scenes)
-        inputs.push_back(read(source.key, word_of(source.kind), *path,
+        inputs.push_back(read(source.key, std::string(name_of(source.kind, kKinds)), *path,
                               [&](const fs::path& file) { load(source.kind, file); }));
     });
   return inputs;
