@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +15,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/report/drawing/false_colors.hpp"
 #include "bench/suite/protocol_config.hpp"
+#include "bench/suite/suite.hpp"
 #include "robots/model/robot_keys.hpp"
 #include "scenes/furniture/furniture.hpp"
 #include "scenes/materials/materials.hpp"
@@ -126,7 +128,13 @@ class SettingsTables {
  private:
   template <class T>
   static std::string values(const SettingRange& range) {
-    if constexpr (std::is_same_v<T, bool>) {
+    if constexpr (kIsOptional<T>) {
+      return values<typename T::value_type>(range);
+    } else if constexpr (kIsVector<T>) {
+      return "list of " + values<typename T::value_type>(range);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      return "words";
+    } else if constexpr (std::is_same_v<T, bool>) {
       return "true, false";
     } else if constexpr (std::is_enum_v<T>) {
       std::vector<std::string_view> words;
@@ -184,6 +192,41 @@ std::string protocol() {
          tables.text();
 }
 
+/// A table of the sources that a record of a suite names.
+template <class Record>
+std::string source_table(const char* title, const Record& record) {
+  std::string text = fmt::format("\n## {}\n\n| key | value | meaning |\n|---|---|---|\n", title);
+  sources(record, [&](const WorldSource& source, const auto&) {
+    text += fmt::format("| `{}` | {} | {} |\n", source.key, forms(source.kind), source.meaning);
+  });
+  return text;
+}
+
+std::string suite() {
+  const Suite suite;
+  const GradedSpec graded;
+  const EpisodesSpec episodes;
+  const OutsideProgram program;
+  SettingsTables top, rest;
+  top.section("At the top");
+  fields(suite, top);
+  rest.section("systems: limits of a command");
+  limits(program, [&](const char* key, double value, const SettingRange& range, const char* meaning,
+                      std::optional<OutsideMode> only) {
+    const std::string where = only ? fmt::format("protocol `{}`: ", name(*only)) : "";
+    rest(key, value, range, (where + meaning).c_str());
+  });
+  rest.section("graded");
+  fields(graded, rest);
+  rest.section("episodes");
+  fields(episodes, rest);
+  return heading("Keys of a suite", "suite") +
+         "Those that are one value or name one file; lists and mappings: "
+         "[formats.md](../formats.md#suite-benchsuitesyaml).\n" +
+         top.text() + source_table("environments: a scene", Environment{}) + rest.text() +
+         source_table("episodes.variants", EpisodeVariant{});
+}
+
 std::string detector() {
   SettingsTables tables;
   tables.section("At the top");
@@ -199,13 +242,14 @@ struct Page {
   const char* name;
   std::string (*text)();
 };
-constexpr std::array<Page, 8> kPages{{{"furniture", furniture},
+constexpr std::array<Page, 9> kPages{{{"furniture", furniture},
                                       {"materials", materials},
                                       {"classes", class_table},
                                       {"robot", robot},
                                       {"slam", slam_settings},
                                       {"sensors", sensors},
                                       {"protocol", protocol},
+                                      {"suite", suite},
                                       {"detector", detector}}};
 
 }  // namespace

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report/suite_json.hpp"
 
-#include <initializer_list>
 #include <optional>
-#include <utility>
 
 #include "bench/suite/json_fields.hpp"
 #include "bench/suite/shipped.hpp"
@@ -32,14 +30,6 @@ std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
 
 Json source_json(const Suite& suite, const std::filesystem::path& source) {
   return is_generated(source) ? source.string() : from_suite(suite, source);
-}
-
-/// Adds the sources that are given.
-void add_sources(
-    Json& json, const Suite& suite,
-    std::initializer_list<std::pair<const char*, std::optional<std::filesystem::path>>> sources) {
-  for (const auto& [key, source] : sources)
-    if (source) json[key] = source_json(suite, *source);
 }
 
 Json recorded_json(const Suite& suite, const Environment& e) {
@@ -80,15 +70,14 @@ Json episodes_json(const Suite& suite) {
   Json variants = Json::array();
   for (const EpisodeVariant& variant : spec.variants) {
     Json json = {{"name", variant.name}};
-    add_sources(
-        json, suite,
-        {{"scene", variant.scene}, {"pedestrian", variant.pedestrian}, {"level", variant.level}});
+    sources(variant, [&](const WorldSource& source, const auto& file) {
+      if (file) json[source.key] = source_json(suite, *file);
+    });
     variants.push_back(std::move(json));
   }
-  return {{"starts", spec.starts},       {"seed", spec.seed},
-          {"goals", spec.goals},         {"limit_s", spec.limit_s},
-          {"arrival_m", spec.arrival_m}, {"ticks_per_frame", spec.ticks_per_frame},
-          {"dark_s", spec.dark_s},       {"variants", variants}};
+  Json json = to_json(spec);
+  json["variants"] = variants;
+  return json;
 }
 
 Json system_json(const SystemSpec& system) {

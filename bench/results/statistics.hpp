@@ -7,14 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace mh {
+#include "bench/protocol/metrics/averages.hpp"
 
-/// The middle value (mean of the two middle ones); 0 for an empty list.
-double median(std::vector<double> values);
-/// The median of the known values; absent if none is known.
-std::optional<double> median_of_known(std::span<const std::optional<double>> values);
-/// 0 for an empty list.
-double mean(std::span<const double> values);
+namespace mh {
 
 /// One paired observation: the difference first - second of one query, where both have a value.
 struct PairedDifference {

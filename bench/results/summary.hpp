@@ -6,19 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "bench/protocol/metrics/mapping_counts.hpp"
 #include "bench/protocol/run_result.hpp"
+#include "bench/protocol/summarize.hpp"
 #include "bench/results/statistics.hpp"
 
 namespace mh {
-
-QuerySummary summarize(std::span<const QueryScore> queries);
-
-MappingCounts count(const MappingOutcome& mapping);
-
-/// Every figure of a run under one of its parameter points, under its name in all_metrics(). A
-/// query set that was not used has none.
-std::vector<Figure> figures_of(const RunResult& run, std::size_t point);
 
 /// A run and one of its parameter points.
 struct Trial {

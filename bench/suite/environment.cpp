@@ -72,24 +72,6 @@ fs::path read_motion(const YamlReader& node, const SuitePaths& paths, int index)
   return read_made(node, paths, index, Shipped::kTour);
 }
 
-fs::path read_source(SourceKind kind, const YamlReader& node, const SuitePaths& paths, int index) {
-  switch (kind) {
-    case SourceKind::kScene:
-      return read_scene(node, paths, index);
-    case SourceKind::kMotion:
-      return read_motion(node, paths, index);
-    case SourceKind::kTour:
-      return named_file(node, paths, Shipped::kTour);
-    case SourceKind::kRobot:
-      return named_file(node, paths, Shipped::kRobot);
-    case SourceKind::kLevel:
-      return named_file(node, paths, Shipped::kLevel);
-    case SourceKind::kPedestrian:
-      break;
-  }
-  return named_file(node, paths);
-}
-
 const Environment kNowhere{};  // to list the keys
 
 std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
@@ -162,6 +144,24 @@ fs::path named_file(const YamlReader& node, const SuitePaths& paths, std::option
   const std::string text = node.as_string();
   if (what == Shipped::kScene && is_generated(text)) return text;
   return resolve(text, node, paths, what);
+}
+
+fs::path read_source(SourceKind kind, const YamlReader& node, const SuitePaths& paths, int index) {
+  switch (kind) {
+    case SourceKind::kScene:
+      return read_scene(node, paths, index);
+    case SourceKind::kMotion:
+      return read_motion(node, paths, index);
+    case SourceKind::kTour:
+      return named_file(node, paths, Shipped::kTour);
+    case SourceKind::kRobot:
+      return named_file(node, paths, Shipped::kRobot);
+    case SourceKind::kLevel:
+      return named_file(node, paths, Shipped::kLevel);
+    case SourceKind::kPedestrian:
+      break;
+  }
+  return named_file(node, paths);
 }
 
 Environments read_environments(const YamlReader& list, const SuitePaths& paths,

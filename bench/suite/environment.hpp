@@ -43,14 +43,27 @@ struct Environment {
 };
 
 /// What a source of an environment is: how its file is found, read and checked.
-enum class SourceKind {
-  kScene,       ///< file, folder of a ScanNet scene, or "generated:KIND:SEED" (is_generated)
-  kMotion,      ///< tour, or auto[:SEED], survey[:SEED], handheld[:SEED[:FRAMES]]
-  kTour,        ///< the file of a tour
-  kRobot,       ///< a robot's file
-  kLevel,       ///< settings of sensors
-  kPedestrian,  ///< a pedestrian's file
-};
+enum class SourceKind { kScene, kMotion, kTour, kRobot, kLevel, kPedestrian };
+
+/// What may be written for a source, in Markdown.
+constexpr std::string_view forms(SourceKind kind) {
+  using enum SourceKind;
+  switch (kind) {
+    case kScene:
+      return "a house, a mesh, a ScanNet folder, or `generated:CATEGORY:SEED`";
+    case kMotion:
+      return "a tour's file, or `auto:SEED`, `survey:SEED`, `handheld:SEED:FRAMES`";
+    case kTour:
+      return "a tour's file";
+    case kRobot:
+      return "a robot's file";
+    case kLevel:
+      return "a sensor level";
+    case kPedestrian:
+      return "a pedestrian's file";
+  }
+  return "";
+}
 
 /// A key of an environment in a scene, whose value names a source.
 struct WorldSource {
@@ -67,9 +80,8 @@ template <MaybeConst<Environment> E, class Visit>
 void sources(E& e, Visit&& visit) {
   using enum SourceKind;
   visit(WorldSource{"scene", kScene, "where the robot maps", false, true}, e.scene);
-  visit(WorldSource{"robot", kRobot, "which one; without: the suite's"}, e.robot);
-  visit(WorldSource{"mapping_tour", kMotion, "its way; without: auto", false, true},
-        e.mapping_tour);
+  visit(WorldSource{"robot", kRobot, "default: the suite's"}, e.robot);
+  visit(WorldSource{"mapping_tour", kMotion, "default: `auto:0`", false, true}, e.mapping_tour);
   visit(
       WorldSource{
           "kidnapped_tour", kTour,
@@ -77,14 +89,20 @@ void sources(E& e, Visit&& visit) {
           "of this tour and continues mapping",
           false, true},
       e.kidnapped_tour);
-  visit(WorldSource{"query_tour", kMotion, "the second tour; without: held-out frames alone", true,
-                    true},
+  visit(WorldSource{"query_tour", kMotion,
+                    "the second tour; default: only held-out frames are "
+                    "queries",
+                    true, true},
         e.query_tour);
-  visit(WorldSource{"query_scene", kScene, "the scene of the second tour, as it is by then", true,
-                    true},
+  visit(WorldSource{"query_scene", kScene,
+                    "another scene for the second tour: furniture moved, "
+                    "lights changed",
+                    true, true},
         e.query_scene);
-  visit(WorldSource{"sensors", kLevel, "in the place of the level's settings"}, e.sensors);
-  visit(WorldSource{"pedestrian", kPedestrian, "present while the robot maps", false, true},
+  visit(
+      WorldSource{"sensors", kLevel, "sensor settings of this environment instead of the level's"},
+      e.sensors);
+  visit(WorldSource{"pedestrian", kPedestrian, "walks while the robot maps", false, true},
         e.pedestrian);
 }
 
@@ -131,6 +149,11 @@ struct Environments {
 ///         name or of one place, a missing file.
 Environments read_environments(const YamlReader& list, const SuitePaths& paths,
                                const std::optional<std::filesystem::path>& default_robot);
+
+/// A source that a suite names: a file, or what is generated. @param index  replaces {i}
+/// @throws InputError at this place
+std::filesystem::path read_source(SourceKind kind, const YamlReader& node, const SuitePaths& paths,
+                                  int index = 0);
 
 /// The file that a suite names; if it does not exist, the shipped file of that name.
 /// @throws InputError at this place if it must exist and does not.

@@ -8,33 +8,55 @@
 #include <vector>
 
 #include "bench/suite/environment.hpp"
+#include "slam/io/setting.hpp"
 #include "slam/io/yaml.hpp"
 
 namespace mh {
 
 /// What is different when the robot is kidnapped from when it mapped.
 struct EpisodeVariant {
-  std::string name = "as_mapped";                        ///< unique, valid as a folder name
-  std::optional<std::filesystem::path> scene = {};       ///< furniture moved, evening light
-  std::optional<std::filesystem::path> pedestrian = {};  ///< walks about
-  std::optional<std::filesystem::path> level = {};       ///< of the robot's camera
+  std::string name = "as_mapped";  ///< unique, valid as a folder name
+  std::optional<std::filesystem::path> scene = {}, pedestrian = {}, level = {};
   friend bool operator==(const EpisodeVariant&, const EpisodeVariant&) = default;
 };
 
+/// Lists the sources of a variant: visit(WorldSource, optional path).
+template <MaybeConst<EpisodeVariant> V, class Visit>
+void sources(V& variant, Visit&& visit) {
+  using enum SourceKind;
+  visit(WorldSource{"scene", kScene, "furniture moved, evening light"}, variant.scene);
+  visit(WorldSource{"pedestrian", kPedestrian, "present during the episodes"}, variant.pedestrian);
+  visit(WorldSource{"level", kLevel, "of the robot's camera"}, variant.level);
+}
+
 /// Kidnappings of a robot, as data: the same starts for every system (docs/navigation.md).
 struct EpisodesSpec {
-  std::size_t starts = 10;         ///< of each variant in each environment
-  std::uint64_t seed = 0;          ///< of starts and noise
-  std::vector<std::string> goals;  ///< names of classes; each start draws one that is there
-  double limit_s = 240;            ///< simulated time of one episode
-  double arrival_m = 1.0;          ///< success: its center is no farther from the thing
-  int ticks_per_frame = 3;         ///< of the camera: 3 of 30 Hz are 10 Hz
-  double dark_s = 1.0;             ///< blank frames at the start
+  std::vector<std::string> goals;
+  std::size_t starts = 10;
+  std::uint64_t seed = 0;
+  double limit_s = 240;
+  double arrival_m = 1.0;
+  int ticks_per_frame = 3;
+  double dark_s = 1.0;
   std::vector<EpisodeVariant> variants = {{}};
   friend bool operator==(const EpisodesSpec&, const EpisodesSpec&) = default;
 };
 
-/// Reads the section `episodes` of a suite: `goals`, and optionally the other fields.
+/// All but the variants, which are lists of sources().
+template <MaybeConst<EpisodesSpec> E, class Visit>
+void fields(E& episodes, Visit& v) {
+  auto& [goals, starts, seed, limit_s, arrival_m, ticks_per_frame, dark_s, variants] = episodes;
+  v("goals", goals, setting::required({}), "classes; each start draws one that the scene has");
+  v("starts", starts, {1, 100000}, "of each variant in each environment");
+  v("seed", seed, setting::kSeed, "of starts and noise");
+  v("limit_s", limit_s, {1, 3600}, "simulated time of an episode");
+  v("arrival_m", arrival_m, {0.5, 10},
+    "success: the robot's center is at most this far from the object");
+  v("ticks_per_frame", ticks_per_frame, {1, 60}, "of the camera's 30 Hz: 3 are 10 Hz");
+  v("dark_s", dark_s, {0, 60}, "blank frames at the start; less than limit_s");
+}
+
+/// Reads the section `episodes` of a suite.
 /// @throws InputError naming file, line, field and value: a goal that is no class (with
 /// suggestions), two variants of one name, a missing file.
 EpisodesSpec read_episodes(YamlReader node, const SuitePaths& paths);

@@ -26,11 +26,12 @@ struct GradedSpec {
 template <MaybeConst<GradedSpec> G, class Visit>
 void fields(G& graded, Visit& v) {
   auto& [distance_m, angle_deg, per_bin, seed, speed, least_shown] = graded;
-  v("distance_m", distance_m, {0, 100},
+  using setting::required;
+  v("distance_m", distance_m, required({0, 100}),
     "edges of the bins of distance from the nearest mapped view");
-  v("angle_deg", angle_deg, {0, 180}, "edges of the bins of angle from it");
+  v("angle_deg", angle_deg, required({0, 180}), "edges of the bins of angle from it");
   v("per_bin", per_bin, {1, 1000}, "queries of each pair of bins");
-  v("seed", seed, {}, "of the draw");
+  v("seed", seed, setting::kSeed, "of the draw");
   v("speed", speed, {0.1, 10},
     "multiples of the speed at which each query's scan by hand is played");
   v("least_shown", least_shown, {0, 1},
@@ -44,8 +45,7 @@ inline std::size_t bins(const std::vector<double>& edges) {
   return edges.empty() ? 0 : edges.size() - 1;
 }
 
-/// Reads the section `graded` of a suite: `distance_m`, `angle_deg`, and optionally `per_bin`,
-/// `seed`, `speed`, `least_shown`. @throws InputError naming file, line, field and value.
+/// Reads the section `graded` of a suite. @throws InputError naming file, line, field and value.
 GradedSpec read_graded(YamlReader node);
 
 }  // namespace mh

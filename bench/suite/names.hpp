@@ -2,8 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,11 +21,14 @@ inline std::vector<YamlReader> items_of(const YamlReader& node) {
   return items;
 }
 
+/// @param values  of the items of the list. @throws InputError at the first that repeats another.
 template <class T>
-void add_once(std::vector<T>& list, T value, const YamlReader& node) {
-  if (std::find(list.begin(), list.end(), value) != list.end())
-    node.fail(fmt::format("'{}' stands twice", node.as_string()));
-  list.push_back(std::move(value));
+void require_distinct(const YamlReader& list, const std::vector<T>& values) {
+  const std::vector<YamlReader> items = list.items();
+  for (std::size_t i = 1; i < items.size(); ++i)
+    if (std::find(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values[i]) !=
+        values.begin() + static_cast<std::ptrdiff_t>(i))
+      items[i].fail(fmt::format("'{}' is listed twice", values[i]));
 }
 
 /// @throws InputError at this place unless the name is valid as a folder name.

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
-#include <cmath>
 #include <functional>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "slam/io/error.hpp"
+#include "slam/io/settings_io.hpp"
 
 namespace mh {
 namespace {
@@ -65,11 +65,6 @@ std::string quoted_placeholder(const std::string& command) {
   return {};
 }
 
-void check_limit(const OutsideProgram& program, std::string_view what, double value, bool zero) {
-  if (!std::isfinite(value) || value < 0 || (value == 0 && !zero))
-    throw InputError(fmt::format("{}: {}: {} is out of range", program.name, what, value));
-}
-
 }  // namespace
 
 std::string shell_quoted(std::string_view value) {
@@ -105,10 +100,11 @@ void validate(const OutsideProgram& program) {
     fail(fmt::format("{} stands within quotes: its value comes quoted", quoted));
   if (dataset && !writes_trajectory)
     fail("{trajectory} is missing: where is it to write its poses?");
-  check_limit(program, "time limit", program.run_limit_s, false);
-  check_limit(program, "time limit of a reply", program.reply_limit_s, false);
-  check_limit(program, "memory limit", program.memory_limit_mb, true);
-  check_limit(program, "disk limit", program.disk_limit_mb, true);
+  limits(program, [&](const char* key, double value, const SettingRange& range, auto&&...) {
+    if (!allows(range, value))
+      throw InputError(
+          fmt::format("{}: {}: {} is outside {}", program.name, key, value, interval(range)));
+  });
 }
 
 std::string fill_in(std::string_view command, std::string_view placeholder,

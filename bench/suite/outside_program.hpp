@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "slam/io/setting.hpp"
 
 namespace mh {
 
@@ -23,10 +26,7 @@ struct OutsideProgram {
   std::string command = {};  ///< for /bin/sh, with placeholders ({dataset}); empty for a library
   OutsideMode mode = OutsideMode::kTrajectory;
   std::filesystem::path folder = ".";  ///< the suite's: where the command runs
-  double run_limit_s = 3600;           ///< wall time of a whole run in trajectory mode, > 0
-  double reply_limit_s = 60;           ///< wall time of one reply in a conversation, > 0
-  double memory_limit_mb = 0;          ///< resident, the program and its descendants; 0 = none
-  double disk_limit_mb = 4096;  ///< each file that it writes, and its folder's growth; 0 = none
+  double run_limit_s = 3600, reply_limit_s = 60, memory_limit_mb = 0, disk_limit_mb = 4096;
   /// Files that it reads in addition to those that the command names, relative to its folder.
   std::vector<std::string> inputs = {};
   std::string library = {};   ///< in mode kLibrary the file to load, relative to the folder
@@ -35,6 +35,25 @@ struct OutsideProgram {
   std::vector<std::filesystem::path> hidden = {};
   std::string place = {};  ///< "suite.yaml:12", for messages; empty: not from a file
 };
+
+/// Lists the limits of a command: visit(key, value, range, meaning, the only mode that it applies
+/// to; none: both).
+template <MaybeConst<OutsideProgram> P, class Visit>
+void limits(P& p, Visit&& visit) {
+  const auto both = std::optional<OutsideMode>();
+  visit("run_limit_s", p.run_limit_s, SettingRange{0.01, 1e7}, "wall time of the whole program",
+        std::optional(OutsideMode::kTrajectory));
+  visit("reply_limit_s", p.reply_limit_s, SettingRange{0.01, 1e7}, "wall time of one reply",
+        std::optional(OutsideMode::kConversation));
+  visit("memory_limit_mb", p.memory_limit_mb, SettingRange{0, 1e9},
+        "resident memory of the program and everything it started, checked twice a second; 0: no "
+        "limit",
+        both);
+  visit("disk_limit_mb", p.disk_limit_mb, SettingRange{0, 1e9},
+        "how much it may write: exact for each file; the growth of its folder is checked as often "
+        "as memory; 0: no limit",
+        both);
+}
 
 /// Refuses an empty command or library, limits out of range, an unknown placeholder and a
 /// trajectory command without {trajectory}. Known placeholders: {dataset} {associations} {settings}

@@ -34,12 +34,13 @@ void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
     check_varied(name, list, sweep.map);
     sweep.varied.push_back(name);
     const std::vector<YamlReader> items = items_of(list);
-    std::vector<std::string> seen;
+    std::vector<std::string> values;
     for (const YamlReader& item : items) {
       SlamConfig value = base;
       read_setting(value, name, item);
-      add_once(seen, setting_text(value, name), item);
+      values.push_back(setting_text(value, name));
     }
+    require_distinct(list, values);
     // Checked before allocation: two long lists would use all memory.
     const std::size_t count = sweep.points.size() * items.size();
     if (count > kMaxPoints)

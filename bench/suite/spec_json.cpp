@@ -88,17 +88,10 @@ Json optional_json(const std::optional<T>& value) {
 Json to_json(const SystemSpec& system) {
   const OutsideProgram& p = system.outside;
   Json json = {{"kind", name(system.kind)}, {"name", system.name}};
-  if (system.is_outside())
-    json["outside"] = {{"command", p.command},
-                       {"mode", name(p.mode)},
-                       {"folder", p.folder.string()},
-                       {"run_limit_s", p.run_limit_s},
-                       {"reply_limit_s", p.reply_limit_s},
-                       {"memory_limit_mb", p.memory_limit_mb},
-                       {"disk_limit_mb", p.disk_limit_mb},
-                       {"inputs", p.inputs},
-                       {"library", p.library},
-                       {"settings", p.settings}};
+  if (!system.is_outside()) return json;
+  json["outside"] = {{"command", p.command}, {"mode", name(p.mode)}, {"folder", p.folder.string()},
+                     {"inputs", p.inputs},   {"library", p.library}, {"settings", p.settings}};
+  limits(p, [&](const char* key, double value, auto&&...) { json["outside"][key] = value; });
   return json;
 }
 
@@ -115,13 +108,10 @@ SystemSpec system_from_json(const Json& json) {
         .mode = named(p.at("mode"), {OutsideMode::kTrajectory, OutsideMode::kConversation,
                                      OutsideMode::kLibrary}),
         .folder = p.at("folder").get<std::string>(),
-        .run_limit_s = p.at("run_limit_s"),
-        .reply_limit_s = p.at("reply_limit_s"),
-        .memory_limit_mb = p.at("memory_limit_mb"),
-        .disk_limit_mb = p.at("disk_limit_mb"),
         .inputs = p.at("inputs").get<std::vector<std::string>>(),
         .library = p.at("library"),
         .settings = p.at("settings")};
+    limits(system.outside, [&](const char* key, double& value, auto&&...) { value = p.at(key); });
   }
   return system;
 }
@@ -228,6 +218,10 @@ RunSpec read(const Json& json) {
 
 Json to_json(const GradedSpec& graded) {
   return section_json(graded);
+}
+
+Json to_json(const EpisodesSpec& episodes) {
+  return section_json(episodes);
 }
 
 Json to_json(const SceneFrame& frame) {

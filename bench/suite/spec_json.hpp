@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/suite/episodes_spec.hpp"
 #include "bench/suite/graded_spec.hpp"
 #include "bench/suite/runs.hpp"
 
@@ -13,6 +14,8 @@ nlohmann::ordered_json to_json(const SemanticConfig& settings);
 nlohmann::ordered_json to_json(const SlamConfig& settings);
 nlohmann::ordered_json to_json(const ProtocolConfig& protocol);
 nlohmann::ordered_json to_json(const GradedSpec& graded);
+/// All but its variants.
+nlohmann::ordered_json to_json(const EpisodesSpec& episodes);
 /// Only the fields that are set: none set gives {}.
 nlohmann::ordered_json to_json(const SceneFrame& frame);
 /// Everything about a run, with paths unchanged: the input of a separate process.

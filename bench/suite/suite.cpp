@@ -25,10 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Names<Published, 1> kPublished{{{"table2", Published::kTable2}}};
-constexpr Names<Measure, 2> kMeasures{
-    {{"correct", Measure::kCorrect}, {"success", Measure::kSuccess}}};
-
 /// @throws InputError at this place if no system of the suite has the name.
 std::size_t system_named(const YamlReader& node, const std::vector<SystemSpec>& systems) {
   const std::string name = node.as_string();
@@ -58,7 +54,7 @@ std::vector<SystemPair> read_compare(YamlReader& yaml, const std::vector<SystemS
     if (names.size() != 2) item.fail("must be two systems: [first, second]");
     const SystemPair pair{system_named(names[0], systems), system_named(names[1], systems)};
     if (pair.first == pair.second) item.fail("compares a system with itself");
-    if (std::ranges::find(pairs, pair) != pairs.end()) item.fail("stands twice");
+    if (std::ranges::find(pairs, pair) != pairs.end()) item.fail("is listed twice");
     pairs.push_back(pair);
   }
   return pairs;
@@ -83,7 +79,7 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
     for (const YamlReader& level : items_of(yaml.at("levels"))) {
       levels.push_back(named_file(level, paths, Shipped::kLevel));
       const std::string name = level_name(levels.back());
-      if (!names.insert(name).second) level.fail(fmt::format("'{}' stands twice", name));
+      if (!names.insert(name).second) level.fail(fmt::format("'{}' is listed twice", name));
       if (name == kRecordedLevel) level.fail("is what the level of recordings is called");
     }
   } else if (const auto named = yaml.find("levels")) {
@@ -110,7 +106,8 @@ std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
   for (const YamlReader& node : items_of(list)) {
     const Labels labels = read_label_source(node, folder);
     const auto same = [&](const Labels& l) { return name(l) == name(labels); };
-    if (std::ranges::any_of(all, same)) node.fail(fmt::format("'{}' stands twice", name(labels)));
+    if (std::ranges::any_of(all, same))
+      node.fail(fmt::format("'{}' is listed twice", name(labels)));
     check_boxes(node, labels, suite);
     all.push_back(labels);
     if (std::ranges::any_of(suite.environments,
@@ -178,10 +175,6 @@ YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
 
 }  // namespace
 
-std::string_view name(Measure measure) {
-  return name_of(measure, kMeasures);
-}
-
 bool fits(const Environment& environment, const Labels& labels) {
   return labels.mode == LabelMode::kNone ||
          environment.is_recorded() == (labels.mode == LabelMode::kRecorded);
@@ -228,7 +221,8 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   std::set<std::string> names;
   for (const YamlReader& system : items_of(yaml.at("systems"))) {
     for (SystemSpec& spec : read_systems(system, paths)) {
-      if (!names.insert(spec.name).second) system.fail(fmt::format("'{}' stands twice", spec.name));
+      if (!names.insert(spec.name).second)
+        system.fail(fmt::format("'{}' is listed twice", spec.name));
       suite.systems.push_back(std::move(spec));
     }
   }
@@ -236,12 +230,9 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   if (yaml.has("vocabulary") || std::ranges::any_of(suite.systems, &SystemSpec::takes_settings))
     suite.vocabulary = named_file(yaml.at("vocabulary"), paths, Shipped::kVocabulary);
   suite.labels = read_labels(yaml.at("labels"), suite, paths.folder);
-  suite.trials = static_cast<int>(yaml.integer_or("trials", suite.trials, 1, 1000));
-  suite.seed = static_cast<std::uint64_t>(yaml.integer_or("seed", 0, 0, INT64_MAX / 2));
+  MappingReader reader(yaml);
+  fields(suite, reader);
   if (const auto study = yaml.find("study")) check_design(*study, paths);
-  if (const auto published = yaml.find("published"))
-    suite.published = one_of(*published, kPublished);
-  if (const auto measure = yaml.find("measure")) suite.measure = one_of(*measure, kMeasures);
   bool states_readout = false;
   if (auto slam = yaml.find("slam")) {
     states_readout = slam->has("track") && slam->at("track").has("readout_s");
@@ -293,8 +284,6 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
       if (e.is_recorded())
         episodes->fail(fmt::format("a robot drives in a scene, and '{}' is a recording", e.name));
   }
-  if (const auto margin = yaml.find("non_inferiority_margin"))
-    suite.non_inferiority_margin = margin->as_double(0.0, 1.0);
   if (const auto check = yaml.find("check")) {
     std::vector<std::string> names_of_all;
     for (const Environment& e : suite.environments) names_of_all.push_back(e.name);

@@ -19,14 +19,22 @@
 #include "bench/suite/system_spec.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "slam/config/shared.hpp"
+#include "slam/io/setting.hpp"
+#include "slam/io/words.hpp"
 
 namespace mh {
 
 /// A table of the paper that a suite reproduces.
 enum class Published { kTable2 };
+constexpr Names<Published, 1> setting_words(Published) {
+  return {{{"table2", Published::kTable2}}};
+}
 
 /// By which share of a system's answers it is judged.
 enum class Measure { kCorrect, kSuccess };
+constexpr Names<Measure, 2> setting_words(Measure) {
+  return {{{"correct", Measure::kCorrect}, {"success", Measure::kSuccess}}};
+}
 
 /// Two systems of a suite, by index.
 struct SystemPair {
@@ -35,7 +43,9 @@ struct SystemPair {
 };
 
 /// "correct", "success"
-std::string_view name(Measure measure);
+constexpr std::string_view name(Measure measure) {
+  return name_of(measure, setting_words(measure));
+}
 
 /// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
 struct Suite {
@@ -49,7 +59,7 @@ struct Suite {
   std::vector<SystemSpec> systems;
   std::vector<Labels> labels;
   int trials = 1;
-  std::uint64_t seed = 0;  ///< trial t uses seed + t
+  std::uint64_t seed = 0;
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
@@ -59,12 +69,9 @@ struct Suite {
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;
-  /// What decides which system is better; the other share stands beside it.
   Measure measure = Measure::kCorrect;
-  /// The first of a pair is non-inferior if the confidence interval of its share by `measure` minus
-  /// the second's lies above -margin. Fixed in the suite, before any measurement.
   std::optional<double> non_inferiority_margin;
-  std::optional<Published> published;      ///< results to show next to the measured ones
+  std::optional<Published> published;
   GateConfig gate;                         ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;   ///< truncates the tours: for a quick look
   bool scene_replaced = false;             ///< SuiteOverrides::scene was set
@@ -72,6 +79,20 @@ struct Suite {
   FoundRecordings found;                   ///< recordings that the suite's patterns matched
   std::vector<std::string> notes;          ///< what it leaves out, one line each
 };
+
+/// Lists the settings of a suite that are single values.
+template <MaybeConst<Suite> S, class Visit>
+void fields(S& suite, Visit& v) {
+  v("trials", suite.trials, {1, 1000}, "repeats; trial t uses seed + t");
+  v("seed", suite.seed, setting::kSeed, "of the first trial");
+  v("measure", suite.measure, {},
+    "the share of a system's answers that decides which system is better; the other one is shown, "
+    "too");
+  v("non_inferiority_margin", suite.non_inferiority_margin, setting::kShare,
+    "stated in advance: a system is not worse if the interval of its share minus the other's lies "
+    "above minus this");
+  v("published", suite.published, {}, "figures of the paper to show below the measured ones");
+}
 
 /// What the command line may override in a suite.
 struct SuiteOverrides {

@@ -15,27 +15,30 @@ constexpr Names<SystemKind, 2> kOurs{
     {{"semantic", SystemKind::kSemantic}, {"plain", SystemKind::kPlain}}};
 constexpr Names<OutsideMode, 2> kModes{
     {{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
-constexpr double kLongest_s = 1e7;
 
 void read_command(YamlReader& node, OutsideProgram& program) {
   program.command = node.string("command");
   program.mode = one_of(node.at("protocol"), kModes);
-  const bool is_trajectory = program.mode == OutsideMode::kTrajectory;
-  if (const auto other = node.find(is_trajectory ? "reply_limit_s" : "run_limit_s"))
-    other->fail(fmt::format("is of protocol '{}'", is_trajectory ? "conversation" : "trajectory"));
-  program.run_limit_s = node.number_or("run_limit_s", program.run_limit_s, 0.01, kLongest_s);
-  program.reply_limit_s = node.number_or("reply_limit_s", program.reply_limit_s, 0.01, kLongest_s);
-  program.memory_limit_mb = node.number_or("memory_limit_mb", program.memory_limit_mb, 0.0, 1e9);
-  program.disk_limit_mb = node.number_or("disk_limit_mb", program.disk_limit_mb, 0.0, 1e9);
+  limits(program, [&](const char* key, double& value, const SettingRange& range, const char*,
+                      std::optional<OutsideMode> only) {
+    const auto limit = node.find(key);
+    if (!limit) return;
+    if (only && *only != program.mode)
+      limit->fail(fmt::format("applies only to protocol '{}'", name(*only)));
+    MappingReader::read(*limit, value, range);
+  });
 }
 
 void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& paths) {
   program.mode = OutsideMode::kLibrary;
   program.library = node.string("library");
-  for (const char* key :
-       {"command", "protocol", "run_limit_s", "reply_limit_s", "memory_limit_mb", "disk_limit_mb"})
+  const auto refuse = [&](const char* key, auto&&...) {
     if (const auto other = node.find(key))
       other->fail("is of a command: a library runs in the bench's own process");
+  };
+  refuse("command");
+  refuse("protocol");
+  limits(program, refuse);
   if (const auto settings = node.find("settings")) {
     named_file(*settings, paths);
     program.settings = settings->as_string();

@@ -16,8 +16,8 @@
 
 namespace mh {
 
-// Visitors of settings' field lists. A setting is an int, a double, a bool, an enumeration E, whose
-// Names setting_words(E) returns, or an optional of one of these.
+// Visitors of settings' field lists. A setting is an int, a double, a bool, a text, an enumeration
+// E, whose Names setting_words(E) returns, or an optional or a vector of one of these.
 
 /// "[0, 1)"
 inline std::string interval(const SettingRange& range) {
@@ -48,8 +48,14 @@ class MappingReader {
   static void read(const YamlReader& node, T& value, const SettingRange& range) {
     if constexpr (kIsOptional<T>) {
       read(node, value.emplace(), range);
+    } else if constexpr (kIsVector<T>) {
+      value.clear();
+      for (const YamlReader& item : node.items()) read(item, value.emplace_back(), range);
+      if (value.empty()) node.fail("is empty: at least one is needed");
     } else if constexpr (std::is_same_v<T, bool>) {
       value = node.as_bool();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      value = node.as_string();
     } else if constexpr (std::is_enum_v<T>) {
       value = one_of(node, setting_words(T{}));
     } else if constexpr (std::is_integral_v<T>) {
@@ -119,6 +125,12 @@ class SettingsWriter {
   static std::string word_of(const T& value) {
     if constexpr (std::is_enum_v<T>) {
       return std::string(name_of(value, setting_words(T{})));
+    } else if constexpr (kIsOptional<T>) {
+      return value ? word_of(*value) : "none";
+    } else if constexpr (kIsVector<T>) {
+      std::string list;
+      for (const auto& item : value) list += (list.empty() ? "" : ", ") + word_of(item);
+      return "[" + list + "]";
     } else {
       return fmt::format("{}", value);  // doubles: the shortest text that reads back equal
     }

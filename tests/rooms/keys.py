@@ -26,6 +26,7 @@ CHANGES = {  # a file, and the keys that it changes
     "sim/sensors/develop.cpp": {"RUN"},
     "bench/suite/environment.hpp": {"RUN"},
     "bench/protocol/query.cpp": {"RUN"},
+    "bench/protocol/summarize.cpp": {"RUN"},
     "bench/systems/hiding.cpp": {"RUN"},
     "bench/run/run_one.cpp": {"RUN"},
     "bench/run/episodes/judge.cpp": {"EPISODES"},

@@ -37,11 +37,9 @@ using Slot = std::pair<std::string, std::size_t>;  ///< variant, start
 
 /// Everything about the episodes that decides one of them, except how many there are.
 std::string text_of(const EpisodesSpec& spec, const std::vector<InputDigest>& inputs) {
-  nlohmann::ordered_json json = {
-      {"seed", spec.seed},          {"goals", spec.goals},
-      {"limit_s", spec.limit_s},    {"arrival_m", spec.arrival_m},
-      {"dark_s", spec.dark_s},      {"ticks_per_frame", spec.ticks_per_frame},
-      {"code", code_of_episodes()}, {"variants", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = to_json(spec);
+  json.erase("starts");
+  json["code"] = code_of_episodes();
   for (const EpisodeVariant& variant : spec.variants) json["variants"].push_back(variant.name);
   for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);
   return json.dump();

@@ -125,7 +125,7 @@ TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
   write_suite("soaf");
   refused(episode, "soaf");
   write_suite("sofa, sofa");
-  refused(episode, "'sofa' stands twice");
+  refused(episode, "'sofa' is listed twice");
   EXPECT_FALSE(fs::exists(out("none") + "/episode.json"));
 }
 

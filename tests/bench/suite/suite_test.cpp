@@ -183,7 +183,7 @@ TEST_F(SuiteFile, NeedsAVocabularyForOurOwnSystemsAlone) {
       load_with(other);
       ADD_FAILURE() << other;
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(fmt::format("{}: is of protocol '", key)),
+      EXPECT_NE(std::string(error.what()).find(fmt::format("{}: applies only to protocol '", key)),
                 std::string::npos)
           << error.what();
     }
@@ -262,7 +262,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"compare: [[semantic, plian]]\n", "'plian' is not one of the suite's systems"},
         BadLine{"compare: [[semantic]]\n", "must be two systems"},
         BadLine{"compare: [[plain, plain]]\n", "compares a system with itself"},
-        BadLine{"compare: [[semantic, plain], [semantic, plain]]\n", "stands twice"},
+        BadLine{"compare: [[semantic, plain], [semantic, plain]]\n", "is listed twice"},
         BadLine{"parameters: {map: fixed}\n", "varies nothing"},
         BadLine{"parameters: {semantics.alpha: [0.5]}\n", "key 'map' is missing"},
         BadLine{"parameters: {map: new, semantics.alpha: [0.5]}\n",
@@ -273,7 +273,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "parameters.semantics.xi[0]: 0.5 is outside"},
         BadLine{"parameters: {map: fixed, semantics.gamma: [-1]}\n",
                 "parameters.semantics.gamma[0]: -1 is outside"},
-        BadLine{"parameters: {map: fixed, semantics.gamma: [1, 1]}\n", "'1' stands twice"},
+        BadLine{"parameters: {map: fixed, semantics.gamma: [1, 1]}\n", "'1' is listed twice"},
         BadLine{"parameters: {map: fixed, semantics.gamma: []}\n", "is empty"},
         BadLine{"parameters: {map: fixed, delta: [1]}\n",
                 "parameters.delta: is not a setting of SLAM"},
@@ -300,7 +300,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(SuiteFile, RefusesEmptyAndDoubledLists) {
   EXPECT_NE(error("", "[]").find("suite.yaml:5: levels: is empty"), std::string::npos);
-  EXPECT_NE(error("", "[pepper.yaml, pepper.yaml]").find("stands twice"), std::string::npos);
+  EXPECT_NE(error("", "[pepper.yaml, pepper.yaml]").find("is listed twice"), std::string::npos);
   EXPECT_NE(error("", "[ideal.yaml]").find("no such file"), std::string::npos);
   EXPECT_NE(error("", "[pepper.yaml]", "[]").find("labels: is empty"), std::string::npos);
   EXPECT_NE(error("", "[pepper.yaml]", "exact").find("labels: must be a list"), std::string::npos);
@@ -556,7 +556,7 @@ TEST_F(SuiteFile, AnOutsideProgramIsOneForEachValueOfItsOwnParameters) {
   EXPECT_THROW(load_with("slam {dataset} {trajectory}", "n: [1]"), InputError) << "not in it";
   EXPECT_THROW(load_with("slam {n} {trajectory}", "n: []"), InputError);
   EXPECT_THROW(load_with("slam {n} {trajectory}", "m: [1]"), InputError);
-  EXPECT_THROW(load_with("slam {n} {trajectory}", "n: [1, 1]"), InputError) << "stands twice";
+  EXPECT_THROW(load_with("slam {n} {trajectory}", "n: [1, 1]"), InputError) << "is listed twice";
 }
 
 TEST_F(SuiteFile, AnOutsideProgramsRunIsNamedByWhatItsFilesHold) {
@@ -835,8 +835,8 @@ TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
   says("[{of: exact, name: boxes, confusion: 0.2}]", "'boxes' is a kind of labels");
   says("[{of: exact, name: a, confusion: 1.2}]", "1.2");
   says("[{of: exact, name: a, confused: 0.2}]", "confused");
-  says("[{of: exact, name: a}, {of: boxes, name: a}]", "'a' stands twice");
-  says("[{network: a.onnx}, {network: b/a.onnx}]", "'a' stands twice");
+  says("[{of: exact, name: a}, {of: boxes, name: a}]", "'a' is listed twice");
+  says("[{network: a.onnx}, {network: b/a.onnx}]", "'a' is listed twice");
 }
 
 TEST(ShippedSuites, AreWellFormed) {
@@ -887,11 +887,11 @@ TEST_F(SuiteFile, RefusesBadGradedQueries) {
   EXPECT_NE(complaint("{distance_m: [0, 1]}").find("angle_deg"), std::string::npos);
   EXPECT_NE(complaint("{distance_m: [1], angle_deg: [0, 9]}").find("at least two"),
             std::string::npos);
-  EXPECT_NE(complaint("{distance_m: [0, 2, 1], angle_deg: [0, 9]}").find("edges grow"),
+  EXPECT_NE(complaint("{distance_m: [0, 2, 1], angle_deg: [0, 9]}").find("edges must grow"),
             std::string::npos);
-  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 200]}").find("outside 0 to 180"),
+  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 200]}").find("outside [0, 180]"),
             std::string::npos);
-  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 9], speed: [0]}").find("0.1 to 10"),
+  EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 9], speed: [0]}").find("[0.1, 10]"),
             std::string::npos);
   EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 9], per_bin: 0}").find("per_bin"),
             std::string::npos);

@@ -47,11 +47,11 @@ TEST(EpisodesSpec, IsReadAndItsMistakesAreNamed) {
   EXPECT_TRUE(suite.episodes->variants[1].level);
 
   const std::string typo = refusal("  goals: [refrigratr]\n");
-  EXPECT_NE(typo.find("'refrigratr' is no class of things"), std::string::npos) << typo;
+  EXPECT_NE(typo.find("'refrigratr' is not a class of objects"), std::string::npos) << typo;
   EXPECT_NE(typo.find("did you mean 'refrid"), std::string::npos) << typo;
   EXPECT_NE(refusal("  goals: []\n").find("at least one"), std::string::npos);
   EXPECT_NE(refusal("  goals: [bed]\n  starts: 0\n").find("starts"), std::string::npos);
-  EXPECT_NE(refusal("  goals: [bed]\n  variants: [{name: a}, {name: a}]\n").find("stands twice"),
+  EXPECT_NE(refusal("  goals: [bed]\n  variants: [{name: a}, {name: a}]\n").find("is listed twice"),
             std::string::npos);
   EXPECT_NE(refusal("  goals: [bed]\n  limit_s: 5\n  dark_s: 5\n").find("leaves nothing of"),
             std::string::npos);

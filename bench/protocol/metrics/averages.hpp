@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace mh {
+
+/// The middle value (mean of the two middle ones); 0 for an empty list.
+double median(std::vector<double> values);
+/// The median of the known values; absent if none is known.
+std::optional<double> median_of_known(std::span<const std::optional<double>> values);
+/// 0 for an empty list.
+double mean(std::span<const double> values);
+
+}  // namespace mh

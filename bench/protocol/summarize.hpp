@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bench/protocol/metrics/mapping_counts.hpp"
+#include "bench/protocol/run_result.hpp"
+
+// The figures of one run. The store keeps them: this code is in the key of a run.
+
+namespace mh {
+
+QuerySummary summarize(std::span<const QueryScore> queries);
+
+MappingCounts count(const MappingOutcome& mapping);
+
+/// Every figure of a run under one of its parameter points, under its name in all_metrics(). A
+/// query set that was not used has none.
+std::vector<Figure> figures_of(const RunResult& run, std::size_t point);
+
+}  // namespace mh
