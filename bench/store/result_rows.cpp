@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/results/summary.hpp"
+#include "bench/protocol/summarize.hpp"
 #include "bench/store/columns.hpp"
 #include "bench/store/frame_row.hpp"
 #include "bench/suite/run_key.hpp"
