@@ -274,8 +274,8 @@ TEST_F(CommandLine, BashCompletesCommandsOptionsAndNames) {
 }
 
 TEST_F(CommandLine, ReferencePagesAreWhatTheCodeSays) {
-  for (const char* what :
-       {"furniture", "materials", "classes", "robot", "slam", "sensors", "protocol", "detector"}) {
+  for (const char* what : {"furniture", "materials", "classes", "robot", "slam", "sensors",
+                           "protocol", "detector", "suite"}) {
     ASSERT_EQ(run(std::string("reference ") + what), 0);
     EXPECT_GT(std::count(out_.begin(), out_.end(), '\n'), 15) << what;
     EXPECT_EQ(out_,
