@@ -11,7 +11,7 @@ struct KeyframeConfig {
   double min_tracked_share = 0.5;  ///< of the reference keyframe's landmarks
   int min_close_tracked = 100;     ///< fewer tracked close points than this, and
   int min_close_new = 70;          ///< more untracked close points than this: a keyframe is needed
-  double close_depth_m = 3.5;      ///< up to here a landmark is created from depth at once
+  double close_depth_m = 3.5;      ///< up to here, landmarks are created from depth at once
   double redundant_share = 0.9;    ///< of a keyframe's landmarks seen by 3 others: culled
   friend bool operator==(const KeyframeConfig&, const KeyframeConfig&) = default;
 };

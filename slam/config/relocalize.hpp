@@ -12,17 +12,17 @@ namespace mh {
 
 /// What it takes to accept a candidate keyframe's pose.
 enum class Acceptance {
-  kOurs,     ///< any consensus of ransac.min_inliers; guided searches follow whatever its size
-  kOrbSlam2  ///< as ORB-SLAM2 accepts (Mur-Artal and Tardos 2017): see candidate_trial.hpp
+  kOurs,     ///< any consensus of ransac.min_inliers; guided searches follow, whatever its size
+  kOrbSlam2  ///< by ORB-SLAM2's rules (Mur-Artal and Tardos 2017): see candidate_trial.hpp
 };
 constexpr std::array<std::pair<std::string_view, Acceptance>, 2> setting_words(Acceptance) {
   return {{{"ours", Acceptance::kOurs}, {"orb_slam2", Acceptance::kOrbSlam2}}};
 }
 
-/// The similarity of a neighbor in equation 5 that shares words with the query, but no more than
-/// alpha of the most.
+/// The similarity, in equation 5, of a neighbor that shares words with the query but fails equation
+/// 4.
 enum class NeighborScores {
-  kFresh,      ///< with this query
+  kFresh,      ///< computed with this query
   kCleared,    ///< 0: ORB-SLAM2's mRelocScore if it were cleared before each query
   kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Answers
                ///< then depend on the order of the queries.
@@ -38,7 +38,7 @@ struct RelocalizeConfig {
   NeighborScores neighbor_scores = NeighborScores::kFresh;
   int min_word_matches = 15;
   int min_inliers = 50;  ///< to accept a pose
-  /// Around where a pose from few matches expects a landmark; the search after it uses 4 px.
+  /// Around where a pose from few matches predicts a landmark; the second search uses 4 px.
   double search_radius_px = 10;
   /// Standard deviation of a true pair's disparity error (in addition to the keypoint's own, as in
   /// Camera) before the pose is refined on the local map; never less than the camera's own. The

@@ -25,7 +25,7 @@ constexpr std::array<std::pair<std::string_view, Overlap>, 3> setting_words(Over
 /// Which candidates relocalization tries.
 enum class CandidateLists {
   kOne,        ///< those of Algorithm 1
-  kSideBySide  ///< in turns with those of Algorithm 1 over words alone
+  kSideBySide  ///< interleaved with those of Algorithm 1 over words alone
 };
 
 constexpr std::array<std::pair<std::string_view, CandidateLists>, 2> setting_words(CandidateLists) {

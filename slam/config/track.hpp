@@ -6,18 +6,17 @@
 namespace mh {
 
 struct TrackConfig {
-  int min_inliers = 20;            ///< after the local map, for a frame to count as tracked
-  int min_inliers_sparse = 10;     ///< lower limit where a sixth of the keypoints is fewer than
-                                   ///< min_inliers
-  int min_inliers_frame = 8;       ///< after the motion model
-  double search_radius_px = 15;    ///< around the predicted position, at octave 0
-  double local_radius_px = 5;      ///< around the position by the tracked pose, at octave 0
-  int local_keyframes = 60;        ///< at most, in the local map
-  double near_distance_m = 2.5;    ///< keyframes this near that
-  double near_angle_rad = 0.9;     ///< face within this angle join the local map, whatever they
-                                   ///< share
-  double sure_position_m = 0.015;  ///< a pose less certain than this (one standard deviation) or
-  double sure_angle_rad = 0.01;    ///< than this, by its image alone, is fused with the motion
+  int min_inliers = 20;          ///< after the local map, for a frame to count as tracked
+  int min_inliers_sparse = 10;   ///< lower limit where a sixth of the keypoints is fewer than
+                                 ///< min_inliers
+  int min_inliers_frame = 8;     ///< after the motion model
+  double search_radius_px = 15;  ///< around the predicted position, at octave 0
+  double local_radius_px = 5;    ///< around the position by the tracked pose, at octave 0
+  int local_keyframes = 60;      ///< at most, in the local map
+  double near_distance_m = 2.5;  ///< keyframes this near join the local map,
+  double near_angle_rad = 0.9;   ///< if they face within this angle, even without shared landmarks
+  double sure_position_m = 0.015;  ///< a pose with a larger standard deviation than this, or
+  double sure_angle_rad = 0.01;    ///< than this, from its image alone, is fused with the motion
   double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
   /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.
   /// 0: global shutter.

@@ -17,8 +17,8 @@ struct Distortion {
   bool none() const {
     return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0 && !is_rational();
   }
-  /// What the radius is multiplied by, from its square: (1 + k1 r^2 + k2 r^4 + k3 r^6) /
-  /// (1 + k4 r^2 + k5 r^4 + k6 r^6).
+  /// Factor of the radius, from its square: (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 +
+  /// k6 r^6).
   double radial(double r2) const {
     return (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
   }
@@ -35,7 +35,7 @@ struct Distortion {
 /// "k1 0.1, k2 0, ...", with k4 to k6 only where they are not 0.
 /// @param is  between a name and its value
 std::string text_of(const Distortion& distortion, const char* is = " ");
-/// @param coefficients  k1 k2 p1 p2 [k3 [k4 k5 k6]], those that are absent being 0
+/// @param coefficients  k1 k2 p1 p2 [k3 [k4 k5 k6]], absent ones are 0
 Distortion distortion_of(std::vector<double> coefficients);
 /// The inverse: five coefficients, or eight if k4 to k6 are not all 0.
 std::vector<double> coefficients_of(const Distortion& distortion);

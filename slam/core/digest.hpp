@@ -16,7 +16,7 @@ namespace mh {
 std::uint64_t digest_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
 /// Digest of the digests so far and the next one.
 std::uint64_t chained(std::uint64_t sum, std::uint64_t next);
-/// Of a file's bytes. @throws InputError if it cannot be read.
+/// Digest of a file's bytes. @throws InputError if it cannot be read.
 std::uint64_t digest_file(const std::filesystem::path& file, std::uint64_t seed = 0);
 std::uint64_t digest(const RgbdFrame& frame);  ///< stamp, color, depth and labels
 std::uint64_t digest(const std::optional<SE3>& pose);

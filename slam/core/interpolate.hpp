@@ -7,12 +7,12 @@
 
 namespace mh {
 
-/// Largest gap between neighbors in time that a pose may be interpolated between: held-out frames
-/// leave out one frame or two; beyond that, an interpolation is meaningless.
+/// Largest gap between two neighbors in time for a pose to be interpolated: held-out frames leave
+/// out one frame or two; beyond that, an interpolation is meaningless.
 inline constexpr Stamp kMaxNeighborGap_ns = 500'000'000;
 
-/// The same for the truth, which a recording may give at other moments than its frames'. Over this
-/// gap g a hand that accelerates by 5 m/s2 and 10 rad/s2 deviates from the interpolation by a
+/// The same for the truth, which a recording may give at other times than those of its frames. Over
+/// this gap g a hand that accelerates by 5 m/s2 and 10 rad/s2 deviates from the interpolation by a
 /// g^2/8: 1.6 mm and 0.2 degrees. It is less than two frames at 30 Hz, so that a frame whose own
 /// pose is invalid does not get one from its neighbors.
 inline constexpr Stamp kMaxTruthGap_ns = 50'000'000;

@@ -34,15 +34,15 @@ struct LinePlace {
 /// The poses of a file in the order of their stamps, and what was left out.
 class PoseCollector {
  public:
-  /// @param strict  nothing may be left out, nor come after a later stamp
+  /// @param strict  nothing may be left out, and stamps must be in order
   PoseCollector(const std::string& file, bool strict) : file_(file), strict_(strict) {}
 
   /// @param stamp  as written @throws BadPose if it repeats one
   void add(const TimedPose& pose, std::string_view stamp, const LinePlace& place);
   /// @throws InputError if strict
   void leave_out(const BadPose& line);
-  /// The poses; empties the collector. @param notes  receives what was left out or put in order
-  /// @throws InputError if more lines are no poses than are: the file is something else
+  /// The poses; empties the collector. @param notes  receives what was left out or sorted
+  /// @throws InputError if most lines are not poses: the file is something else
   Trajectory finish(std::vector<std::string>* notes);
   /// "; line 5: ..." for a message; empty if nothing was left out
   std::string first_fault() const { return first_fault_.empty() ? "" : "; line " + first_fault_; }
@@ -57,7 +57,7 @@ class PoseCollector {
   Trajectory poses_;
   std::set<Stamp> stamps_;
   Stamp latest_ns_ = 0;
-  std::size_t early_ = 0;  ///< poses behind a later one
+  std::size_t early_ = 0;  ///< poses that follow a later one
   std::array<std::size_t, 4> counts_{};
   std::string first_fault_, first_no_pose_;
 };

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n\v\f";
 
-/// A column's name in small letters, and the unit behind it in brackets.
+/// A column's name in lower case, and the unit after it in brackets.
 struct Name {
   std::string text, unit;
 };
@@ -44,7 +44,7 @@ std::vector<Name> names_in(std::string_view line, char separator) {
   return names;
 }
 
-/// Whether three names from a place on end in x, y, z after equal beginnings. "" is a beginning.
+/// Whether three consecutive names are a common prefix, maybe empty, followed by x, y, z.
 bool is_vector(std::span<const Name> names, std::size_t first) {
   if (first + 3 > names.size()) return false;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -61,12 +61,12 @@ bool begin_alike(const std::string& a, const std::string& b) {
   return std::string_view(a).substr(0, a.size() - 1) == std::string_view(b).substr(0, b.size() - 1);
 }
 
-/// Places of x y z qx qy qz qw: a name in w with its vector behind or before it, and the first
-/// vector that is another's.
+/// Columns of x y z qx qy qz qw: a name that ends in w with its vector after or before it, and the
+/// first other vector.
 std::optional<std::array<std::size_t, 7>> pose_in(std::span<const Name> names) {
   for (std::size_t w = 0; w < names.size(); ++w) {
     if (!names[w].text.ends_with('w')) continue;
-    // "x y z w x y z": where position and rotation are named alike, what follows w is its vector.
+    // "x y z w x y z": if position and rotation have the same names, the vector of w follows it.
     for (const bool behind : {true, false}) {
       if (!behind && w < 3) continue;
       const std::size_t q = behind ? w + 1 : w - 3;
@@ -94,7 +94,7 @@ std::optional<int> unit_of(const Name& name) {
 }
 
 /// Finds the columns of time among those that are not the pose's.
-/// @throws InputError if none of several is named as one
+/// @throws InputError if there are several, none of them named as a time
 void find_stamp(std::span<const Name> names, PoseColumns& columns) {
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -121,7 +121,7 @@ void find_stamp(std::span<const Name> names, PoseColumns& columns) {
     stamp = std::ranges::find_if(others, [&](std::size_t i) {
       return names[i].text == "t" || names[i].text == "ts" || unit_of(names[i]).has_value();
     });
-  // A name of its own is no reason to doubt the only column that is left, in front.
+  // If a single column is left and it is the first, it is the time, whatever its name.
   if (stamp == others.end() && (others.empty() || others.size() > 1 || others[0] != 0))
     throw InputError("its columns are named, but none as a time");
   columns.stamp = stamp == others.end() ? others[0] : *stamp;
@@ -183,7 +183,7 @@ std::optional<PoseColumns> columns_named_by(std::string_view line, char separato
           listed(names)));
     return std::nullopt;
   }
-  // Seven in a row, after other words than the names of columns.
+  // Seven in a row, after words that do not name columns.
   const auto [first, last] = std::ranges::minmax(*pose);
   if (last - first != 6 || first == 0) return std::nullopt;
   for (std::size_t k = 0; k < 7; ++k) columns.pose[k] = (*pose)[k] - first + 1;

@@ -10,12 +10,12 @@
 
 namespace mh {
 
-/// Where the values of a pose stand in a line.
+/// Positions of a pose's values in a line.
 struct PoseColumns {
   std::size_t stamp = 0;
   /// A column of nanoseconds to add: ROS writes a stamp as whole seconds and the rest.
   std::optional<std::size_t> nanoseconds = {};
-  /// The stamp's unit as a power of ten of a second, -9 for nanoseconds; absent: no name tells it.
+  /// The stamp's unit as a power of ten of a second, -9 for nanoseconds; absent: no name states it.
   std::optional<int> unit = {};
   std::array<std::size_t, 7> pose = {1, 2, 3, 4, 5, 6, 7};  ///< of x y z qx qy qz qw
   std::size_t least = 8, most = 8;                          ///< values in a line
@@ -27,10 +27,10 @@ struct PoseColumns {
 std::vector<std::string_view> words_of_line(std::string_view line, char separator);
 
 /// The columns that a line of names states. As many names as values, maybe after other words: each
-/// names its column, and columns of other meaning may stand among them. Otherwise, seven names of a
-/// pose state only the order of what follows the stamp. Lines may end after the last value in use.
+/// names its column, and other columns may be in between. Otherwise, seven names of a pose state
+/// only the order of what follows the stamp. Lines may end after the last value in use.
 /// @param line     with or without a leading # or %
-/// @param usual    what is not named
+/// @param usual defaults for what is not named
 /// @param values   number of values in a line of data
 /// @returns nullopt if the line names no pose
 /// @throws InputError (without a place) if it names columns that cannot be understood

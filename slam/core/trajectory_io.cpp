@@ -47,22 +47,21 @@ void for_each_line(std::string_view text,
   }
 }
 
-/// The line without a comment: what follows a '#', or all where a '%' leads.
+/// The line without its comment: what follows a '#', or the whole line if it begins with '%'.
 std::string_view without_comment(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   if (first != std::string_view::npos && line[first] == '%') return {};
   return line.substr(0, line.find('#'));
 }
 
-/// Words, unless there are none but blanks between separators.
+/// The words of a line; none if they are all empty.
 Words words_of_data(std::string_view line, char separator) {
   Words words = words_of_line(without_comment(line), separator);
   if (std::ranges::all_of(words, &std::string_view::empty)) words.clear();
   return words;
 }
 
-/// Whether a line holds names: no word is a number, and the first begins with a letter if it is
-/// not empty.
+/// Whether a line holds names: no word is a number, and the first is empty or begins with a letter.
 bool is_of_names(const Words& words) {
   const auto is_number = [](std::string_view word) {
     return number_in(without_plus(word)).has_value();
@@ -79,8 +78,8 @@ struct Layout {
   bool is_table = false;                             ///< between commas or semicolons
 };
 
-/// The first line that is neither a comment nor names; what the lines before it say of columns
-/// holds.
+/// Data begin at the first line that is neither a comment nor names. The columns are those that an
+/// earlier line names, if any.
 Layout layout_of(const std::string& text, const std::string& name) {
   Layout layout;
   Words first;
@@ -131,7 +130,7 @@ Words words_of_pose(std::string_view line, const Layout& layout, const LinePlace
   return words;
 }
 
-/// What all stamps of a file together tell of their unit.
+/// What the stamps of a file together imply about their unit.
 struct StampRange {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   std::size_t count = 0;
@@ -156,8 +155,8 @@ StampRange range_of_stamps(const std::string& text, const Layout& layout) {
   return range;
 }
 
-/// The unit of stamps that no name tells, as a power of ten of a second. Times since 1970 tell it
-/// by their size. Smaller ones are seconds, unless they are whole numbers and either EuRoC's, in
+/// The unit of stamps if no name states it, as a power of ten of a second. Times since 1970 reveal
+/// it by their size. Smaller ones are seconds, unless they are whole numbers and either EuRoC's, in
 /// nanoseconds, or hours apart as seconds would be.
 int likely_unit(const StampRange& range, bool commas) {
   if (range.most >= 1e17) return -9;
@@ -205,7 +204,7 @@ TimedPose pose_in(const Words& words, const PoseColumns& columns, const LinePlac
 }
 
 /// @param notes  null: nothing is left out
-/// @param may_be_empty  whether a file without poses is one
+/// @param may_be_empty  whether a file without poses is accepted
 Trajectory parse(const std::string& text, const std::string& name, std::vector<std::string>* notes,
                  bool may_be_empty) {
   Layout layout = layout_of(text, name);

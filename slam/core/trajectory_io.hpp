@@ -11,29 +11,29 @@
 namespace mh {
 
 /// No camera is farther from its origin than this, not even in coordinates of the whole Earth (UTM,
-/// ECEF): a number beyond it is a slip.
+/// ECEF): a number beyond it is a mistake.
 inline constexpr double kFarthestPose_m = 1e8;
 
-/// Reads poses, true or estimated, from text as people keep them: one pose per line, in TUM's order
-/// `stamp tx ty tz qx qy qz qw` between blanks (s, m, camera to world), or in EuRoC's `timestamp,
-/// p x y z, q w x y z` and ignored columns between commas or semicolons (ns, m). A line of names
-/// before the poses, a comment or not, decides where columns stand and may name the unit of stamps
-/// (columns_named_by()); otherwise their size tells it. '#' starts a comment. Stamps are read
-/// exactly, digit by digit, to nanoseconds; quaternions are normalized; poses of EuRoC are those of
-/// the sensor or body that the file is about.
+/// Reads poses, true or estimated, from text in common formats: one pose per line, in TUM's order
+/// `stamp tx ty tz qx qy qz qw` between blanks (s, m, camera to world), or in EuRoC's `timestamp, p
+/// x y z, q w x y z` and ignored columns between commas or semicolons (ns, m). A line of names
+/// before the poses, a comment or not, gives the order of columns and may state the unit of stamps
+/// (columns_named_by()); otherwise it is inferred from their size. '#' starts a comment. Stamps are
+/// read exactly, digit by digit, to nanoseconds; quaternions are normalized; poses of EuRoC are
+/// those of the sensor or body that the file is about.
 /// @param notes  receives one line that counts what is left out: poses that are not finite, that
-///   have a quaternion of zeros, that repeat a stamp (the first stays), and lines that are no pose;
-///   further lines if stamps were not in order (poses are sorted) or their unit had to be guessed.
-///   Null: all of these but the unit are refused.
+///   have a quaternion of zeros, that repeat a stamp (the first is kept), and lines that are not
+///   poses; further lines if stamps were not in order (poses are sorted) or their unit had to be
+///   guessed. Null: all of these except a guessed unit are errors.
 /// @throws InputError "file:line: place: value" if columns are named that cannot be understood, or
-///   more lines than not are no pose: wrong count of numbers, a malformed number, a position beyond
+///   most lines are not poses: wrong count of numbers, a malformed number, a position beyond
 ///   kFarthestPose_m, a negative stamp, a quaternion whose norm is neither 0 nor within 0.1 of 1;
 ///   and if there is no pose at all.
 Trajectory parse_trajectory(const std::string& text, const std::string& name,
                             std::vector<std::string>* notes = nullptr);
 Trajectory read_trajectory(const std::filesystem::path& file,
                            std::vector<std::string>* notes = nullptr);
-/// The same, but maybe none is left.
+/// The same, but the result may be empty.
 Trajectory parse_valid_poses(const std::string& text, const std::string& name,
                              std::vector<std::string>& notes);
 /// Writes doubles so that they read back to the same value. @pre stamps are not negative.

@@ -51,7 +51,7 @@ struct FiledBoxes {
 };
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
-constexpr double kLargestShare = 3;  // of the image, of YOLO's boxes: a larger number is pixels
+constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: a larger number is pixels
 constexpr std::size_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
 
 /// The boxes of a frame that a file calls "17" or "1305031229.528748" (a stamp, s).
@@ -106,7 +106,7 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
 }
 
 /// Numbers of a line, separated by blanks or commas. @throws InputError at any other word.
-/// @param columns  what a line is, for the message
+/// @param columns what a line should hold, for the message
 std::vector<double> numbers(std::string line, const std::string& place, const char* columns) {
   std::ranges::replace(line, ',', ' ');
   std::istringstream words(line);
@@ -141,7 +141,7 @@ void for_each_line(const fs::path& file, const char* columns, const Visit& visit
   }
 }
 
-/// Among YOLO's text files: the names of their classes, as annotation programs write it.
+/// The file of class names that annotation programs write next to YOLO's text files.
 constexpr const char* kFolderClasses = "classes.txt";
 
 /// YOLO's text: FRAME.txt of lines "class x y width height [score]", center and size in shares of

@@ -50,7 +50,7 @@ constexpr std::array<const char*, 80> kCoco80 = {"person",        "bicycle",    
 // The category ids up to 90 that COCO's annotations leave out.
 constexpr std::array kNoCategory = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 
-// Names of networks for classes that class_by_name() knows by another.
+// Networks' names for classes that class_by_name() knows by another name.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kAlsoCalled = {{
     {"tvmonitor", "television"},
     {"pottedplant", "potted plant"},
@@ -75,7 +75,7 @@ ClassNames with_ids(std::vector<std::string> names) {
   return all;
 }
 
-/// A text in quotes at the begin of `rest`, which is moved behind it; nullopt if there is none.
+/// A quoted text at the start of `rest`, which is moved past it; nullopt if there is none.
 std::optional<std::string> take_quoted(std::string_view& rest) {
   const char quote = rest.empty() ? '\0' : rest.front();
   if (quote != '\'' && quote != '"') return std::nullopt;

@@ -15,9 +15,9 @@ namespace mh {
 /// The classes of a network, by its own index.
 struct ClassNames {
   std::vector<std::string> names;
-  std::vector<ClassId> ids;  ///< the class of ours with that name; void where none fits
+  std::vector<ClassId> ids;  ///< our class of that name; void if there is none
   std::size_t size() const { return names.size(); }
-  /// A line for the user if none of the classes is one of ours; otherwise "".
+  /// A line for the user if none of the classes is ours; otherwise "".
   std::string unknown_note(const std::filesystem::path& of) const;
 };
 
@@ -29,7 +29,7 @@ const ClassNames& coco80();
 int coco80_of_category(int category_id);
 
 /// Reads one name per line, as darknet's .names files are; blank lines at the end do not count.
-/// @throws InputError naming the file, also if it has no name.
+/// @throws InputError naming the file, also if it contains no names.
 ClassNames load_class_names(const std::filesystem::path& file);
 
 /// Reads names as Python prints them in a network's metadata: {0: 'chair', 1: "driver's seat"} or

@@ -9,8 +9,8 @@
 namespace mh {
 
 /// The size of images that section [net] of a Darknet configuration states; 0 where it states none.
-/// @throws InputError naming file and line if a size cannot be one, or the anchors of a layer are
-/// none: OpenCV's importer would read beyond them.
+/// @throws InputError naming file and line if a size or a layer's anchors are invalid: OpenCV's
+/// importer would read beyond them.
 InputSize darknet_input(const std::string& config, const std::filesystem::path& file);
 
 }  // namespace mh

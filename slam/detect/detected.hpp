@@ -16,23 +16,23 @@ struct DetectedBox {
   float left = 0, top = 0, right = 0, bottom = 0;
   float score = 0;            ///< of its best class
   int network_class = 0;      ///< the detector's own index of it
-  ClassDistribution classes;  ///< in our classes; empty (void) if its best class is none of ours
+  ClassDistribution classes;  ///< in our classes; empty (void) if its best class is not ours
   friend bool operator==(const DetectedBox&, const DetectedBox&) = default;
 };
 
 /// What a detector found in an image.
 struct Detected {
   std::vector<DetectedBox> boxes;  ///< best first
-  SemanticImage pixels;            ///< of a network that segments, otherwise empty
+  SemanticImage pixels;            ///< from a segmentation network; otherwise empty
   /// Boxes of a file that reached more than a pixel beyond the image: they were cut, or left out
   /// if nothing remained.
   int clipped = 0;
   friend bool operator==(const Detected&, const Detected&) = default;
 };
 
-/// Labels of each pixel. Boxes: each is one entry of the palette, better ones cover worse ones, and
-/// what is in none is background. BoxFill::kForeground leaves out the pixels of a box that have
-/// depth but not that of its surface: see foreground_depth().
+/// Labels of each pixel. Boxes: each is one palette entry, higher scores cover lower ones, and
+/// pixels outside all boxes are background. BoxFill::kForeground leaves out the pixels of a box
+/// that have depth but not that of its surface: see foreground_depth().
 /// @param depth_m  of the same pixels; may be empty with BoxFill::kBox
 SemanticImage labels_of(const Detected& detected, const Grid2d<float>& depth_m, int width,
                         int height, BoxFill fill);
@@ -43,12 +43,12 @@ struct DepthRange {
   bool contains(float depth_m) const { return depth_m >= near_m && depth_m <= far_m; }
 };
 
-/// The depths of the surface that a box is around. The inverse depths in the box are split in two
+/// The depths of the surface that a box encloses. The inverse depths in the box are split in two
 /// where the variance between the parts is largest (Otsu 1979). If the nearer part is at least 10 %
 /// nearer on average, and most neighbors across the cut differ by a step (4 %), the box has two
-/// surfaces, and only the nearer remains; the farther if the nearer covers less than 30 % of the
-/// box's middle (half of its width and height), because then it is something in front of the
-/// object. Repeated up to three times.
+/// surfaces, and only the nearer one is kept. But if that covers less than 30 % of the box's middle
+/// (half of its width and height), it is something in front of the object, and the farther one is
+/// kept. Repeated up to three times.
 DepthRange foreground_depth(const DetectedBox& box, const Grid2d<float>& depth_m);
 
 /// Bytes for a cache, and back. @throws InputError if the bytes are not a valid encoding.

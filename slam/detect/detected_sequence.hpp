@@ -10,11 +10,11 @@
 
 namespace mh {
 
-/// Returns what was kept under a key, or makes it and keeps it: a cache.
+/// A cache: returns the entry under a key, or makes and stores it.
 using KeepDetections =
     std::function<std::string(const std::string& key, const std::function<std::string()>& make)>;
 
-/// What a detector finds in an image, kept by the contents of network, settings and image.
+/// What a detector finds in an image, cached by the contents of network, settings and image.
 /// @param keep  may be null
 Detected detect_kept(const Detector& detector, const RgbdFrame& frame, std::size_t index,
                      const KeepDetections& keep);

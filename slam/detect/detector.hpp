@@ -26,10 +26,11 @@ class Detector {
   /// @param index, stamp_ns  of the frame in its sequence: boxes in files are found by them
   virtual Detected detect(const Grid2d<Rgb8>& color, std::size_t index, Stamp stamp_ns) const = 0;
   virtual const ClassNames& names() const = 0;
-  /// One line for a person: "yolox, 80 classes, input 416 x 416".
+  /// One line for the user: "yolox, 80 classes, input 416 x 416".
   virtual std::string description() const = 0;
   /// Checks that a box file's frames belong to this sequence, and that a class is one of ours.
-  /// @returns a note on what is without use, or "". @throws InputError if no frame belongs
+  /// @returns a note on frames or classes that are not used, or "". @throws InputError if no frame
+  /// belongs
   virtual std::string check_frames(std::span<const Stamp> /*stamps_ns*/) const { return ""; }
   /// Digest of everything besides the image that decides what detect() returns; 0 if detections
   /// are not cached.
@@ -38,7 +39,7 @@ class Detector {
 
 /// Opens a network or a file of boxes. A network is first imported and run once in a child process,
 /// because OpenCV's importers can crash or exhaust the memory. Sets OpenCV to one thread, as the
-/// program does: the same bits at any load, and nothing that a child could wait for.
+/// program does: results do not depend on the load, and a forked child waits for no thread.
 /// @throws InputError naming the file and what is wrong with it.
 std::unique_ptr<Detector> open_detector(const DetectorSpec& spec);
 

@@ -20,7 +20,7 @@ Placement place_image(int width, int height, const InputSize& input, Letterbox l
   const double scale = std::min(static_cast<double>(input.width) / width,
                                 static_cast<double>(input.height) / height);
   at.scale_x = at.scale_y = scale;
-  // The corner's networks cut the fraction of a pixel off, the center's round it.
+  // Networks with kCorner truncate fractions of a pixel; those with kCenter round them.
   const bool corner = letterbox == Letterbox::kCorner;
   const auto size = [&](int of, int limit) {
     const double exact = of * scale;

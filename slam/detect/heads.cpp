@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-constexpr float kMostScore = 1.001F;  // beyond rounding
+constexpr float kMostScore = 1.001F;  // 1 with slack for rounding
 
 /// The cells of a head without anchors: those of each stride, row by row.
 struct Cell {
@@ -32,7 +32,7 @@ std::vector<Cell> cells(const InputSize& input, const std::array<int, 4>& stride
   return all;
 }
 
-/// The cells of that many boxes; empty if no choice of strides has so many.
+/// The cells of that many boxes; empty if no choice of strides gives that many.
 std::vector<Cell> cells_of(int boxes, const InputSize& input) {
   for (const auto& strides : kStrides) {
     int count = 0;
@@ -70,7 +70,7 @@ bool is_segmentation(const Tensor& tensor) {
   return s.size() == 4 && s[0] == 1 && s[1] >= 2 && s[1] <= 4096 && s[2] > 1 && s[3] > 1;
 }
 
-/// Whether boxes stand around their cells in pixels, as decoded ones do; raw ones are offsets of
+/// Whether boxes are around their cells in pixels, as decoded ones do; raw ones are offsets of
 /// about half a cell.
 bool is_decoded(const Matrix& m, const std::vector<Cell>& of) {
   double from_cell = 0, from_zero = 0;
@@ -88,7 +88,8 @@ Matrix transposed(const Matrix& m) {
   return {m.columns, m.rows, m.values, true};
 }
 
-/// Whether a matrix that may be of one box per row is of one box per column: by where boxes are.
+/// Whether a matrix whose shape also fits one box per row has one box per column, judging by the
+/// boxes' positions.
 bool has_boxes_in_columns(const Matrix& m, const InputSize& input) {
   const std::vector<Cell> by_row = cells_of(m.rows, input), by_column = cells_of(m.columns, input);
   return m.rows > 4 && !by_column.empty() && is_decoded(transposed(m), by_column) &&

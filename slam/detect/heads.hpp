@@ -20,14 +20,14 @@ struct Tensor {
 /// "1 x 3549 x 85"
 std::string shape_text(const Tensor& tensor);
 
-/// What a network's outputs mean, by their shapes. A YOLOX whose boxes are decoded has the shape of
-/// one whose are not; they differ in the values.
+/// What a network's outputs mean, by their shapes. A YOLOX with decoded boxes has the same shape as
+/// one with raw boxes; the values differ.
 /// @param darknet  it comes from a Darknet .cfg
 /// @returns kAuto if none fits
 Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, bool darknet);
 
-/// Whether outputs are boxes and the masks of their objects: those of networks that segment
-/// instances, which are no head of ours.
+/// Whether outputs are boxes and masks of objects, from a network for instance segmentation: these
+/// are not supported.
 bool gives_boxes_and_masks(std::span<const Tensor> outputs, const InputSize& input);
 
 /// The number of classes of outputs with that head; 0 if they cannot be its outputs.
@@ -41,8 +41,8 @@ struct Candidate {
 };
 
 /// Returns the boxes of a detecting head whose best score is at least `confidence`, in the order of
-/// the output. A score is objectness times class probability, where a head has both. Values that
-/// are not finite make no box. @throws InputError if a score is more than 1.
+/// the output. A score is objectness times class probability, where a head has both. Boxes with
+/// values that are not finite are skipped. @throws InputError if a score is more than 1.
 std::vector<Candidate> decode(Head head, std::span<const Tensor> outputs, const InputSize& input,
                               double confidence);
 
@@ -52,14 +52,14 @@ std::vector<DetectedBox> select_boxes(const std::vector<Candidate>& candidates, 
                                       int width, int height, const ClassNames& names,
                                       const DetectorSettings& settings);
 
-/// The classes of scores: each of ours gets those of the network's that are called so; at most 1 in
-/// sum. Empty if the best has no class of ours; scores below 0.01 are left out.
+/// Scores as a distribution over our classes: each gets the scores of the network's classes of that
+/// name; the sum is at most 1. Empty if the best class is not ours; scores below 0.01 are left out.
 ClassDistribution our_classes(std::span<const float> scores, int best, const ClassNames& names);
 
-/// Labels of an image by a segmenting head: values of each class are probabilities, or turned into
-/// them (softmax), and interpolated between the output's cells. An entry of the palette is the mean
-/// of the pixels with the same best class and about the same certainty (steps of a quarter), its
-/// three most probable classes. Pixels of which no class reaches `confidence` are void.
+/// Labels of an image by a segmenting head: values of each class are probabilities, or are turned
+/// into them (softmax), and are interpolated between the output's cells. An entry of the palette is
+/// the mean of the pixels with the same best class and about the same certainty (steps of a
+/// quarter), its three most probable classes. Pixels where no class reaches `confidence` are void.
 SemanticImage segmented(const Tensor& output, const Placement& at, const InputSize& input,
                         const InputSize& of_image, const ClassNames& names, double confidence);
 

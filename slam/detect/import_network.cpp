@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr int kLargestInput_px = 8192;
 
-/// OpenCV's importers write what they think to stderr; what matters is in their exceptions.
+/// OpenCV's importers log to stderr; what matters is in their exceptions.
 class Quiet {
  public:
   Quiet() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
@@ -67,13 +67,13 @@ auto with_opencv(const fs::path& file, const char* what, const Work& work) {
   }
 }
 
-/// Checks that Darknet's weights are as many as the layers take, which OpenCV does not: it would
-/// read beyond their end.
+/// Checks that there are as many Darknet weights as the layers take. OpenCV does not check this and
+/// would read past their end.
 void check_weights(const DetectorSpec& spec, cv::dnn::Net& net, std::string_view weights) {
   std::uint64_t values = 0;
   for (const cv::String& name : net.getLayerNames()) {
     const cv::Ptr<cv::dnn::Layer> layer = net.getLayer(net.getLayerId(name));
-    if (layer->type == "Region") continue;  // anchors, of the configuration
+    if (layer->type == "Region") continue;  // its blobs are anchors, from the configuration
     for (const cv::Mat& blob : layer->blobs) values += blob.total();
   }
   std::int32_t version[2] = {};
@@ -179,7 +179,8 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
                         classes, other));
 }
 
-/// The head by name or by what a gray image gives, and the classes that it must have.
+/// Sets the head, by its stated name or by the output for a gray image, and checks the number of
+/// classes.
 void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNetwork& imported) {
   const std::vector<int> shape = {1, 3, imported.input.height, imported.input.width};
   const cv::Mat gray(shape, CV_32F, cv::Scalar::all(0.5));
@@ -217,7 +218,7 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNet
     refuse_class_count(spec, files, imported, classes, seen);
 }
 
-/// The size of the images that the network's own file states; 0 where it leaves it open.
+/// The input size that the network's own file states; 0 if it is dynamic.
 InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
   const fs::path& file = spec.network;
   if (files.is_darknet) return darknet_input(files.config, spec.config);
@@ -246,7 +247,7 @@ InputSize trained_size(const NetworkFiles& files) {
   return {kUsual_px, kUsual_px};
 }
 
-/// @throws InputError if the metadata of Ultralytics states a task whose output is none of boxes.
+/// @throws InputError if the metadata of Ultralytics states a task whose output is not boxes.
 void require_detection(const DetectorSpec& spec, const NetworkFiles& files) {
   if (files.is_darknet) return;
   const auto metadata = onnx_metadata(files.network);
@@ -287,7 +288,7 @@ InputSize input_size(const DetectorSpec& spec, const NetworkFiles& files) {
           side(spec.settings.height_px, declared.height, usual.height, "height_px")};
 }
 
-/// @param onnx  the network; without use for Darknet's
+/// @param onnx the network; not used for Darknet
 ImportedNetwork import_as(const DetectorSpec& spec, const NetworkFiles& files,
                           const std::string& onnx) {
   ImportedNetwork imported{.net = {},

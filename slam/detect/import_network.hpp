@@ -31,7 +31,7 @@ struct ImportedNetwork {
   ClassNames names;
 };
 
-/// Imports a network and runs it once. An ONNX network that OpenCV does not run as it is is
+/// Imports a network and runs it once. An ONNX network that OpenCV cannot run unchanged is
 /// rewritten for its input's size. @throws InputError
 ImportedNetwork import_network(const DetectorSpec& spec, const NetworkFiles& files);
 

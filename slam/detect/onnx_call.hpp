@@ -24,33 +24,34 @@ struct OnnxCall {
   bool has_input(std::size_t i) const { return i < node.inputs.size() && !node.inputs[i].empty(); }
   /// A list of whole numbers that older operator sets keep in an attribute, newer ones in an input.
   std::optional<OnnxShape> list(const char* attribute, std::size_t input) const;
-  /// Such a list of axes of the first input, from 0; nullopt if there is none or one is beyond.
+  /// Such a list of axes of the first input, from 0; nullopt if there is none or one is out of
+  /// range.
   std::optional<OnnxShape> axes(std::size_t input, std::size_t rank) const;
   /// One axis by attribute, from 0.
   std::optional<std::size_t> axis(std::int64_t otherwise, std::size_t rank) const;
 };
 
-/// The axis from 0 that an operator counts, negative ones from the end; nullopt beyond the rank.
+/// An operator's axis, counted from the end if negative, as one from 0; nullopt if out of range.
 std::optional<std::size_t> normal_axis(std::int64_t axis, std::size_t rank);
 
-/// What Slice takes of an axis.
+/// The part of an axis that Slice takes.
 struct OnnxCut {
   std::int64_t start = 0, step = 1, count = 0;
 };
-/// By axis of the first input.
+/// Cuts by axis of the first input.
 std::optional<std::vector<OnnxCut>> cuts_of(const OnnxCall& call);
 
 /// Sizes along the axis of Split.
 std::optional<OnnxShape> split_sizes(const OnnxCall& call);
 
-/// By the rules of ONNX (those of NumPy); nullopt if the shapes do not fit.
+/// The broadcast shape by ONNX's rules (those of NumPy); nullopt if the shapes do not fit.
 std::optional<OnnxShape> broadcast(const OnnxShape& a, const OnnxShape& b);
 
 /// The shapes of the outputs of those operators that detectors are made of; nullopt where not
 /// known.
 std::vector<std::optional<OnnxShape>> output_shapes(const OnnxCall& call);
 
-/// The outputs, if all that they need is constant.
+/// The outputs, if all of their inputs are constant.
 /// @param shapes  of output_shapes()
 std::optional<std::vector<OnnxTensor>> evaluate(
     const OnnxCall& call, const std::vector<std::optional<OnnxShape>>& shapes);

@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-/// More is not computed beforehand.
+/// Larger tensors are not precomputed.
 constexpr std::size_t kMostComputed = std::size_t{1} << 24;
 
 /// Steps of a shape's axes in its row-major values; 0 where they repeat along `out`.

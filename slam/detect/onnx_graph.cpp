@@ -39,7 +39,7 @@ constexpr std::uint64_t kName = 1, kType = 2, kTensor = 1, kElement = 1, kShape 
 constexpr std::size_t kMostValues = std::size_t{1} << 28;
 constexpr std::int64_t kMostWhole = std::int64_t{1} << 30;
 
-/// Within what sizes are computed with: more is "to the end".
+/// Clamped to the sizes that are computed with: a larger value means "to the end".
 std::int64_t bounded(std::uint64_t value) {
   return std::clamp<std::int64_t>(static_cast<std::int64_t>(value), -kMostWhole, kMostWhole);
 }
@@ -316,7 +316,7 @@ std::string write_onnx_graph(const OnnxGraph& written) {
     content += proto_bytes_field(graph::kInitializer, write_onnx_tensor(name, values));
   for (const auto& [name, shape] : written.inputs)
     content += proto_bytes_field(graph::kInput, write_value(name, shape));
-  for (const std::string& name : written.outputs)  // OpenCV wants a shape and reads none
+  for (const std::string& name : written.outputs)  // OpenCV requires a shape but ignores it
     content += proto_bytes_field(graph::kOutput, write_value(name, {}));
   ProtoMessage walk(written.model);
   while (const auto field = walk.next())

@@ -13,18 +13,18 @@ namespace mh {
 
 using OnnxShape = std::vector<std::int64_t>;
 
-/// A constant: its values row-major. Truth values and whole numbers of all widths are whole.
+/// A constant: its values row-major. Booleans and integers of all widths are stored as integers.
 struct OnnxTensor {
   OnnxShape shape;
   bool is_float = true;
   std::vector<double> values;
 };
 
-/// How many values a tensor of that shape has; nullopt beyond what is computed with here, or where
-/// a side is negative.
+/// How many values a tensor of that shape has; nullopt if a side is negative, or if there are too
+/// many to compute with.
 std::optional<std::size_t> value_count(const OnnxShape& shape);
 
-/// nullopt if the bytes are no TensorProto with as many values as its shape states.
+/// nullopt if the bytes are not a TensorProto with as many values as its shape states.
 std::optional<OnnxTensor> read_onnx_tensor(std::string_view bytes);
 OnnxShape onnx_tensor_shape(std::string_view bytes);
 bool is_half_precision(std::string_view tensor_bytes);
@@ -53,7 +53,7 @@ struct OnnxGraph {
   std::int64_t opset = 0;
   std::vector<OnnxNode> nodes;  ///< in an order in which they can be computed
   std::map<std::string, std::string_view, std::less<>> weights;  ///< by name: TensorProto
-  std::map<std::string, OnnxTensor> constants;                   ///< more of them
+  std::map<std::string, OnnxTensor> constants;                   ///< additional weights
   std::map<std::string, OnnxShape> inputs;                       ///< without weights
   std::vector<std::string> outputs;
   std::string_view model;  ///< what it was read from

@@ -34,7 +34,7 @@ std::size_t bytes_of(std::string_view message, std::uint64_t tag) {
   return size;
 }
 
-/// Whether the 32-bit floats of a field hold one that is not a number.
+/// Whether any of a field's 32-bit floats is NaN.
 bool any_nan(std::string_view message, std::uint64_t tag) {
   for (const ProtoField& field : proto_fields(message, tag))
     for (std::size_t at = 0; at + sizeof(float) <= field.bytes.size(); at += sizeof(float)) {
@@ -45,7 +45,7 @@ bool any_nan(std::string_view message, std::uint64_t tag) {
   return false;
 }
 
-/// Bytes of one value of a TensorProto.DataType; 0 = none that weights have.
+/// Bytes of one value of a TensorProto.DataType; 0 = not a type of weights.
 std::size_t value_size(std::uint64_t type) {
   switch (type) {
     case 2:
@@ -97,7 +97,7 @@ std::string fault_of(std::string_view tensor) {
   return fmt::format("weights {} hold {} values where their shape states {}", name, held, values);
 }
 
-/// 0 where a dimension is open: by a name, or by -1.
+/// 0 if a dimension is dynamic: named, or -1.
 std::uint64_t size_of(const ProtoField& dim) {
   for (const ProtoField& value : proto_fields(dim.bytes, kValue))
     if (value.is_number && static_cast<std::int64_t>(value.number) > 0) return value.number;

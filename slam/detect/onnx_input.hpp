@@ -21,16 +21,16 @@ struct OnnxInput {
   friend bool operator==(const OnnxInput&, const OnnxInput&) = default;
 };
 
-/// nullopt if the bytes are no model with such an input. OpenCV's importer knows it and does not
-/// say it.
+/// nullopt if the bytes are not a model with such an input. (OpenCV's importer knows it but does
+/// not expose it.)
 std::optional<OnnxInput> onnx_input(std::string_view model);
 
-/// Says which weights of an ONNX model are not as many as their shape states, or are kept in
-/// another file: OpenCV's importer would read beyond their end. "" = none, or the bytes are no such
-/// model.
+/// Names weights of an ONNX model that do not fill the shape that they state, or that are stored in
+/// another file: OpenCV's importer would read past their end. "" = none, or the bytes are not such
+/// a model.
 std::string onnx_weights_fault(std::string_view model);
 
-/// What programs that write ONNX models say of them: Ultralytics states `names`, `task`, `imgsz`.
+/// Metadata that exporters write into ONNX models: Ultralytics states `names`, `task`, `imgsz`.
 std::map<std::string, std::string> onnx_metadata(std::string_view model);
 
 }  // namespace mh

@@ -53,7 +53,7 @@ class Rewriter {
     return names;
   }
 
-  /// Makes a constant one of the graph, if it is none yet.
+  /// Adds a constant to the graph, unless it is there already.
   void keep(const std::string& name) {
     const auto found = constants_.find(name);
     if (found == constants_.end()) return;
@@ -108,7 +108,7 @@ class Rewriter {
     return call;
   }
 
-  /// Weights of convolutions are large and needed by their shape alone.
+  /// Of convolution weights, which are large, only the shape is needed.
   const OnnxTensor* constant_in(const OnnxNode& node, const std::string& name) {
     const bool weighs = node.op == "Conv" || node.op == "ConvTranspose" || node.op == "Gemm" ||
                         node.op == "BatchNormalization";
@@ -195,8 +195,8 @@ class Rewriter {
     add(std::move(node));
   }
 
-  /// A constant of several values gets the shape of the other input. One value, and one per
-  /// channel, are known to OpenCV.
+  /// A constant of several values is expanded to the shape of the other input. OpenCV itself
+  /// handles one value, and one per channel.
   void rewrite_arithmetic(const OnnxCall& call, const OnnxShape& out) {
     const bool first = call.constants[0] != nullptr;
     const std::size_t of = first ? 0 : 1;
@@ -208,7 +208,7 @@ class Rewriter {
       return add(call.node);
     OnnxNode node = call.node;
     std::string input = node.inputs[1 - of];
-    if (inverse) {  // OpenCV takes x / c for c / x
+    if (inverse) {  // OpenCV computes c / x as x / c
       const std::string one = add_constant({{}, true, {1}}), inverted = unused_name();
       add({.op = "Div",
            .inputs = {one, input},
@@ -220,7 +220,7 @@ class Rewriter {
     }
     const std::string repeated = add_constant(expanded(*given, out));
     node.inputs = first ? std::vector{repeated, input} : std::vector{input, repeated};
-    if (node.op == "Mul" || node.op == "Div") node.set("axis", std::int64_t{0});  // of its Scale
+    if (node.op == "Mul" || node.op == "Div") node.set("axis", std::int64_t{0});  // for Scale
     add(std::move(node));
   }
 
@@ -265,7 +265,7 @@ class Rewriter {
     add(std::move(sliced));
   }
 
-  /// Of neighbors along an axis.
+  /// Rewrites a Gather of consecutive indices as a Slice.
   void rewrite_gather(const OnnxCall& call, const OnnxShape& out) {
     const OnnxTensor* indices = call.constant(1);
     if (indices == nullptr || indices->values.empty() || call.shape(0) == nullptr)

@@ -9,12 +9,12 @@
 
 namespace mh {
 
-/// The same network for images of one size, in those of ONNX's operators and forms that OpenCV 4.6
+/// The same network for images of one size, using only the ONNX operators and forms that OpenCV 4.6
 /// runs: what depends on constants and sizes alone is computed; lists of axes and sizes that newer
 /// operator sets take as inputs become attributes; constants are repeated to the shape that they
 /// are broadcast to; half precision becomes single. Other operations stay as they are.
 /// @pre onnx_weights_fault(model) is ""
-/// @returns nullopt if the bytes are no such model
+/// @returns nullopt if the bytes are not such a model
 std::optional<std::string> rewrite_onnx(std::string_view model, const InputSize& input);
 
 }  // namespace mh

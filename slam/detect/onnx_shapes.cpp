@@ -239,7 +239,7 @@ MaybeShape reduced(const OnnxCall& call) {
   return out;
 }
 
-/// Of operators that work on each value by itself, of all inputs.
+/// The output shape of an element-wise operator on all inputs.
 MaybeShape by_value(const OnnxCall& call) {
   MaybeShape out = OnnxShape{};
   for (const OnnxShape* in : call.shapes) {

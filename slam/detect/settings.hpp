@@ -22,7 +22,7 @@ constexpr Names<Head, 7> setting_words(Head) {
            {"segmentation", Head::kSegmentation}}};
 }
 
-/// How an image gets the network's input size.
+/// How an image is fitted to the network's input size.
 enum class Letterbox { kAuto, kCorner, kCenter, kStretch };
 constexpr Names<Letterbox, 4> setting_words(Letterbox) {
   return {{{"auto", Letterbox::kAuto},
@@ -31,7 +31,7 @@ constexpr Names<Letterbox, 4> setting_words(Letterbox) {
            {"stretch", Letterbox::kStretch}}};
 }
 
-/// What is done to a channel of 0 to 255.
+/// How a channel of 0 to 255 is normalized.
 enum class Normalize { kAuto, kNone, kUnit, kImagenet };
 constexpr Names<Normalize, 4> setting_words(Normalize) {
   return {{{"auto", Normalize::kAuto},
@@ -100,8 +100,8 @@ struct DetectorSpec {
   friend bool operator==(const DetectorSpec&, const DetectorSpec&) = default;
 };
 
-/// Returns a network or boxes by a file's ending; weights have their .cfg next to them.
-/// @throws InputError if the ending is none that is known.
+/// Returns a network or boxes, depending on a file's extension; weights have their .cfg next to
+/// them. @throws InputError if the extension is unknown.
 DetectorSpec detector_from_file(const std::filesystem::path& file);
 
 /// Reads the settings in a mapping into a spec, and its paths `network`, `config`, `classes` and

@@ -10,7 +10,7 @@ namespace mh {
 struct EndedTooSoon {};
 struct TookTooLong {};
 
-/// Writes all of these bytes; exits this process if nobody reads them any more.
+/// Writes all of these bytes; exits this process if the reader is gone.
 void write_to_parent(int descriptor, const char* data, std::size_t size);
 
 /// The child's end of the pipe to its parent.

@@ -9,8 +9,8 @@
 namespace mh {
 
 /// Bad input: a file, a setting or an argument that the user can fix. The message names file, place
-/// and value. The command line prints it as one line on stderr and exits with code 2. It is made
-/// printable(): it quotes files, and goes into JSON.
+/// and value. The command line prints it as one line on stderr and exits with code 2. It is passed
+/// through printable(), since it quotes files and is written into JSON.
 struct InputError : std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(printable(message)) {}
 };

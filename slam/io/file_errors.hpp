@@ -32,7 +32,7 @@ void require_readable_at_once(const std::filesystem::path& file, std::uintmax_t 
 /// @throws InputError naming the file if why_unreadable() returns a reason.
 void require_readable(const std::filesystem::path& file);
 
-/// @throws InputError naming the folder if there is one that one may not look into.
+/// @throws InputError naming the folder if it exists but may not be read.
 void require_open(const std::filesystem::path& folder);
 
 }  // namespace mh

@@ -75,10 +75,10 @@ std::optional<fs::path> new_file(const fs::path& folder, const Name& name) {
   }
 }
 
-/// The file that a name stands for: a symbolic link is followed, also one whose target is not there
+/// The file that a name refers to: symbolic links are followed, even if their target does not exist
 /// yet.
 fs::path followed(fs::path file) {
-  constexpr int kMostLinks = 40;  // as Linux follows
+  constexpr int kMostLinks = 40;  // as in Linux
   std::error_code error;
   for (int links = 0; links < kMostLinks && fs::is_symlink(file, error); ++links) {
     const fs::path target = fs::read_symlink(file, error);
@@ -108,7 +108,7 @@ void make_output_folder(const fs::path& folder) {
 }
 
 void write_atomically(const fs::path& name, const std::function<void(const fs::path&)>& write) {
-  // A rename onto a symbolic link would put a file in the place of the user's link.
+  // A rename onto a symbolic link would replace the user's link with a file.
   const fs::path file = followed(name);
   std::error_code error;
   // A rename would replace a device such as /dev/stdout with a file.

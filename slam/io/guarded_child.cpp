@@ -138,7 +138,8 @@ void on_processor_limit(int) {
   kill(getpid(), SIGXCPU);
 }
 
-/// Raises the memory limit by the share of what has been read since; then operator new tries again.
+/// Raises the memory limit in proportion to what has been read since; then operator new tries
+/// again.
 void on_memory_limit() {
   const std::uint64_t granted = (*g_watch.note)->memory_bytes;
   const std::uint64_t allowed =

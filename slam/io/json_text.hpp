@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// Levels of lists and objects within each other that JSON may have: whatever compares, copies or
-/// writes a value calls itself at each level, and would end the program at some ten thousand.
+/// Levels of lists and objects within each other that JSON may have: comparing, copying and writing
+/// values recurse at each level, and would overflow the stack at some ten thousand.
 inline constexpr int kDeepestJson = 200;
 
 /// Whether a text has more levels than that; looks at brackets alone.
@@ -22,7 +22,7 @@ bool is_nested_too_deep(std::string_view json);
 std::string json_fault(const nlohmann::json::exception& error);
 
 /// Parses what a program or a person wrote.
-/// @throws InputError without a file's name if it is no JSON, or nested too deep.
+/// @throws InputError without a file's name if it is not JSON, or nested too deep.
 template <class Json>
 Json parse_json(std::string_view text) {
   if (is_nested_too_deep(text))
@@ -34,7 +34,7 @@ Json parse_json(std::string_view text) {
   }
 }
 
-/// The same; a discarded value, which is of no type, where that would throw.
+/// The same, but returns a discarded value, which has no type, instead of throwing.
 template <class Json>
 Json parse_json_or_discard(std::string_view text) {
   if (is_nested_too_deep(text)) return Json(nlohmann::json::value_t::discarded);

@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// The last nonblank line of an open file, of its last 64 kB: a log may have any size.
+/// The last nonblank line in the last 64 kB of an open file, since a log may have any size.
 std::string last_line_of(int file);
 
 }  // namespace mh

@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// The text with small letters in the place of A to Z; all other characters stay.
+/// The text with A to Z in lower case; all other characters are unchanged.
 inline std::string lower_case(std::string text) {
   for (char& c : text)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

@@ -8,8 +8,8 @@
 
 namespace mh {
 
-/// A word that is a decimal number as a whole, without a leading plus; nullopt for any other, or
-/// one beyond a double's range. "nan" and "inf" are numbers here.
+/// The value of a word that is entirely a decimal number without a leading plus; otherwise, or
+/// beyond a double's range, nullopt. "nan" and "inf" are numbers here.
 inline std::optional<double> number_in(std::string_view word) {
   double value = 0;
   const char* end = word.data() + word.size();

@@ -9,9 +9,9 @@
 
 namespace mh {
 
-/// Notices if a path leads elsewhere for a while: a file, a folder or a link on the way to it is
-/// moved, replaced or removed, even if it is put back before anybody looks (inotify). Other changes
-/// in these folders do not count. Where the system offers no watch, nothing is noticed.
+/// Detects (by inotify) whether a path was redirected, even temporarily: a file, a folder or a link
+/// along it was moved, replaced or removed. Other changes in these folders do not count. Where the
+/// system offers no watch, nothing is detected.
 class PathWatch {
  public:
   explicit PathWatch(std::span<const std::filesystem::path> files);
@@ -19,7 +19,7 @@ class PathWatch {
   PathWatch(const PathWatch&) = delete;
   PathWatch& operator=(const PathWatch&) = delete;
 
-  /// Call it now and then: the system keeps a limited number of changes.
+  /// Call it regularly: the system queues a limited number of changes.
   /// @throws InputChanged naming what was moved since the watch began
   void require_unmoved();
 

@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// What the file system says of a file. It changes whenever the file is written, replaced, renamed
-/// or touched, and no program can set it back.
+/// What the file system says about a file. It changes whenever the file is written, replaced,
+/// renamed or touched, and no program can set it back.
 struct FileState {
   std::uint64_t device = 0, inode = 0, bytes = 0;  ///< inode 0: there is no such file
   std::int64_t changed_ns = 0;
@@ -53,13 +53,13 @@ struct ReadRecord {
 /// folder elsewhere has the same digest.
 std::uint64_t digest(const ReadRecord& record);
 
-/// A file was changed while a command worked with it: what was made of it belongs to no moment.
+/// A file was changed while a command worked with it: results would mix its old and new states.
 struct InputChanged : InputError {
   using InputError::InputError;
 };
 
-/// Checks that no file was changed since it was read: what was made of several files, or of one
-/// that was read several times, is then of one moment.
+/// Checks that no file was changed since it was read, so that what was made from several files, or
+/// from one read several times, is consistent.
 /// @throws InputChanged naming the first that was.
 void require_unchanged(const ReadRecord& record);
 

@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-/// Opens a folder, not through a link, and gives us all rights to it; -1 if that fails.
+/// Opens a folder, without following a link, and grants us all permissions; -1 if that fails.
 int open_folder(int parent, const char* name) {
   constexpr int kHow = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
   int folder = openat(parent, name, kHow);
@@ -40,9 +40,9 @@ bool remove_one(int folder, const char* name) {
   return unlinkat(folder, name, 0) == 0 || unlinkat(folder, name, AT_REMOVEDIR) == 0;
 }
 
-/// Moves a folder to another under a name that is not taken.
+/// Moves a folder into another, under an unused name.
 bool move_up(int from, const char* name, int to, unsigned& number) {
-  if (const int opened = open_folder(from, name); opened >= 0) close(opened);  // or it may not move
+  if (const int opened = open_folder(from, name); opened >= 0) close(opened);  // to permit moving
   char fresh[16];
   char* at = fresh + sizeof fresh;
   *--at = '\0';
@@ -72,7 +72,7 @@ void remove_tree(const char* folder) {
       }
       const int inner = open_folder(top, name);
       if (inner < 0) return;
-      // What lies deeper comes up: no depth needs a longer path or more open files.
+      // Deeper folders are moved up, so that no depth needs longer paths or more open files.
       for_each_entry(inner, [&](const char* below) {
         goes_on = remove_one(inner, below) || move_up(inner, below, top, number) || goes_on;
       });

@@ -3,9 +3,9 @@
 
 namespace mh {
 
-/// Removes a folder with all that it contains, however deep it is and whatever its folders forbid.
-/// Links are not followed; what may not be removed stays. It makes system calls alone, so that a
-/// forked process may call it.
+/// Removes a folder with all that it contains, at any depth and despite missing permissions of its
+/// folders. Links are not followed; what cannot be removed stays. Makes only system calls, so that
+/// a forked process may call it.
 void remove_tree(const char* folder);
 
 }  // namespace mh

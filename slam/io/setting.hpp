@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// The values that a setting may take: [min, max], without max if open, without min if above.
+/// The values that a setting may take: [min, max], excluding max if open, excluding min if above.
 /// Ignored for words and switches.
 struct SettingRange {
   double min = 0, max = 1;

@@ -61,8 +61,8 @@ std::optional<OwnedFolder> OwnedFolder::make(const fs::path& folder) {
   OwnedFolder made;
   made.path_ = folder;
   made.marker_ = open((folder / kMarker).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  // On a disk without locks the marker stays empty, so that the folder is never mistaken for an
-  // abandoned one.
+  // On a file system without locks the marker stays empty, so that the folder is never mistaken for
+  // an abandoned one.
   const bool good =
       made.marker_ >= 0 && (flock(made.marker_, LOCK_EX | LOCK_NB) != 0 ||
                             write(made.marker_, kMarkerText.data(), kMarkerText.size()) > 0);
@@ -109,7 +109,7 @@ void FolderHold::take() {
 }
 
 void FolderHold::join(const std::function<void()>& begin, const std::function<bool()>& is_same) {
-  constexpr int kPatience_ms = 2000, kPoll_ms = 20;  // another one may just be at its begin()
+  constexpr int kPatience_ms = 2000, kPoll_ms = 20;  // another process may be in its begin()
   for (int waited_ms = 0;; waited_ms += kPoll_ms) {
     if (lock(LOCK_EX | LOCK_NB)) {
       begin();

@@ -34,8 +34,8 @@ class OwnedFolder {
   int marker_ = -1;  ///< open and locked
 };
 
-/// Keeps other processes out of a folder that this one works in, until it goes or the process ends.
-/// Nothing is written there. Where a disk knows no locks, nobody is kept out.
+/// Keeps other processes out of a folder that this one works in, until it is destroyed or the
+/// process ends. Nothing is written there. On a file system without locks, no process is kept out.
 class FolderHold {
  public:
   /// Holds nothing yet. @pre the folder exists when it is taken or joined
@@ -44,10 +44,10 @@ class FolderHold {
   FolderHold(const FolderHold&) = delete;
   FolderHold& operator=(const FolderHold&) = delete;
 
-  /// Keeps everybody out. @throws InputError if another process holds the folder.
+  /// Keeps all others out. @throws InputError if another process holds the folder.
   void take();
-  /// Keeps everybody out except those who do the same work.
-  /// @param begin    records the work in the folder; called if nobody else holds it
+  /// Keeps all processes out except those that do the same work.
+  /// @param begin    records the work in the folder; called if no other process holds it
   /// @param is_same  whether the recorded work is this one; called if others hold it
   /// @throws InputError if others do other work there.
   void join(const std::function<void()>& begin, const std::function<bool()>& is_same);

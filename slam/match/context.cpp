@@ -22,7 +22,7 @@ LabeledDescriptor view(const Features& features, std::uint32_t i) {
 
 /// Runs a search and, where decisions are traced, again without equation 2.
 /// @param search    search(SemanticMatcher) -> what it found
-/// @param decision  decision(GatedPair) -> who was matched with whom
+/// @param decision  decision(GatedPair) -> the pair as a MatchDecision
 template <class Search, class Decide>
 auto traced(const SlamContext& context, Matcher matcher, Search search, Decide decision) {
   if (context.decisions == nullptr) return search(semantic_matcher(context, matcher));

@@ -25,7 +25,7 @@ struct SlamContext {
   const Map& map;               ///< read-only; stages that modify it take it as `Map&` in addition
   MatchCounts& counts;          ///< incremented by each use of equation 2
   MatchTrace* trace = nullptr;  ///< receives every accepted pair, if not null
-  DecisionTrace* decisions = nullptr;  ///< receives what became of every pair, if not null
+  DecisionTrace* decisions = nullptr;  ///< receives the outcome of every pair, if not null
 };
 
 /// Equation 2 under the context's settings, counted under a matcher's name.
@@ -48,7 +48,7 @@ struct ProjectionSearch {
   const Query& query;
   std::span<const ProjectionTarget> targets;
   std::span<const LandmarkId> landmarks;  ///< of each target
-  std::span<const std::uint8_t> taken;    ///< as of match_by_projection()
+  std::span<const std::uint8_t> taken;    ///< as in match_by_projection()
   ProjectionGate gate;
 };
 

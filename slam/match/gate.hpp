@@ -10,14 +10,14 @@
 
 namespace mh {
 
-/// What became of a pair that a matcher considered: a point that it looked for, and the feature
+/// The outcome of a pair that a matcher considered: a point that it looked for, and the feature
 /// nearest to it.
 enum class MatchGate {
   kKept,
   kThreshold,  ///< farther than the gate allows
   kRatio,      ///< the second nearest is about as near
   kTaken,      ///< a feature goes to one point, and another was nearer
-  kRotation    ///< turned unlike most other pairs
+  kRotation    ///< rotated differently from most other pairs
 };
 inline constexpr std::size_t kMatchGates = 5;
 

@@ -24,7 +24,7 @@ struct LabeledDescriptor {
 /// Equation 2 over ORB descriptors, with counts of its effect.
 class SemanticMatcher {
  public:
-  /// @param log  receives what became of each pair; null: nobody asks
+  /// @param log  receives the outcome of each pair; may be null
   SemanticMatcher(const SemanticConfig& config, MatcherCounts& counts, GateLog* log = nullptr)
       : xi_(static_cast<float>(config.xi)),
         policy_(config.void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown),

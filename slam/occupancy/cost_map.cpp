@@ -65,7 +65,7 @@ CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config) {
     for (int x = 0; x < w; ++x) {
       if (!is_obstacle(grid, x, y)) continue;
       map.costs(x, y) = kLethalCost;
-      // A cell amid obstacles is nearest to nothing else.
+      // A cell surrounded by obstacles is not the nearest obstacle of any free cell.
       if (is_obstacle(grid, x - 1, y) && is_obstacle(grid, x + 1, y) &&
           is_obstacle(grid, x, y - 1) && is_obstacle(grid, x, y + 1))
         continue;

@@ -35,12 +35,12 @@ std::uint8_t cost_at_distance(double distance_m, const CostMapConfig& config);
 
 /// Inflates the obstacles of a grid. Distances are between centers of cells, exact; the inflation
 /// radius is rounded up to whole cells (Nav2's inflation_layer.cpp does so, too). As in Nav2,
-/// unknown cells stay unknown but where the robot's disc would touch an obstacle (253).
+/// unknown cells stay unknown except where the robot's disc would touch an obstacle (253).
 /// @throws InputError naming a setting that is out of range, or a grid of resolution zero.
 CostMap cost_map(const OccupancyGrid& grid, const CostMapConfig& config = {});
 
-/// The costs as Nav2 publishes them for others to show, nav_msgs/OccupancyGrid: 0 free, 1 to 98
-/// inflated, 99 inscribed, 100 lethal, -1 unknown. In mode raw nav2_map_server reads these.
+/// The costs as Nav2 publishes them for display, nav_msgs/OccupancyGrid: 0 free, 1 to 98 inflated,
+/// 99 inscribed, 100 lethal, -1 unknown. In mode raw nav2_map_server reads these.
 OccupancyGrid as_published(const CostMap& map);
 
 /// Writes stem.pgm and stem.yaml: a gray level is the cost as Nav2 numbers it. (map_server reads

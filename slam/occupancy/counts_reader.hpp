@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// Takes numbers from the front of a byte string, little-endian as they lie.
+/// Takes numbers from the front of a byte string, little-endian.
 class CountsReader {
  public:
   CountsReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}

@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3i;
 
-/// A detection tells of an object that had at least this share of its voxels before. From 0.2 to
-/// 0.33 the objects of the model house are the same.
+/// A detection belongs to an object that already had at least this share of its voxels. Shares from
+/// 0.2 to 0.33 give the same objects in the model house.
 constexpr double kLeastShare = 0.25;
 
 }  // namespace
@@ -44,7 +44,7 @@ DetectedObjects::Id DetectedObjects::at(const Vector3i& voxel) const {
 struct DetectionAssociation::Detection {
   ClassId class_id = kVoid;
   std::vector<std::uint64_t> voxels;
-  std::map<Object, double> before;  ///< share of its voxels that was of an object, by votes
+  std::map<Object, double> before;  ///< share of its voxels that belonged to an object, by votes
   Object object = 0;
 };
 
@@ -162,7 +162,7 @@ DetectedObjects DetectionAssociation::objects(const VoxelMap& map) const {
   });
   DetectedObjects::Id next = 0;
   for (auto& [object, id] : ids) {
-    if (next == std::numeric_limits<DetectedObjects::Id>::max()) break;  // the rest has none
+    if (next == std::numeric_limits<DetectedObjects::Id>::max()) break;  // the rest get no id
     id = ++next;
   }
   std::vector<DetectedObjects::Entry> entries;

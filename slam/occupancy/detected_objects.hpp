@@ -16,11 +16,11 @@ namespace mh {
 
 class VoxelMap;
 
-/// The place of a voxel as one number; equal places have equal numbers. 2^20 voxels each way.
+/// The index of a voxel as one number, unique within 2^20 voxels each way.
 std::uint64_t key_of(const Eigen::Vector3i& voxel);
 
-/// Which detected object each voxel of a map is of, and which objects are known to be two: two
-/// chairs that touch are one body of voxels, but two detections.
+/// Which detected object each voxel of a map belongs to, and which objects are known to be
+/// separate: two chairs that touch are one cluster of voxels, but two detections.
 class DetectedObjects {
  public:
   using Id = std::uint16_t;  ///< 0: none
@@ -47,14 +47,14 @@ class DetectedObjects {
   std::unordered_map<std::uint64_t, Id> at_;  // only looked up, never walked
 };
 
-/// Recognizes objects from view to view: a detection is of an object that had at least a quarter of
-/// its voxels before, or of a new one. Those that agree in the most voxels find each other first.
+/// Associates detections across views: a detection belongs to an object that already had at least a
+/// quarter of its voxels, or to a new one. Pairs that share the most voxels are matched first.
 class DetectionAssociation {
  public:
-  /// Views in order of time: each is compared with what the earlier ones told.
+  /// Adds the next view, in order of time: it is compared with the earlier ones.
   void add(const VoxelView& view);
-  /// Each voxel with a class is of the object of this class that most views gave it to. Objects are
-  /// apart if more views showed two detections where they are than one.
+  /// Each voxel with a class belongs to the object of this class that most views assigned it to.
+  /// Two objects are apart if more views showed them as two detections than as one.
   DetectedObjects objects(const VoxelMap& map) const;
 
  private:
@@ -70,10 +70,10 @@ class DetectionAssociation {
 
   Object most_voted(const std::vector<Votes>& votes, ClassId class_id) const;
   std::vector<Detection> detections_of(const VoxelView& view) const;
-  /// Gives each detection its object. The largest agreements first, and no object twice: it has one
-  /// detection in a view.
+  /// Assigns each detection its object: largest overlaps first, and no object twice, since an
+  /// object has one detection per view.
   void recognize(std::vector<Detection>& detections);
-  /// Counts which objects of one class they show as one and which as two.
+  /// Counts which objects of one class the detections show as one and which as two.
   void compare(const std::vector<Detection>& detections);
 
   std::vector<ClassId> classes_;                                 ///< of each object

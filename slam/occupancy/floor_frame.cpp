@@ -29,7 +29,7 @@ struct Plane {
   double height(const Vector3d& point) const { return up.dot(point) - offset_m; }
 };
 
-/// What is known beside the points that a plane is sought in.
+/// What is known besides the points in which a plane is searched for.
 struct Surroundings {
   std::span<const LabeledPoint> all;
   std::span<const SE3> cameras;
@@ -78,7 +78,7 @@ Plane refined(const Plane& plane, const std::vector<Vector3d>& points) {
   return better;
 }
 
-/// The plane with the most points that can be a floor; RANSAC with draws of its own.
+/// The plane with the most points that can be a floor; RANSAC with its own random draws.
 std::optional<Plane> best_plane(const std::vector<Vector3d>& points, const Surroundings& around) {
   if (points.size() < kLeastPoints) return std::nullopt;
   constexpr std::uint64_t kDraws = 500;  // finds a plane of a fifth of the points with p = 0.98

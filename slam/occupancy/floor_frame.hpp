@@ -23,12 +23,12 @@ struct FloorFrame {
   SE3 floor_from_world;    ///< z = 0 is the floor, z up; x is the first camera's viewing direction
   double spread_m = 0;     ///< median distance of the floor's points from the plane
   std::size_t points = 0;  ///< that support it
-  bool by_labels = false;  ///< false: labels were missing or misled, geometry decided
+  bool by_labels = false;  ///< false: without usable labels, geometry decided
 };
 
-/// Finds the floor: the plane of the points labeled floor, if it is where a floor can be: below
-/// the cameras and across their path, with next to nothing below it. Otherwise the largest plane
-/// that is. Deterministic.
+/// Finds the floor: the plane of the points labeled floor, if it is where a floor can be: below the
+/// cameras and across their path, with next to nothing below it. Otherwise the largest plane for
+/// which this holds. Deterministic.
 /// @param cameras  poses along the path, in order; their y axis points down
 /// @returns nullopt if no plane supports a floor.
 std::optional<FloorFrame> find_floor_frame(std::span<const LabeledPoint> points,

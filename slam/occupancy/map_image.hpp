@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The file format under grids and costs: a PGM image beside a YAML file, as map_server reads them.
+// The file format of grids and costs: a PGM image beside a YAML file, as map_server reads them.
 
 #include <array>
 #include <cstdint>
@@ -29,8 +29,8 @@ struct MapImage {
 /// stem.pgm and stem.yaml.
 std::array<std::filesystem::path, 2> map_image_files(const std::filesystem::path& stem);
 
-/// @throws InputError if one of the two is there and not from write_map_image(), or if the stem
-/// names no file or ends in .pgm or .yaml.
+/// @throws InputError if one of the two exists but was not written by write_map_image(), or if the
+/// stem names no file or ends in .pgm or .yaml.
 void require_replaceable_map_image(const std::filesystem::path& stem);
 
 /// Writes stem.pgm (upper row = north) and stem.yaml. @throws InputError naming the file.
@@ -40,7 +40,7 @@ void write_map_image(const MapImage& map, const std::filesystem::path& stem, con
 std::filesystem::path image_of_map(const std::filesystem::path& yaml_file);
 
 /// Reads the keys image, resolution and origin, and the image: a PGM, binary or text, whose levels
-/// are scaled to 0 to 255, or what `decode` knows. The caller reads the other keys.
+/// are scaled to 0 to 255, or a format that `decode` reads. The caller reads the other keys.
 /// @param warnings  receives what was ignored; may be null
 /// @throws InputError naming file, line, field and value.
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,

@@ -297,7 +297,8 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
         continue;
       }
       const double p = negate ? level / 255.0 : 1.0 - level / 255.0;
-      // A level on a threshold counts as beyond it, on both as free: as nav2_map_server.
+      // A level equal to a threshold counts as beyond it, and as free if it equals both, as in
+      // nav2_map_server.
       grid.cells(x, y) =
           !map.clear.empty() && map.clear[pixel] ? kUnknownCell
           : p <= free                            ? kFreeCell

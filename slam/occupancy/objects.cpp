@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// Structure, and what is no thing at all.
+/// Structure, and classes that are not objects.
 constexpr std::array<ClassId, 10> kNotThings = {
     kVoid,      1 /*wall*/,     2 /*floor*/,           8 /*door*/,    9 /*window*/,
     20 /*mat*/, 22 /*ceiling*/, 38 /*otherstructure*/, 31 /*person*/, kBackground};
@@ -50,7 +50,7 @@ class Groups {
   std::vector<std::size_t> parent_;
 };
 
-/// Half of a voxel's 26 neighbors, the others being their opposites: so each pair is met once.
+/// Half of a voxel's 26 neighbors, the others being their opposites: so each pair is visited once.
 const std::vector<Vector3i>& forward_neighbors() {
   static const std::vector<Vector3i> kAll = [] {
     std::vector<Vector3i> all;
@@ -66,7 +66,7 @@ const std::vector<Vector3i>& forward_neighbors() {
 struct Cluster {
   std::vector<std::size_t> voxels;
   Vector3i low, high;                      ///< both included
-  std::set<DetectedObjects::Id> detected;  ///< which detected objects they are of
+  std::set<DetectedObjects::Id> detected;  ///< which detected objects they belong to
 };
 
 using Detected = std::set<DetectedObjects::Id>;
@@ -77,7 +77,7 @@ bool are_apart(const Detected& a, const Detected& b, const DetectedObjects& dete
   });
 }
 
-/// Voxels that touch, corners included, unless they are of objects that are apart. Where three
+/// Voxels that touch, corners included, unless they belong to objects that are apart. Where three
 /// objects touch and not all may merge, those with the longest border do.
 std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels,
                                  const DetectedObjects& detected) {
@@ -176,8 +176,8 @@ void merge_fragments(std::vector<Cluster>& clusters, const DetectedObjects& dete
   clusters = std::move(merged);
 }
 
-/// Where the votes of an object lie along an axis: the least and the greatest index without the
-/// hundredth of the votes beyond each of them. What few views voted for is noise at edges.
+/// Extent of an object's votes along an axis: least and greatest index, ignoring the outermost
+/// hundredth of the votes on each side. Voxels with few votes are noise at edges.
 std::pair<int, int> extent_of(const Cluster& cluster, const std::vector<LabeledVoxel>& voxels,
                               int axis) {
   std::map<int, std::uint64_t> votes;
@@ -200,7 +200,7 @@ std::pair<int, int> extent_of(const Cluster& cluster, const std::vector<LabeledV
 MapObject object_of(const Cluster& cluster, const std::vector<LabeledVoxel>& voxels, double r,
                     const ObjectsConfig& config) {
   MapObject object;
-  object.min_m.z() = r * cluster.low.z();  // legs are thin: few votes are no noise there
+  object.min_m.z() = r * cluster.low.z();  // legs are thin: few votes are not noise there
   object.max_m.z() = r * (cluster.high.z() + 1);
   for (int axis = 0; axis < 2; ++axis) {
     const auto [low, high] = extent_of(cluster, voxels, axis);

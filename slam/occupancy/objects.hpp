@@ -28,7 +28,7 @@ struct MapObject {
 
 struct ObjectsConfig {
   int min_voxels = 6;  ///< smaller clusters are label noise
-  /// Voxels of one class that touch are connected, unless they are of objects that are apart
+  /// Voxels of one class that touch are connected, unless they belong to objects that are apart
   /// (DetectedObjects). A cluster of at most a quarter of another's voxels, not apart from it, is
   /// merged into it if the gap between their boxes is at most this,
   double gap_m = 0.10;
@@ -37,8 +37,8 @@ struct ObjectsConfig {
   double min_label_share = 0.5;  ///< of a voxel's votes, for it to count as its class
 };
 
-/// Whether a class is of things, in contrast to structure (wall, floor, ceiling, ...), unknown
-/// labels and people.
+/// Whether a class is a kind of object, not structure (wall, floor, ceiling, ...), unknown or a
+/// person.
 bool is_thing(ClassId class_id);
 
 /// Finds the objects of a map, computed from its voxels alone: they move with the map. Ordered by

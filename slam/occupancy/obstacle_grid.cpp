@@ -39,7 +39,7 @@ void for_each_cell_before(const Vector2d& from, const Vector2d& to, Visit visit)
   Vector2i cell = from.array().floor().cast<int>();
   const Vector2i last = to.array().floor().cast<int>();
   const Vector2d way = to - from;
-  Vector2d next, per_cell;  // shares of the way: to the next border, between borders
+  Vector2d next, per_cell;  // shares of the line: to the next border, between borders
   Vector2i step;
   for (int axis = 0; axis < 2; ++axis) {
     step[axis] = way[axis] > 0 ? 1 : -1;
@@ -64,7 +64,7 @@ OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& confi
   if (!(low_m < high_m))
     throw InputError(fmt::format("grid: nothing is between {} m and {} m", low_m, high_m));
   constexpr int kFar = std::numeric_limits<int>::max();
-  /// What is known of the voxels above a cell.
+  /// What is known about the voxels above a cell.
   struct Column {
     bool occupied = false;
     int lowest = kFar, highest = -kFar, free = 0;  ///< of its free voxels

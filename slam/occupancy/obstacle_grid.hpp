@@ -16,15 +16,15 @@ namespace mh {
 /// Which part of a map obstructs a robot. Heights above the map's z = 0.
 struct ObstacleGridConfig {
   double floor_z_m = 0.0;
-  /// What is lower than this above the floor is floor. 0.10 m: two voxels; depth noise at 4 m stays
-  /// below it. Voxels larger than that: half of it and half of a voxel.
+  /// Anything lower than this above the floor is floor. 0.10 m: two voxels; depth noise at 4 m
+  /// stays below it. For voxels larger than that: half of it plus half a voxel.
   double ground_m = 0.10;
   double robot_height_m = 1.21;  ///< what is higher does not touch the robot
-  /// A cell is free if it is free from below this height above the floor on: what was seen only
-  /// above may hide something low.
+  /// A cell is free only if its free voxels begin below this height above the floor: otherwise,
+  /// something low may be hidden.
   double seen_below_m = 0.50;
 
-  /// Height (m) from which on the center of a voxel of that size makes it part of the band.
+  /// Height (m) that the center of a voxel of that size must reach to be part of the band.
   double lowest_m(double resolution_m) const {
     // A large voxel that begins lower than half of ground_m holds the floor.
     return floor_z_m + std::max(ground_m, 0.5 * (ground_m + resolution_m));
@@ -33,15 +33,16 @@ struct ObstacleGridConfig {
 
 /// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
 /// occupied if any voxel there is, so a table top is an obstacle and a lintel is not; free if none
-/// is, the lower part was seen free, and no gap is between what was seen free: a table top that
-/// gave no return has free space below and above it; else unknown. Empty if nothing was seen there.
+/// is, the lower part was seen free, and the free voxels have no gap (a table top without a return
+/// has free space below and above it); else unknown. Empty if nothing was seen there.
 /// @throws InputError if the heights leave nothing between them.
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
 
-/// 1 in each cell that is not known to be free: where nobody should plan to go.
+/// 1 in each cell that is not known to be free: where paths must not lead.
 Grid2d<std::uint8_t> blocked_cells(const OccupancyGrid& grid);
 
-/// One turn of a planar laser. A range of 0, or not finite, or outside [min, max], tells nothing.
+/// One revolution of a planar laser. A range that is 0, not finite, or outside [min, max] is
+/// ignored.
 struct RangeScan {
   double first_angle_rad = 0;      ///< of ranges_m[0], about z of the sensor, 0 = its x axis
   double angle_increment_rad = 0;  ///< between readings
@@ -49,7 +50,7 @@ struct RangeScan {
   std::vector<float> ranges_m;
 };
 
-/// What lasers saw of a floor, as counts per cell: a second source of a grid beside depth. Counts
+/// What lasers saw of a floor, as counts per cell: a second source for a grid besides depth. Counts
 /// depend on the set of scans alone, not on their order.
 class ScanGrid {
  public:
@@ -58,13 +59,13 @@ class ScanGrid {
   void add_scan(const SE3& map_from_sensor, const RangeScan& scan) {
     tell(map_from_sensor, scan, 1);
   }
-  /// Takes back a scan that was added with the same pose and readings.
+  /// Removes a scan that was added with the same pose and readings.
   void remove_scan(const SE3& map_from_sensor, const RangeScan& scan) {
     tell(map_from_sensor, scan, -1);
   }
   /// Adds what the scans say to a grid, which grows as needed: occupied where the log-odds of hits
   /// and misses (VoxelMap's increments) are not negative, free where they saw through and the grid
-  /// knows nothing. Occupied cells of the grid stay: the laser's plane passes below a table top.
+  /// is unknown. Occupied cells of the grid stay: the laser's plane passes below a table top.
   /// @pre the grid's origin is a multiple of its resolution, as of obstacle_grid()
   /// @throws InputError if the resolutions differ.
   void add_to(OccupancyGrid& grid) const;

@@ -55,14 +55,15 @@ struct GrayImage {
   Grid2d<std::uint8_t> levels;
   std::vector<bool> clear;  ///< empty: all are opaque
 };
-/// Decodes the bytes of an image that is no PGM. @throws InputError stating what is wrong with it
+/// Decodes the bytes of an image that is not a PGM. @throws InputError stating what is wrong with
+/// it
 using ImageDecoder = std::function<GrayImage(const std::string& bytes)>;
 
 /// Reads a map by its YAML file as nav2_map_server does: in mode trinary, scale or raw (which it
-/// documents), turned or not; pixels that are not opaque are unknown but in mode raw.
-/// @param decode    of images that are no PGM; null: they are refused
-/// @param warnings  receives what was ignored: keys that map_server does not define, bytes behind
-///                  the image, values out of range; may be null
+/// documents), rotated or not; pixels that are not opaque are unknown except in mode raw.
+/// @param decode for images other than PGM; null: they are refused
+/// @param warnings  receives what was ignored: keys that map_server does not define, bytes after
+/// the image, values out of range; may be null
 /// @throws InputError naming file, line, field and value.
 OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
                               std::vector<std::string>* warnings = nullptr,

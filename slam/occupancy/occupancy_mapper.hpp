@@ -16,9 +16,9 @@ namespace mh {
 struct OccupancyConfig {
   DepthModel depth;
   int stride_px = 4;  ///< every n-th pixel of every n-th row is kept: 3 cm apart at 4 m
-  /// Poses are rounded to multiples of these before they are used, so that a keyframe is told anew
-  /// only if it moved to another multiple, and the map is a function of the poses alone. 5 mm and
-  /// 1.25 mrad (5 mm at 4 m): a tenth of a voxel.
+  /// Poses are rounded to multiples of these before they are used, so that a keyframe is integrated
+  /// again only if it moved to another multiple, and the map is a function of the poses alone. 5 mm
+  /// and 1.25 mrad (5 mm at 4 m): a tenth of a voxel.
   double pose_step_m = 0.005, pose_step_rad = 0.00125;
 };
 
@@ -28,8 +28,8 @@ struct OccupancyUpdate {
 };
 
 /// A voxel map that follows the poses of its keyframes: when a loop closure or an adjustment moves
-/// them, what they told is taken back and told anew. After each update the map equals, to the bit,
-/// a map built at once from the same keyframes at the same poses.
+/// them, their contributions are removed and added again. After each update the map equals, to the
+/// bit, a map built at once from the same keyframes at the same poses.
 class OccupancyMapper {
  public:
   /// @throws InputError naming the setting that is out of range.
@@ -39,12 +39,12 @@ class OccupancyMapper {
   /// stamp replaces the earlier one. @throws InputError if the size is not the camera's.
   void keep(const RgbdFrame& frame);
   /// Makes the map agree with these poses: kept keyframes that have one are added or moved, those
-  /// without one are taken back (they stay kept).
+  /// without one are removed (but stay kept).
   /// @param map_from_world  the map's frame, z up
   OccupancyUpdate update(const Trajectory& world_from_camera, const SE3& map_from_world = {});
 
-  /// Notes in the map which objects its voxels are of, by the detections of all keyframes. To be
-  /// called after the last update(): the next one forgets it.
+  /// Records in the map which objects its voxels belong to, by the detections of all keyframes.
+  /// Call it after the last update(): the next update discards it.
   void associate_detections();
 
   const VoxelMap& map() const { return map_; }
@@ -53,7 +53,7 @@ class OccupancyMapper {
   /// unknown.
   const Grid2d<float>* depth_of(Stamp stamp_ns) const;
   const PixelLabels* labels_of(Stamp stamp_ns) const;
-  /// Of all kept keyframes, in order.
+  /// Stamps of all kept keyframes, in order.
   std::vector<Stamp> stamps() const;
   const Camera& thin_camera() const { return camera_; }
 
@@ -61,7 +61,7 @@ class OccupancyMapper {
   struct Kept {
     Grid2d<float> depth_m;
     PixelLabels labels;
-    std::optional<SE3> pose;  ///< rounded, at which it was told
+    std::optional<SE3> pose;  ///< rounded; at which it was integrated
     VoxelView told;
   };
   SE3 rounded(const SE3& map_from_camera) const;

@@ -20,7 +20,7 @@ struct OctomapHeader {
   double resolution_m = 0;
 };
 
-/// @throws InputError if it is no OctoMap file.
+/// @throws InputError if it is not an OctoMap file.
 OctomapHeader read_octomap_header(std::istream& in, const std::string& name);
 
 /// A cube of voxels that are alike.
@@ -31,7 +31,7 @@ struct OctomapLeaf {
 };
 
 /// Reads the nodes after the header. @param visit  receives each leaf @returns how many nodes
-/// @pre the type is OcTree or ColorOcTree @throws InputError if they are cut short or too deep.
+/// @pre the type is OcTree or ColorOcTree @throws InputError if they are truncated or too deep.
 std::size_t read_octomap_nodes(CountsReader& in, const OctomapHeader& header,
                                const std::function<void(const OctomapLeaf&)>& visit);
 

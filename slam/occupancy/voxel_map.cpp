@@ -34,7 +34,7 @@ bool is_any(const VoxelBlock::Bits& bits) {
   return std::ranges::any_of(bits, [](std::uint64_t word) { return word != 0; });
 }
 
-/// Replaces what one view told of a block by what another does.
+/// Replaces one view's contribution to a block with another's.
 void replace_block(VoxelTree& tree, const VoxelBlock& before, const VoxelBlock& after) {
   const VoxelBlock::Bits free = without(after.free, before.free),
                          not_free = without(before.free, after.free),

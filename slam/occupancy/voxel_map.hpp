@@ -48,8 +48,8 @@ inline constexpr float kHitLogOdds = 0.85F, kMissLogOdds = -0.4F, kLeastLogOdds 
 
 /// An octree of occupancy and classes: an OctoMap tree whose nodes count the views that hit them,
 /// those that looked through them, and the votes for their class. Log-odds are computed from the
-/// counts and limited at the end; OctoMap limits them after each update. So a view can be taken
-/// back exactly, and equal sets of views give equal maps whatever happened in between. Frame: z up.
+/// counts and limited at the end; OctoMap limits them after each update. So a view can be removed
+/// exactly, and equal sets of views give equal maps whatever happened in between. Frame: z up.
 class VoxelMap {
  public:
   /// @param resolution_m  side of a voxel, positive
@@ -59,17 +59,17 @@ class VoxelMap {
   VoxelMap& operator=(VoxelMap&&) noexcept;
 
   double resolution_m() const;
-  /// Takes back one view and adds another; only voxels in which they differ are touched.
-  /// @param before  was added earlier; nullptr: nothing is taken back
+  /// Removes one view and adds another; only voxels in which they differ are touched.
+  /// @param before  was added earlier; nullptr: nothing is removed
   /// @param after   nullptr: nothing is added
   void replace(const VoxelView* before, const VoxelView* after);
 
-  /// Notes which objects its voxels are of; what replace() changes later does not change it.
+  /// Records which objects its voxels belong to; later calls of replace() do not update it.
   void set_detected(DetectedObjects objects);
   const DetectedObjects& detected() const;
 
-  /// Whether its frame stands on a floor (z up). Where none was found, it is some camera's, and
-  /// heights mean nothing in it. Default: true.
+  /// Whether z = 0 of its frame is a floor (z up). If no floor was found, the frame is a camera's,
+  /// and heights in it are meaningless. Default: true.
   void set_on_floor(bool on_floor);
   bool on_floor() const;
 
@@ -100,8 +100,8 @@ class VoxelMap {
   void save_ot(const std::filesystem::path& file) const;
   static VoxelMap load_ot(const std::filesystem::path& file);
   /// Loads an octree of any program: OcTree or ColorOcTree, .ot or .bt. Without our counts, each
-  /// voxel is one that a single view hit or looked through, of no class.
-  /// @param notes  receives a line if it is so @throws InputError naming the file
+  /// voxel counts as hit or seen through by a single view, without a class.
+  /// @param notes receives a line in that case @throws InputError naming the file
   static VoxelMap load_octree(const std::filesystem::path& file, std::vector<std::string>& notes);
 
  private:

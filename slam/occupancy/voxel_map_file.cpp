@@ -1,18 +1,12 @@
-// SPDX-License-Identifier: Apache-2.0
-// The counts that follow the tree in an .ot file, little-endian:
-//   the line "modelhouse voxel counts 3", or "... 4" where the map's frame stands on no floor
-//   u64  size of the content
-//   content: f64 resolution (m)
-//     u32       voxels of detected objects; for each, by place: 3 x i16 voxel, u16 object
-//     u32       pairs of objects that are apart; for each, ascending: 2 x u16
-//     (version 1 has neither of the two)
-//   for each block of 8 x 8 x 8 voxels with any known voxel:
-//     3 x i16   index of the block
-//     8 x u64   known voxels, bit x + 8 y of word z
-//     for each of them, by place: hits, misses, number of votes; then class and views of each vote
-//     (numbers in groups of 7 bits, the lowest first; the top bit says that another group follows)
-//   u64  xxh3-64 of all bytes before it, from the beginning of the file (versions 1 and 2: of the
-//        content alone)
+// SPDX-License-Identifier: Apache-2.0 The counts that follow the tree in an .ot file,
+// little-endian: the line "modelhouse voxel counts 3", or "... 4" if the map's frame has no floor
+// u64  size of the content content: f64 resolution (m) u32       voxels of detected objects; for
+// each, by place: 3 x i16 voxel, u16 object u32       pairs of objects that are apart; for each,
+// ascending: 2 x u16 (version 1 has neither of the two) for each block of 8 x 8 x 8 voxels with any
+// known voxel: 3 x i16   index of the block 8 x u64   known voxels, bit x + 8 y of word z for each
+// of them, by place: hits, misses, number of votes; then class and views of each vote (numbers in
+// groups of 7 bits, the lowest first; the top bit says that another group follows) u64  xxh3-64 of
+// all bytes before it, from the beginning of the file (versions 1 and 2: of the content alone)
 #include <bit>
 #include <cmath>
 #include <iostream>
@@ -52,7 +46,7 @@ constexpr std::string_view kFloorlessMagic = "modelhouse voxel counts 4\n",
                            kSecondCountsMagic = "modelhouse voxel counts 2\n",
                            kFirstCountsMagic = "modelhouse voxel counts 1\n";
 
-/// A full tree of more would fill the memory of a small machine.
+/// A larger full tree would fill the memory of a small machine.
 constexpr std::size_t kMostForeignVoxels = 30'000'000;
 
 template <class T>

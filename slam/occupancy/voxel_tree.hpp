@@ -29,8 +29,8 @@ class VoteList {
   std::unique_ptr<ClassVote[]> votes_;  ///< element 0 holds their number as `views`
 };
 
-/// A node of the tree: OctoMap's log-odds, and the counts that they follow from. Counts and votes
-/// are of leaves alone.
+/// A node of the tree: OctoMap's log-odds, and the counts that they follow from. Only leaves have
+/// counts and votes.
 class VoxelNode : public octomap::OcTreeNode {
  public:
   VoxelNode() = default;
@@ -62,7 +62,8 @@ class VoxelNode : public octomap::OcTreeNode {
   VoteList votes;
 };
 
-/// An OctoMap occupancy tree of these nodes. Never pruned: equal log-odds may have other counts.
+/// An OctoMap occupancy tree of these nodes. Never pruned: equal log-odds may have different
+/// counts.
 class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
  public:
   explicit VoxelTree(double resolution_m) : OccupancyOcTreeBase(resolution_m) {}
@@ -74,7 +75,7 @@ class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
   static constexpr unsigned kBlockLevels = 3;
   static constexpr int kMiddle = 32768;  ///< the key of voxel 0
 
-  /// Whether a block is inside of the tree.
+  /// Whether a block is inside the tree.
   static bool holds(const Eigen::Vector3i& block) {
     return (block.array() >= -kMiddle / 8).all() && (block.array() < kMiddle / 8).all();
   }
@@ -83,7 +84,8 @@ class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
   VoxelNode& block(const Eigen::Vector3i& index);
   /// The voxel at a place of a block (bit x + 8 y + 64 z), made if it does not exist.
   VoxelNode& voxel(VoxelNode& block, unsigned place);
-  /// Deletes the nodes of a block that nobody tells of any more, and the block if none is left.
+  /// Deletes the nodes of a block that no view has observed any more, and the block if none is
+  /// left.
   void drop_untold(const Eigen::Vector3i& index);
 
  private:

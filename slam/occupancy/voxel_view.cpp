@@ -113,7 +113,7 @@ struct Hit {
   VoxelVote vote;
 };
 
-/// The blocks around a camera, as far as it can tell.
+/// The blocks around a camera, within its range.
 struct BlockBox {
   BlockBox(const Vector3d& eye, const DepthModel& model) {
     const int reach = static_cast<int>(std::ceil(model.max_range_m / model.resolution_m)) + 1;
@@ -241,12 +241,12 @@ class Clearing {
   }
 
  private:
-  /// Nearer than this to the camera's plane nothing is told: projections there are unbounded.
+  /// Nearer than this to the camera's plane nothing is decided: projections there are unbounded.
   static constexpr double kNearest_m = 0.1;
 
   enum class AtOnce { kNothing, kEverything, kUnclear };
 
-  /// What the corners of a block decide, without asking its voxels.
+  /// What the corners of a block decide, without testing its voxels.
   AtOnce at_once(const Vector3d& corner) const {
     const double side_m = kSide * model_.resolution_m, most_m = model_.max_range_m;
     constexpr double kFar = std::numeric_limits<double>::infinity();

@@ -14,7 +14,7 @@
 
 namespace mh {
 
-// What RANSAC over a minimal solver of OpenCV's needs, whichever solver it is.
+// What RANSAC needs for any of OpenCV's minimal solvers.
 
 /// N different indices below count, for one iteration. @pre count >= N
 template <std::size_t N>

@@ -10,7 +10,7 @@ namespace mh {
 
 /// What localize() would answer to a lost frame if one keyframe were its only candidate.
 struct Probe {
-  RelocalizationStage stage = RelocalizationStage::kNone;  ///< as of relocalize()
+  RelocalizationStage stage = RelocalizationStage::kNone;  ///< as in relocalize()
   std::optional<SE3> world_from_camera;
 };
 
@@ -18,7 +18,7 @@ struct Probe {
 /// @param frame   has its words
 /// @param stream  of localize(): the same draws, so that the winner among localize()'s candidates
 ///                answers bit-identically alone
-/// @param givens  bear on the trial, not on the refinement
+/// @param givens affect the trial, not the refinement
 Probe probe(KeyframeId candidate, const SlamState& frozen, const PreparedFrame& frame,
             RandomStream stream, const TrialGivens& givens = {});
 

@@ -138,8 +138,8 @@ void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   }
 }
 
-/// "Somebody.Else, Viewer.*": keys that nothing reads, those of the viewer as one.
-/// Nobody would miss the position of a window (Viewer.*) or the number of a format (File.version).
+/// "Somebody.Else, ...": keys that are not read, except those that do not matter here, such as the
+/// position of a window (Viewer.*) or the version of the format (File.version).
 std::string unread_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   const std::vector<std::string> known = keys.all();
   std::vector<std::string> unread;
@@ -213,7 +213,7 @@ void read_ros_distortion(YamlReader& list, const std::string& model, Camera& cam
   camera.distortion = distortion_of(d);
 }
 
-/// A calibration as written by ROS' camera_calibration. Our own sections may stand beside it.
+/// A calibration as written by ROS' camera_calibration. It may also contain our own sections.
 Settings read_camera_info(YamlReader yaml, Settings settings) {
   settings.has_camera = true;
   if (const auto ours = yaml.find("camera"))
@@ -247,7 +247,7 @@ Settings read_camera_info(YamlReader yaml, Settings settings) {
     read_ros_distortion(list, model, c);
     check_camera(c, list);
   }
-  // Used by stereo rigs and people.
+  // For stereo rigs and for people; not used here.
   for (const char* key : {"camera_name", "rectification_matrix", "projection_matrix"})
     yaml.find(key);
   return read_own(std::move(yaml), std::move(settings));

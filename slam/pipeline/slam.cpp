@@ -39,7 +39,7 @@ void rewind(SlamState& state) {
 
 namespace {
 
-/// The gamma with which labels hold the wished share of the keyframes' vectors.
+/// The gamma with which labels hold the requested share of the keyframes' vectors.
 double solved_gamma(const SlamState& state, SemanticConfig settings) {
   settings.gamma = 1;
   std::vector<double> shares;

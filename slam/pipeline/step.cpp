@@ -33,7 +33,7 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
   return report;
 }
 
-/// After a rewind, frames come again. A second keyframe of one image would count each of its
+/// After a rewind, frames are shown again. A second keyframe of one image would count each of its
 /// measurements twice, as if they agreed, and the map would grow with every rewind.
 bool is_keyframe(const Map& map, Stamp stamp_ns) {
   return std::any_of(map.keyframes().begin(), map.keyframes().end(),

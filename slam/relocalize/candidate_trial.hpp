@@ -20,7 +20,7 @@ struct PlaceMatchers {
   Matcher projection = Matcher::kRelocalizationProjection;
 };
 
-/// What a trial depends on of the settings that queries may have of their own: under equal ones a
+/// The settings that a trial depends on and that may differ between queries: if they are equal, a
 /// result can be reused.
 using TrialKey = std::tuple<double, bool, WiderSearch, double>;
 inline TrialKey trial_key(const SemanticConfig& s) {
@@ -36,7 +36,7 @@ struct CandidateAttempt {
   MatchCounts counts{};  ///< of this attempt alone
 };
 
-/// What an audit gives a trial to find what limits it. Empty wherever a system runs.
+/// Ground truth by which an audit finds what limits a trial. Empty in normal runs.
 struct TrialGivens {
   /// Which matches to keep; others are dropped as soon as they are found. Empty: all.
   std::function<bool(std::uint32_t feature, LandmarkId landmark)> allows = {};
@@ -53,10 +53,10 @@ struct TrialGivens {
 /// released program: EPnP on four matches at a time, gated at chi2_mono without depth; a consensus
 /// has half of the matches and at least ransac.min_inliers; as many tries as ransac.confidence
 /// demands for that share (35 for a half; the program counts with three points). Each consensus is
-/// refined; below min_inliers it is searched on (10 px, 100 bits), which counts only if both
-/// together reach min_inliers, and between 30 and min_inliers again (3 px, 64 bits). One departure:
-/// candidates are tried one after the other, not five tries each in turn. Which one wins may
-/// differ, not whether one can.
+/// refined. Below min_inliers, a guided search follows (10 px, 100 bits), which counts only if
+/// inliers and new matches together reach min_inliers; if between 30 and min_inliers remain, it is
+/// repeated (3 px, 64 bits). One departure: each candidate is tried to the end before the next, not
+/// five iterations each in rotation. Which candidate wins may differ, but not whether one does.
 CandidateAttempt try_candidate(KeyframeId candidate, const Query& query, const SlamContext& context,
                                RandomStream stream, PlaceMatchers matchers,
                                const TrialGivens& givens = {});

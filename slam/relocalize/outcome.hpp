@@ -23,7 +23,7 @@ constexpr std::string_view name(RelocalizationStage stage) {
   return name_of(stage, words(stage));
 }
 
-/// Of which queries the similarities are that equation 5 summed, over all of its sums. Those of
+/// Which queries computed the similarities that equation 5 summed, over all of its sums. Those of
 /// keyframes that share nothing with the query are not counted: they are 0 by definition.
 struct SummedScores {
   int terms = 0;

@@ -133,7 +133,7 @@ Camera lenient(const Camera& camera, const RelocalizeConfig& config) {
   return camera_of_trials;
 }
 
-/// Multiplies each score by how alike the sizes of things are, to a power, and sorts again.
+/// Multiplies each score by a power of size_agreement(), and sorts again.
 void prefer_near(std::vector<Candidate<KeyframeId>>& candidates, const Map& map,
                  const Features& features, double power) {
   for (Candidate<KeyframeId>& candidate : candidates)

@@ -30,7 +30,7 @@ struct RelocalizationResult {
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs = {});
 
-/// Algorithm 1's choice, and of which queries the similarities are that it summed.
+/// Algorithm 1's choice, and which queries computed the similarities that it summed.
 struct KeyframeSelection : CandidateSelection<KeyframeId> {
   SummedScores summed;
 };

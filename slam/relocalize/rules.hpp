@@ -15,11 +15,11 @@
 
 namespace mh {
 
-/// How alike the sizes are in which two views show the same classes, in (0, 1]: near 1 where they
-/// see things from the same distance. The size of a class in a view is the root mean square
-/// distance of its keypoints from their mean, px; classes with fewer than five keypoints in either
-/// view are left out. Mean over shared classes of the smaller size divided by the larger, weighted
-/// by the smaller number of keypoints; 1 if no class is shared.
+/// How similar the image sizes of the same classes are in two views, in (0, 1]: near 1 if both are
+/// seen from the same distance. The size of a class in a view is the root mean square distance of
+/// its keypoints from their mean, px; classes with fewer than five keypoints in either view are
+/// left out. Mean over shared classes of the smaller size divided by the larger, weighted by the
+/// smaller number of keypoints; 1 if no class is shared.
 double size_agreement(const Features& a, const Features& b);
 
 /// Interleaves two lists (first of a, first of b, second of a, ...) and drops repeated keyframes.

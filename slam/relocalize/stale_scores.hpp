@@ -14,7 +14,7 @@ struct StaleScores {
     std::int32_t query = 0;  ///< the number of that query, from 1; 0: there was none
   };
   std::vector<Score> of;     ///< by keyframe id
-  std::int32_t queries = 0;  ///< asked so far
+  std::int32_t queries = 0;  ///< made so far
 };
 
 }  // namespace mh

@@ -95,9 +95,9 @@ AugmentedVector augmented_vector(std::span<const Label> labels,
   return vector;
 }
 
-/// The gamma with which labels hold the wished share of the L1 mass of vectors (equation 1), on
-/// average over them. With m the share at gamma = 1, it is gamma m / (gamma m + 1 - m): it grows
-/// with gamma, so that bisection finds it.
+/// The gamma at which labels hold the requested share of the vectors' L1 mass (equation 1), on
+/// average. With m the share at gamma = 1, it is gamma m / (gamma m + 1 - m): it grows with gamma,
+/// so that bisection finds it.
 /// @param shares_at_one  AugmentedVector::label_mass() of each vector at gamma = 1
 /// @param wished         in [0, 1)
 /// @param most           returned where no smaller gamma is enough: some vectors have no labels
