@@ -27,7 +27,7 @@ struct FoundFloor {
 };
 
 /// Clips rooms that are boxes to 2 m around the things in the scene: ground that extends to the
-/// horizon is floor, but nobody drives, scans or takes images far from everything there is to see.
+/// horizon is floor, but nothing drives, scans or takes images far from all objects.
 void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& things_m);
 
 /// Finds the floor of a scene that does not state one: from faces of a walkable class, otherwise

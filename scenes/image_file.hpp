@@ -25,11 +25,11 @@ struct ImageSize {
 std::optional<ImageSize> announced_size(std::string_view bytes);
 
 /// What is wrong with a JPEG or PNG as a file, found without decoding it: "is truncated", or a
-/// PNG's wrong checksum; or the kind of the image if it is one that is not read. nullptr if
-/// nothing. Decoders would return an image whose end is gray, and at most report it on stderr.
+/// PNG's wrong checksum; or the kind of the image if it is not supported. nullptr if nothing.
+/// Decoders would return an image whose end is gray, and at most report it on stderr.
 const char* image_fault(std::string_view bytes);
 
-/// Whether the header declares more pixels than so few bytes can encode, or than anybody needs:
+/// Whether the header declares more pixels than so few bytes can encode, or than are ever needed:
 /// such files are refused before anything is allocated for them.
 bool claims_too_much(std::string_view bytes);
 

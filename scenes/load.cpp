@@ -94,8 +94,7 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings,
                  const SceneFrame& frame) {
-  std::vector<std::string> unheard;  // the same files are read whether or not anybody receives the
-                                     // warnings
+  std::vector<std::string> unheard;  // the same files are read whether or not warnings are wanted
   if (warnings == nullptr) warnings = &unheard;
   try {
     Scene scene = load(file, warnings, frame);

@@ -18,7 +18,7 @@
 namespace mh {
 
 /// Limits of a base. Those of velocity, acceleration and jerk are in any direction for an
-/// omnidirectional base; a differential one drives ahead and back alone.
+/// omnidirectional base; a differential one drives only forward and backward.
 struct BaseLimits {
   double max_velocity_m_per_s = 0.35;
   double max_acceleration_m_per_s2 = 0.3;
@@ -44,8 +44,8 @@ struct WheelBase {
   double radius_m = 0.07;
   /// The joints' velocity limit times the radius; infinite if they have none.
   double max_rim_m_per_s = std::numeric_limits<double>::infinity();
-  /// Base frame: what a differential base turns about and where it never moves sideways, the middle
-  /// of its wheels.
+  /// Base frame: the middle of its wheels, about which a differential base turns and where it never
+  /// moves sideways.
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
 };
 

@@ -15,7 +15,7 @@ namespace setting {
 inline constexpr SettingRange kImageSize_px = required({16, 8192}), kRate_hz = required({0.1, 240});
 }  // namespace setting
 
-/// Of `base`.
+/// Fields of `base`.
 template <MaybeConst<Robot> R, class Visit>
 void body_fields(R& robot, Visit& v) {
   v("mass_kg", robot.mass_kg, setting::required({0.1, 1000}), "of the whole robot");
@@ -56,7 +56,7 @@ void fields(C& c, Visit& v) {
   v("baseline_m", baseline_m, setting::required({1e-3, 1}), "from projector to infrared camera");
 }
 
-/// Of a calibrated camera.
+/// Fields of a calibrated camera.
 template <MaybeConst<Camera> C, class Visit>
 void size_fields(C& camera, Visit& v) {
   v("width_px", camera.width_px, setting::kImageSize_px, "");
@@ -67,13 +67,13 @@ void rate_fields(C& camera, Visit& v) {
   v("rate_hz", camera.rate_hz, setting::kRate_hz, "frames per second");
 }
 
-/// Of `wheels`, without their joints.
+/// Fields of `wheels`, without their joints.
 template <MaybeConst<WheelBase> C, class Visit>
 void wheel_fields(C& wheels, Visit& v) {
   v("radius_m", wheels.radius_m, setting::required({0.005, 1}), "");
 }
 
-/// Of a laser scanner, without its link and range.
+/// Fields of a laser scanner, without its link and range.
 struct FanFields {
   int rays = 0;
   double field_of_view_deg = 0;
@@ -87,7 +87,7 @@ void fields(C& c, Visit& v) {
     "from first to last ray");
 }
 
-/// Of a sonar, without its link and range.
+/// Fields of a sonar, without its link and range.
 struct ConeFields {
   double field_of_view_deg = 0, resolution_m = 0;
 };

@@ -194,7 +194,7 @@ std::string wrong_size(const urdf::GeometrySharedPtr& shape) {
   return "";
 }
 
-/// Describes moments that no body has; "" if one may.
+/// Describes moments of inertia that no body can have; "" if they are valid.
 std::string wrong_moments(const urdf::Inertial& body) {
   Eigen::Matrix3d inertia;
   inertia << body.ixx, body.ixy, body.ixz, body.ixy, body.iyy, body.iyz, body.ixz, body.iyz,

@@ -13,7 +13,8 @@
 namespace mh {
 namespace {
 
-/// Of axles that count as parallel, and as across the base: 1 degree, since URDFs round pi / 2.
+/// Tolerance for axles to count as parallel, or as across the base: 1 degree, since URDFs round pi
+/// / 2.
 constexpr double kAskew = 0.0175;
 
 /// @pre three wheels

@@ -35,7 +35,7 @@ Twist2d twist_of_rims(const WheelBase& wheels, const PerWheel& rims_m_per_s);
 /// The motion of a differential base whose middle drives ahead and that turns: the twist is that of
 /// the base's origin, which swings sideways if it is not the middle.
 Twist2d twist_of(const WheelBase& differential, double ahead_m_per_s, double turn_rad_per_s);
-/// How fast the middle drives ahead in a motion of the base. With twist_of(), a round trip.
+/// How fast the middle drives ahead in a motion of the base. The inverse of twist_of().
 double ahead_of(const WheelBase& differential, const Twist2d& twist);
 
 /// Follows a velocity command within limits of velocity, acceleration and jerk, with the base's

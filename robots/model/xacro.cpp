@@ -13,8 +13,7 @@
 namespace mh {
 namespace {
 
-using XacroNames =
-    std::vector<std::pair<std::string, std::string>>;  // what stands there, its value
+using XacroNames = std::vector<std::pair<std::string, std::string>>;  // the reference, its value
 
 constexpr std::string_view kPrefix = "xacro:";
 

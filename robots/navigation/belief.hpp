@@ -8,14 +8,14 @@
 namespace mh {
 
 struct BeliefConfig {
-  int agreeing = 5;         ///< answers in a row before one is believed
-  double agree_m = 0.15;    ///< answers agree if they differ by no more, wheels considered,
-  double agree_rad = 0.12;  ///< nor are turned by more
-  double blind_m = 4.0;     ///< driven without any answer, it is lost again
+  int agreeing = 5;         ///< agreeing answers in a row before they are accepted
+  double agree_m = 0.15;    ///< largest difference of agreeing answers, by odometry,
+  double agree_rad = 0.12;  ///< and of their headings
+  double blind_m = 4.0;     ///< after driving this far without an answer, it is lost
 };
 
-/// Where the robot believes to be in its map: what the SLAM system answers, carried on by the wheel
-/// odometry between answers. One answer is not believed; several in a row that agree are.
+/// The robot's estimate of its pose in its map: the SLAM system's answers, extrapolated by wheel
+/// odometry between them. One answer alone is not accepted; several in a row that agree are.
 class PlaceBelief {
  public:
   explicit PlaceBelief(const BeliefConfig& config = {}) : config_(config) {}

@@ -12,9 +12,9 @@ namespace mh {
 struct FollowConfig {
   double speed_m_per_s = 0.35;   ///< MaxVelXY's default (robots/pepper/pepper.yaml)
   double turn_rad_per_s = 0.6;   ///< lower than the base's: at 10 Hz, 3.4 degrees per frame
-  double ahead_m = 0.30;         ///< it steers to the place so far along the path
+  double ahead_m = 0.30;         ///< it steers to the place this far along the path
   double braking = 0.4;          ///< share of the base's acceleration: the jerk limit delays it
-  double face_rad = 0.5;         ///< turned farther from its way than this, it only turns
+  double face_rad = 0.5;         ///< turned farther from its path than this, it only turns
   double shell_margin_m = 0.04;  ///< kept from what the sensors show
   double arrived_m = 0.08;       ///< from the end of the path
 };

@@ -17,7 +17,7 @@ namespace mh {
 struct LocalMapConfig {
   double resolution_m = 0.05;
   double half_size_m = 5.0;  ///< of the window that moves along with the robot
-  // What the depth camera shows between these heights stands in the way. 8 cm: depth noise at
+  // What the depth camera shows between these heights is an obstacle. 8 cm: depth noise at
   // max_depth_m, seen from 1.1 m, stays below it.
   double bottom_m = 0.08, top_m = 1.25;
   double max_depth_m = 3.5;
@@ -25,7 +25,7 @@ struct LocalMapConfig {
   double blind_m = 1.2;
 };
 
-/// What lasers, bumpers and the depth camera have shown around the robot lately, in the frame of
+/// What lasers, bumpers and the depth camera have recently shown around the robot, in the frame of
 /// the wheel odometry: it needs no map and no pose in one. What was seen stays until the same kind
 /// of sensor sees through it.
 class LocalMap {
@@ -37,7 +37,7 @@ class LocalMap {
   /// Adds the scans of all lasers. @param lasers_m  as RobotReading's
   void add_lasers(const Equipment& equipment, std::span<const std::vector<float>> lasers_m,
                   const Pose2& odom_from_base);
-  /// Adds a depth image taken at that pose. Nothing where it has no return.
+  /// Adds a depth image taken at that pose. Pixels without a return are ignored.
   void add_depth(const Grid2d<float>& depth_m, const Camera& camera, const SE3& base_from_camera,
                  const Pose2& odom_from_base);
   /// Something was touched there.

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kEscape_m = 0.5;  // how far a way may lead to the first place with clearance
+constexpr double kEscape_m = 0.5;  // how far the first place with clearance may be
 
 }  // namespace
 
@@ -47,7 +47,7 @@ std::optional<std::vector<Vector2d>> way_to_look_around(const FloorGrid& grid,
                                                         const std::vector<Vector2d>& looked,
                                                         const LostConfig& config) {
   const Vector2d here = looked.back();
-  // Where it is tight, less than the usual clearance must do.
+  // In tight places, less than the usual clearance has to suffice.
   for (const double clearance_m : {config.clearance_m, 0.9 * config.clearance_m}) {
     const auto start = nearest_clear(grid, here, clearance_m, kEscape_m);
     if (!start) continue;

@@ -21,8 +21,8 @@ using Eigen::Vector2d;
 constexpr double kReplan_s = 1.0;
 constexpr double kProgress_m = 0.10;
 constexpr double kBackOff_s = 1.5, kBackOff_m_per_s = 0.08;
-constexpr double kShown_m = 1.5;       // what is nearer is looked at for braking
-constexpr double kSamePlace_m = 0.10;  // places equally near to a thing: the nearest by way counts
+constexpr double kShown_m = 1.5;       // what is nearer is considered for braking
+constexpr double kSamePlace_m = 0.10;  // places equally near to a thing: the shortest path decides
 constexpr double kFaced_rad = 0.1;
 constexpr double kBeforeThing_m = 0.1;
 constexpr double kReachSlack_m = 0.3;  // of the distances kept, beyond what counts as arrival
@@ -56,7 +56,7 @@ Grid2d<float> distances_m(const KnownMap& map, std::span<const Vector2d> places_
   Grid2d<float> away_m(grid.clearance_m.width(), grid.clearance_m.height(), kBeyond);
   for (int y = 0; y < away_m.height(); ++y)
     for (int x = 0; x < away_m.width(); ++x) {
-      if (map.blocked(x, y) != 0) continue;  // nobody stands there
+      if (map.blocked(x, y) != 0) continue;  // the robot cannot stand there
       const Vector2d place_m = grid.center_of({x, y});
       const Vector2d* nearest = nullptr;
       double nearest_m = reach_m;

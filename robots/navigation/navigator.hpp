@@ -17,7 +17,7 @@
 
 namespace mh {
 
-/// What a robot knows of a place that it has mapped.
+/// What a robot knows about a place that it has mapped.
 struct KnownMap {
   FloorGrid grid;                ///< clearance; what is unknown is blocked
   Grid2d<std::uint8_t> blocked;  ///< of the same cells: occupied or unknown
@@ -26,7 +26,7 @@ struct KnownMap {
 
 /// What to drive to: a thing of the robot's own map, seen from above.
 struct NavigatorGoal {
-  std::string name;                       ///< for what is said
+  std::string name;                       ///< for its messages
   std::vector<Eigen::Vector2d> places_m;  ///< centers of the cells that it covers, map frame
 };
 
@@ -35,9 +35,9 @@ struct NavigatorConfig {
   LostConfig lost;
   BeliefConfig belief;
   double lost_speed_m_per_s = 0.25;  ///< while it does not know where it is
-  // Clearances of the robot's center beyond its radius: the wanted one and what must do.
+  // Clearances of the robot's center beyond its radius: the desired one and the minimum.
   double margin_m = 0.08, least_margin_m = 0.03;
-  double worth_margin_m = 1.0;  ///< of way, for the wanted one in place of what must do
+  double worth_margin_m = 1.0;  ///< of detour, for the desired one instead of the minimum
   double reach_m = 0.9;         ///< it has arrived if the thing is no farther than this
   double patience_s = 10;       ///< without progress
   int most_recoveries = 4, most_bumps = 3;
@@ -63,7 +63,7 @@ enum class NavigatorState {
   kExploring,  ///< drives to where it looks around next, lost
   kPlanning,
   kDriving,
-  kFacing,   ///< at the end of its way, it turns to the thing
+  kFacing,   ///< at the end of its path, it turns to the thing
   kBacking,  ///< away from what it touched
   // Ends; the robot stands still.
   kArrived,
@@ -81,9 +81,10 @@ inline bool is_end(NavigatorState state) {
 const char* lacking_to_drive(const Robot& robot);
 
 /// Drives a robot to a place of its own map, from wherever it was put: looks around until it knows
-/// where it is, plans over the map and what its sensors show, follows the way, stops for what is in
-/// it, and says when it has arrived, is stuck or gives up. It receives what the robot measures and
-/// what its SLAM system answers, nothing else: its library links no scene and no simulator.
+/// where it is, plans over the map and what its sensors show, follows the path, stops for
+/// obstacles, and says when it has arrived, is stuck or gives up. It receives what the robot
+/// measures and what its SLAM system answers, nothing else: its library links no scene and no
+/// simulator.
 class Navigator {
  public:
   /// @param map    outlives it
@@ -100,11 +101,11 @@ class Navigator {
 
   NavigatorState state() const { return state_; }
   bool knows_its_place() const { return belief_.known(); }
-  /// Where it believes to be. @pre knows_its_place()
+  /// Its estimated pose. @pre knows_its_place()
   Pose2 map_from_base(const Pose2& odom_from_base) const {
     return belief_.map_from_odom() * odom_from_base;
   }
-  /// The way that it follows, in the map if it knows its place, else in the odometry's frame.
+  /// The path that it follows, in the map if it is located, else in the odometry's frame.
   const std::vector<Eigen::Vector2d>& path() const { return path_; }
   /// What it decided, one line each, since the last call.
   std::vector<std::string> take_said() { return std::exchange(said_, {}); }
@@ -126,7 +127,8 @@ class Navigator {
   bool aim_at(const NavigatorGoal& goal);
   bool find_way(const Pose2& map_from_base);
   std::string all_goals() const;
-  /// Looks around and plans again. @param forget  what the sensors showed: it may be wrong
+  /// Looks around and plans again. @param forget also forgets what the sensors showed, which may be
+  /// wrong
   void recover(const Perception& now, const std::string& why, bool forget = true);
   double away_from_goal_m(const Eigen::Vector2d& place_in_map_m) const;
 
@@ -154,12 +156,12 @@ class Navigator {
 };
 
 /// Distance (m) of each cell of a map from the nearest of some places, infinite beyond `reach_m`
-/// and where a wall is between: who stands behind a wall has not arrived.
+/// and where a wall is between: standing behind a wall is not arrival.
 Grid2d<float> distances_m(const KnownMap& map, std::span<const Eigen::Vector2d> places_m,
                           double reach_m);
 
-/// The place of a map that is best to stand at before a thing: the nearest to it, the nearest by
-/// way among those; nullopt if no place that can be reached from `from_m` is within reach.
+/// The best place of a map to stand in front of a thing: the nearest to it, among equals the one
+/// with the shortest path; nullopt if no place that can be reached from `from_m` is within reach.
 /// @param away_m  of each cell from the thing
 std::optional<Eigen::Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>& away_m,
                                             const Eigen::Vector2d& from_m, double clearance_m,

@@ -11,7 +11,7 @@ inline constexpr std::array<std::string_view, 12> kCategoryNames = {
     "bathroom", "bedroom", "bookstore",   "classroom", "conference_room", "copy_mail_room",
     "hallway",  "kitchen", "living_room", "lobby",     "office",          "misc"};
 
-/// Floors of many like rooms, beside the paper's categories.
+/// Floors of many like rooms, besides the paper's categories.
 inline constexpr std::array<std::string_view, 2> kFloorNames = {"hotel", "office_floor"};
 
 /// The text of scenes/categories/NAME.yaml or scenes/floors/NAME.yaml, embedded in the program: a

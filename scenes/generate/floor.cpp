@@ -54,7 +54,7 @@ std::optional<Draft> draw_room(const FloorGrammar& floor, double height_m, Dice 
   return room;
 }
 
-/// The same room with objects of its own.
+/// The same room with its own objects added.
 Draft inhabited(const Draft& design, const DrawRange& objects, Dice dice) {
   Draft room = design;
   room.dice = dice;
@@ -78,7 +78,7 @@ struct Place2d {
             std::max(a.y(), b.y())};
   }
   Side operator*(Side side) const { return turned ? opposite(side) : side; }
-  /// Of an opening.
+  /// Moves an opening.
   void move(OpeningPlan& opening) const {
     const Eigen::Vector2d from = *this * Eigen::Vector2d::Constant(opening.from_m),
                           to = *this * Eigen::Vector2d::Constant(opening.to_m);

@@ -9,8 +9,8 @@
 namespace mh::generate {
 
 /// Rooms of one design on both sides of a corridor, those on one side turned by 180 degrees. Shape,
-/// surfaces, furniture and fittings are the same in every room; what is drawn from the extras is
-/// each room's own.
+/// surfaces, furniture and fittings are the same in every room; only the extras are drawn for each
+/// room.
 GeneratedPlan generate_floor(const FloorGrammar& grammar, std::uint64_t seed);
 
 }  // namespace mh::generate

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, which is also where one enters
-constexpr double kRobotHeight_m = 1.25;  // what hangs higher is in nobody's way
+constexpr double kRobotHeight_m = 1.25;  // what hangs higher does not obstruct
 constexpr double kFlat_m = 0.03;         // rugs
 constexpr double kApart_m = 0.004;       // gap between neighbors: rounding must not make them
                                          // overlap

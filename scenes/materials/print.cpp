@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 64> kWords = {
     "SEVEN",  "RED",     "BRIDGE", "LAST",    "ART",    "SHIPS", "QUIET",   "WORLD",
     "OLD",    "PHYSICS", "DOORS",  "APPLE",   "SPRING", "WALKS", "FIRE",    "VOICES"};
 
-/// Draws in order from one stream: a painter asks for the next number and never twice for one.
+/// Sequential draws from one stream: each number is used once.
 class Dice {
  public:
   explicit Dice(RandomStream random) : random_(random) {}

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kHeader = 20;  // of a binary file, and of its first chunk, which is the JSON
+constexpr std::size_t kHeader = 20;  // of the file and its first chunk, before the JSON
 
 std::uint32_t number_at(std::string_view bytes, std::size_t at) {
   std::uint32_t number = 0;
@@ -50,7 +50,7 @@ void require_places(const Json& gltf, const std::filesystem::path& file) {
   }
 }
 
-/// Whether it is the version that has extensions of these kinds; none stated is taken for it.
+/// Whether it is glTF 2, which has these extensions; a file that states no version counts as 2.
 bool is_version_2(const Json& gltf) {
   const Json::json_pointer place("/asset/version");
   return !gltf.contains(place) || !gltf[place].is_string() ||

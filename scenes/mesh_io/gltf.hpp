@@ -16,11 +16,10 @@ struct RepairedGltf {
   std::string decoded;                 ///< its content; empty if there is none
 };
 
-/// The gate through which glTF files (text or binary) go to assimp: what the file states by
-/// extensions, quantized, sparse and compressed data, other texture coordinates than the first, and
-/// percent codes in names become plain glTF. Animations and skins, which are invisible, are
-/// removed: meshes stay in their modeled pose. nullopt: nothing to change, or not glTF, which
-/// assimp will report.
+/// Prepares a glTF file (text or binary) for assimp: extensions, quantized, sparse and compressed
+/// data, texture coordinates other than the first set, and percent codes in names become plain
+/// glTF. Animations and skins, which are invisible, are removed: meshes stay in their modeled pose.
+/// nullopt: nothing to change, or not glTF, which assimp will report.
 /// @param warnings  one line for each extension that changes what is seen and is left out; may be
 ///                  null
 /// @throws InputError naming the file: an unknown extension that it requires; an offset into its

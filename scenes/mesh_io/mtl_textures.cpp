@@ -18,7 +18,7 @@ constexpr std::string_view kBlanks = " \t\r";
 struct Option {
   std::string_view name;
   std::size_t most;  ///< arguments
-  bool numbers;      ///< they are, and may be fewer
+  bool numbers;      ///< arguments are numbers, and may be fewer
 };
 
 constexpr std::array<Option, 14> kOptions = {{{"-blendu", 1, false},
@@ -77,7 +77,7 @@ void honor(std::string_view option, const std::vector<std::string_view>& argumen
     texture.lost.push_back(option);
 }
 
-/// Parses what is behind the keyword.
+/// Parses what follows the keyword.
 Texture parse(std::string_view rest) {
   Texture texture;
   const std::vector<std::string_view> words = words_of(rest);

@@ -12,8 +12,8 @@
 
 namespace mh {
 
-/// Where a material's texture lies by an MTL's options `-s u v` and `-o u v`: texture coordinates
-/// are multiplied, then moved.
+/// How a material's texture is placed by an MTL's options `-s u v` and `-o u v`: texture
+/// coordinates are multiplied, then moved.
 struct MtlUvs {
   Eigen::Vector2f scale = Eigen::Vector2f::Ones(), offset = Eigen::Vector2f::Zero();
   bool operator==(const MtlUvs&) const = default;
@@ -24,14 +24,14 @@ struct MtlUvs {
   }
 };
 
-/// What MTL files state of textures that assimp does not read.
+/// What MTL files state about textures and assimp does not read.
 struct MtlTextures {
-  std::map<std::string, MtlUvs> uvs;  ///< by material; those whose texture is placed otherwise
+  std::map<std::string, MtlUvs> uvs;  ///< by material; only those with such options
   std::vector<std::string> warnings;
 };
 
 /// Removes the options of the textures that we show (`map_Kd -s 2 2 1 -bm 1 my image.png`), before
-/// or behind the name of the file, except -clamp, which assimp reads. nullopt: there are none.
+/// or after the name of the file, except -clamp, which assimp reads. nullopt: there are none.
 /// @param file  names the MTL in warnings: options that change what is seen and are not honored
 std::optional<std::string> without_options(std::string_view mtl, const std::filesystem::path& file,
                                            MtlTextures& textures);

@@ -19,7 +19,7 @@ struct PlyMesh {
   std::vector<Eigen::Vector3f> positions_m;
   std::vector<Rgb8> colors;           ///< sRGB, one per vertex; empty if the file has none
   std::vector<std::uint16_t> labels;  ///< vertex property `label`; empty if the file has none
-  // Of other data sets; empty if the file has none.
+  // From other data sets; empty if the file has none.
   std::vector<std::uint16_t> nyu40{};         ///< vertex property `NYU40` (3RScan)
   std::vector<std::uint32_t> objects{};       ///< vertex property `objectId` (3RScan)
   std::vector<std::uint32_t> face_objects{};  ///< face property `object_id` (Replica), per triangle

@@ -41,8 +41,8 @@ SE3 exchanged_axes() {
   return {rotation, Eigen::Vector3d::Zero()};
 }
 
-/// The page's T_m. Its 3x3 part is a rotation times 1.0593; a camera is rigid, so that the rotation
-/// alone is used.
+/// The page's T_m. Its 3x3 part is a rotation times 1.0593; a camera is rigid, so only the rotation
+/// is used.
 SE3 markers_from_camera() {
   Eigen::Matrix3d scaled;
   scaled << 1.0157, 0.1828, -0.2389,  //

@@ -29,12 +29,12 @@ struct LabelsOfFrames {
   std::function<std::string(std::size_t)> place;  ///< for messages
 };
 
-/// Ids of another table look like a place of nothing. Notes it if the first labels that can be read
-/// and show anything hold no id with a class.
+/// With the wrong table, a place looks empty. Adds a note if the first labels that can be read and
+/// are not empty contain no id with a class.
 void note_foreign_ids(const LabelsOfFrames& labels, const ClassMap& map,
                       const std::filesystem::path& table, std::vector<std::string>& notes);
 
-/// What is said of a table beside a recording without labels.
+/// The note on a table next to a recording without labels.
 std::string no_labels_note(const std::filesystem::path& table);
 
 /// A label image as exact distributions, one per class.

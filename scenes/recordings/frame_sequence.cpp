@@ -92,7 +92,7 @@ RecordedCamera eth3d_camera(const fs::path& file, const std::vector<RecordedFram
       const cv::Mat image = read_image(frame.color);
       camera.width_px = image.cols, camera.height_px = image.rows;
       break;
-    } catch (const InputError&) {  // is told where the frame is skipped
+    } catch (const InputError&) {  // is reported when the frame is skipped
     }
   }
   try {

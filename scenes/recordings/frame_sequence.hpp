@@ -24,12 +24,12 @@ struct ListedFrames {
   std::optional<DepthCamera> depth_camera;  ///< absent: depth is registered to color in the files
 };
 
-/// Notes a calibration file that states another scale of depth than the one that is used.
+/// Notes a calibration file that states a depth scale other than the one that is used.
 void note_depth_scale(double depth_per_meter, const RecordingConfig& config,
                       std::vector<std::string>& notes);
 
 /// The last step of opening files of images: loads the class map, leaves labels out if they are not
-/// wanted, and notes a class map without use or of another table.
+/// wanted, and notes a class map that is not used or does not fit the ids.
 OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
                             std::vector<std::string> notes = {});
 

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// Collects true poses that a data set writes as 4x4 matrices. A frame whose text is none (another
-/// number of values, one that is not finite, no rotation) has no truth, and is counted.
+/// Collects true poses that a data set writes as 4x4 matrices. A frame whose text is not a pose (a
+/// wrong number of values, one that is not finite, not a rotation) has no truth, and is counted.
 class MatrixPoses {
  public:
   /// @param text   16 numbers by rows

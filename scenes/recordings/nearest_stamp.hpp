@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// Color and depth images further apart in time are no pair, as in TUM's associate.py.
+/// Color and depth images further apart in time are not paired, as in TUM's associate.py.
 inline constexpr Stamp kMaxApart_ns = 20'000'000;
 
 /// Frames per second, from the median time between images in the order given, to 0.01 Hz; 30 for a

@@ -61,7 +61,7 @@ struct SequenceReader {
   /// The data set's name for the kind of place ("Bedroom / Hotel"), "" if it has none; null for
   /// layouts that never have one.
   std::string (*scene_type)(const std::filesystem::path&);
-  bool has_topics = false;  ///< RecordingConfig::topics means something
+  bool has_topics = false;  ///< RecordingConfig::topics applies
   /// Whether a recording is always a folder.
   bool is_of_folders() const { return std::string_view(place) == "FOLDER"; }
 };
@@ -79,7 +79,7 @@ std::pair<std::string, std::filesystem::path> split_sequence(const std::string& 
 std::string join_sequence(const std::string& layout, const std::filesystem::path& path);
 
 /// Removes a recording's path from the start of a message: a result must not depend on where the
-/// recording lies, and the cache serves copies of it elsewhere.
+/// recording is stored, and the cache serves copies of it elsewhere.
 std::string without_place(const std::string& message, const std::string& source);
 
 /// The layout of a recording: by its name, otherwise by the files at its path.

@@ -119,7 +119,7 @@ void fill_meters(const cv::Mat& depth, std::uint16_t no_depth, Number per_meter,
   }
 }
 
-/// Takes blue for red, as it stands in the image.
+/// Takes blue as red, as stored in the image.
 Grid2d<Rgb8> as_it_is(const cv::Mat& bgr) {
   Grid2d<Rgb8> image(bgr.cols, bgr.rows);
   bgr.copyTo(cv::Mat(bgr.rows, bgr.cols, CV_8UC3, image.data()));

@@ -12,11 +12,12 @@ namespace mh {
 
 /// Reads the true poses of a recording; nullopt if none is left of them. @param notes  receives
 /// what was left out (trajectory_io.hpp), or that there is no truth
-/// @throws InputError if the file cannot be read or is of no poses.
+/// @throws InputError if the file cannot be read or does not contain poses.
 std::optional<Trajectory> read_truth(const std::filesystem::path& file,
                                      std::vector<std::string>& notes);
 
-/// Notes that a folder, say, stands where a file of true poses would.
+/// Notes that something other than a file, such as a folder, has the name of the file of true
+/// poses.
 void note_no_file(const std::filesystem::path& truth, std::vector<std::string>& notes);
 
 }  // namespace mh

@@ -17,7 +17,7 @@ namespace mh::gltf {
 
 using Json = nlohmann::json;
 
-/// The name of the buffer with the decoded data: no file, assimp gets it from memory.
+/// The name of the buffer with the decoded data: not a file, since assimp gets it from memory.
 inline constexpr const char* kDecodedBuffer = "decoded by modelhouse.bin";
 
 /// The items of an array of the file or of one of its items; empty if there is none of that name.
@@ -56,11 +56,12 @@ class Data {
   /// Whether assimp reads the accessor as we do: floats in a buffer, none of them replaced.
   bool is_plain(std::size_t accessor) const;
   /// Values as floats: normalized integers divided by the largest, sparse ones replaced.
-  /// @param shares  of one: integers are normalized even if the file forgets to say so
+  /// @param shares the values are shares of one: integers are normalized even if the file does not
+  /// say so
   Values values(std::size_t accessor, bool shares = false);
   /// Bytes of a view of a buffer.
   std::string_view view(std::size_t index);
-  /// Replaces the views of EXT_meshopt_compression by what is compressed there.
+  /// Replaces the views of EXT_meshopt_compression by the data compressed there.
   void decompress_views();
 
   /// @returns the index of a new accessor

@@ -24,7 +24,7 @@ std::size_t component_type_of(draco::DataType type) {
     case draco::DT_FLOAT32:
       return kFloat;
     default:
-      return 0;  // no accessor has such
+      return 0;  // not a type of accessors
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 struct Extension {
   std::string_view name;
-  std::string_view loss = {};  ///< what is not as the file says; empty = nothing that is seen
+  std::string_view loss = {};  ///< visible difference from the file; empty = none
 };
 
 constexpr Extension kExtensions[] = {
@@ -30,7 +30,7 @@ constexpr Extension kExtensions[] = {
     {"KHR_meshopt_compression"},
     {"KHR_node_visibility"},
     {"KHR_texture_transform"},
-    // Kinds of images: each that cannot be decoded is warned of by its name.
+    // Kinds of images: each one that cannot be decoded is named in a warning.
     {"EXT_texture_astc"},
     {"EXT_texture_avif"},
     {"EXT_texture_webp"},
@@ -50,7 +50,7 @@ constexpr Extension kExtensions[] = {
     {"KHR_materials_volume"},
     {"MSFT_packing_normalRoughnessMetallic"},
     {"MSFT_packing_occlusionRoughnessMetallic"},
-    // Movement, sound, choices that a viewer offers beside what is shown at first.
+    // Movement, sound, and choices that a viewer offers besides the initial view.
     {"KHR_animation_pointer"},
     {"KHR_audio"},
     {"KHR_audio_emitter"},
@@ -77,7 +77,7 @@ constexpr Extension kExtensions[] = {
     {"KHR_rigid_bodies"},
     {"KHR_xmp"},
     {"KHR_xmp_json_ld"},
-    // Seen, and not shown.
+    // Visible, but not rendered here.
     {"EXT_lights_ies", "its lights are left out"},
     {"EXT_lights_image_based", "its light is left out"},
     {"EXT_mesh_primitive_restart", "faces next to a restart are left out"},

@@ -9,8 +9,8 @@
 
 namespace mh::gltf {
 
-/// Judges the extensions that a glTF 2.0 file lists, by one table: those that are honored or change
-/// nothing that is seen pass in silence, others are warned of.
+/// Checks the extensions that a glTF 2.0 file lists against one table: those that are honored or
+/// change nothing visible pass silently, others cause a warning.
 /// @param warnings  a line for each loss
 /// @throws InputError naming a required extension that is not known.
 void check_extensions(Json& gltf, const std::filesystem::path& file,

@@ -16,13 +16,13 @@ void decode_uris(Json& gltf, const std::filesystem::path& folder);
 /// like) that image, whether or not it can be decoded.
 void choose_images(Json& gltf);
 
-/// Writes as plain materials what extensions state of color and emission:
+/// Writes what extensions state about color and emission as plain materials:
 /// KHR_materials_pbrSpecularGlossiness and KHR_materials_emissive_strength.
 void mend_materials(Json& gltf);
 
-/// Removes from each material where its texture lies. @returns it: that of the base color, without
-/// one that of the emission.
-/// @param warnings  a line for each material whose two textures lie differently
+/// Removes the texture placement from each material. @returns that of the base color or, without
+/// one, that of the emission.
+/// @param warnings a line for each material whose two textures are placed differently
 /// @throws InputError naming the material: not a transform
 std::vector<UvPlacement> take_uv_placements(Json& gltf, const std::filesystem::path& file,
                                             std::vector<std::string>& warnings);

@@ -11,7 +11,7 @@ void drop_movement(Json& gltf);
 /// Empties the nodes that KHR_node_visibility hides.
 void drop_hidden(Json& gltf);
 
-/// Replaces a node of EXT_mesh_gpu_instancing by a node of its name for each instance.
+/// Replaces a node of EXT_mesh_gpu_instancing by one node of that name per instance.
 void place_instances(Json& gltf, Data& data);
 
 }  // namespace mh::gltf

@@ -44,7 +44,7 @@ class Mender {
     if (!sum.numbers.empty()) attributes["POSITION"] = data_.add(sum);
   }
 
-  /// Leaves one set of texture coordinates, that of the material.
+  /// Keeps only the material's set of texture coordinates.
   void place_uvs(const Json& primitive, const Json& mesh, Json& attributes) {
     const std::size_t material = index_in(primitive, "material", kNone);
     UvPlacement placement = material < placements_.size() ? placements_[material] : UvPlacement();
@@ -76,7 +76,7 @@ class Mender {
     return place->second = data_.add(uvs);
   }
 
-  /// Of the other attributes those are kept that are floats or can become so and are seen.
+  /// Keeps the other attributes only if they are visible, and floats or convertible to floats.
   void make_floats(Json& attributes) {
     constexpr std::array<std::string_view, 5> kKept = {"COLOR_0", "NORMAL", "POSITION", "TANGENT",
                                                        "TEXCOORD_0"};

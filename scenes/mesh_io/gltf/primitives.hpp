@@ -9,7 +9,7 @@
 
 namespace mh::gltf {
 
-/// Where a material's texture lies: the set of texture coordinates, and what is done to them
+/// How a material's texture is placed: the set of texture coordinates, and their transform
 /// (KHR_texture_transform), row by row: u' = a u + b v + c, v' = d u + e v + f.
 struct UvPlacement {
   std::size_t set = 0;
@@ -17,11 +17,11 @@ struct UvPlacement {
   auto operator<=>(const UvPlacement&) const = default;
 };
 
-/// Gives every primitive what assimp reads rightly: positions, colors and texture coordinates as
-/// floats (KHR_mesh_quantization, sparse accessors, Draco), morph targets applied by the weights of
-/// their mesh, and as the first set the texture coordinates of its material.
+/// Gives every primitive data that assimp reads correctly: positions, colors and texture
+/// coordinates as floats (KHR_mesh_quantization, sparse accessors, Draco), morph targets applied by
+/// the weights of their mesh, and as the first set the texture coordinates of its material.
 /// @param placements  of each material, see take_uv_placements
-/// @param warnings    a line for each mesh that lacks the set its material wants
+/// @param warnings    a line for each mesh that lacks the set that its material uses
 void mend_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
                      std::vector<std::string>& warnings);
 

@@ -93,7 +93,7 @@ class BagFile : public MessageFile {
     std::size_t end = 0;  ///< in the bytes that hold it
   };
 
-  /// nullopt if no whole record stands there.
+  /// nullopt if there is no whole record.
   static std::optional<Record> record_at(std::string_view bytes, std::size_t at) {
     ByteReader from(bytes.substr(at));
     try {
@@ -147,8 +147,8 @@ class BagFile : public MessageFile {
     }
   }
 
-  /// Reads the connections that stand further on outside of chunks, as they do after the last one:
-  /// the only chunk that holds them may be damaged.
+  /// Reads the connections that are stored outside of chunks from there on, as after the last
+  /// chunk: the only chunk that holds them may be damaged.
   void read_connections_from(std::uint64_t at) {
     if (std::exchange(connections_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {
@@ -156,7 +156,7 @@ class BagFile : public MessageFile {
       try {
         const Fields fields = fields_of(record->header);
         if (op_of(fields) == Op::kConnection) read_connection(fields, record->data);
-      } catch (const InputError&) {  // is told where it is reached
+      } catch (const InputError&) {  // is reported when it is reached
       }
     }
   }

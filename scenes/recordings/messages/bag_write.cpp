@@ -160,7 +160,7 @@ class BagWriter : public MessageWriter {
   OutputFile file_;
   bool lz4_;
   std::vector<std::string> connections_;  ///< records, by id
-  std::vector<bool> is_sent_;             ///< by id: stands in a chunk
+  std::vector<bool> is_sent_;             ///< by id: written in a chunk
   ByteWriter chunk_, chunk_infos_;
   std::uint32_t chunks_ = 0;
   /// Of the open chunk: stamp and place of each message, by topic.

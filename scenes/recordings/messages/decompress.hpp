@@ -7,11 +7,12 @@
 
 namespace mh {
 
-/// Decompresses the content of a chunk. Memory is taken as bytes come out, not as they are claimed.
+/// Decompresses the content of a chunk. Memory is allocated as bytes are decompressed, not by the
+/// claimed size.
 /// @param compression  "lz4" (frames), "zstd" or "bz2"
 /// @param size         of the result, as the file claims
-/// @throws InputError "is ..." if the compression is unknown, the data is damaged or its size is
-/// another.
+/// @throws InputError "is ..." if the compression is unknown, the data is damaged or its size
+/// differs.
 std::string decompress(std::string_view stored, const std::string& compression, std::uint64_t size);
 
 /// Compresses a chunk: "lz4" (one frame) or "zstd" (level 1).

@@ -56,7 +56,7 @@ class McapFile : public MessageFile {
     std::size_t end() const { return content_at + content.size(); }
   };
 
-  /// nullopt if no whole record stands there.
+  /// nullopt if there is no whole record.
   static std::optional<Record> record_at(std::string_view bytes, std::size_t at) {
     ByteReader from(bytes.substr(at));
     if (from.left() < kRecordHead) return std::nullopt;
@@ -96,7 +96,7 @@ class McapFile : public MessageFile {
     return at;
   }
 
-  /// Reads the channels that stand further on outside of chunks, as they do in a summary: the only
+  /// Reads the channels that are stored outside of chunks from there on, as in a summary: the only
   /// chunk that holds them may be damaged.
   void read_channels_from(std::uint64_t at) {
     if (std::exchange(channels_are_read_, true)) return;
@@ -104,7 +104,7 @@ class McapFile : public MessageFile {
       try {
         if (record->opcode == Opcode::kSchema) read_schema(record->content);
         if (record->opcode == Opcode::kChannel) read_channel(record->content);
-      } catch (const InputError&) {  // is told where it is reached
+      } catch (const InputError&) {  // is reported when it is reached
       }
       at = record->end();
     }
@@ -168,7 +168,7 @@ class McapFile : public MessageFile {
       ended_ = true;
       const std::string_view data = bytes().substr(0, record.content_at - kRecordHead);
       const auto crc = ByteReader(record.content).number<std::uint32_t>();
-      // A damage that was found already is its reason.
+      // Damage that was already reported would explain a wrong sum.
       if (crc != 0 && notes().empty() && libdeflate_crc32(0, data.data(), data.size()) != crc)
         leave_out("checksums", data.size(), "its data's CRC is another: some of it is damaged");
     } else if (!in_chunk && opcode == Opcode::kFooter) {

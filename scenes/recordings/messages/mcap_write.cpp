@@ -24,7 +24,7 @@ std::uint32_t checksum(std::uint32_t before, std::string_view bytes) {
   return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
-/// What the summary tells of a chunk.
+/// What the summary says about a chunk.
 struct ChunkEntry {
   std::uint64_t first_ns = UINT64_MAX, last_ns = 0, at = 0, size = 0, indexes_size = 0,
                 stored_size = 0, content_size = 0;
@@ -120,7 +120,7 @@ class McapWriter : public MessageWriter {
     append_record(record, opcode, content);
     put(record.bytes());
   }
-  /// Schemas and channels stand in the chunk before their first message, and in the summary.
+  /// Schemas and channels are written in the chunk before their first message, and in the summary.
   void define(Opcode opcode, std::vector<std::string>& kept, const std::string& content) {
     append_record(chunk_, opcode, content);
     kept.push_back(content);

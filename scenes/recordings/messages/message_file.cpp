@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-// No chunk of a recorder is near these; a file that claims more asks for memory, not for reading.
+// Chunks of recorders are far smaller; a file that claims more would only exhaust memory.
 constexpr std::uint64_t kLargestChunk = 256U << 20;
 constexpr std::uint64_t kFreeClaim = 64U << 20;
 constexpr std::uint64_t kMostPerStoredByte = 1000;

@@ -26,19 +26,19 @@ struct MessageChannel {
   friend bool operator==(const MessageChannel&, const MessageChannel&) = default;
 };
 
-/// Where a message stands in a file.
+/// Where a message is in a file.
 struct MessagePlace {
   static constexpr std::uint32_t kFile = UINT32_MAX;
   std::uint32_t chunk = kFile;  ///< kFile: `at` counts from the file's beginning
   std::uint64_t at = 0, size = 0;
   std::int64_t received_ns = 0;  ///< when the recorder received it; 0 if the file does not say
-  std::size_t part = 0;          ///< which file, of a recording of several: the visitor's to set
+  std::size_t part = 0;          ///< which file of a recording in several files; set by the visitor
 };
 
 /// A file of messages, MCAP or a ROS 1 bag, which stays mapped while it is used. Opening reads it
-/// once from beginning to end by its records, without the indexes: those of a recording that was
-/// cut short are missing, and others may lie. After that messages are read by their places; of the
-/// compressed chunks the last one used is kept.
+/// once from beginning to end by its records, without the indexes: those of a truncated recording
+/// are missing, and others may be wrong. After that, messages are read by their places; the last
+/// compressed chunk used is cached.
 class MessageFile {
  public:
   /// Receives each message: its channel, its bytes (valid during the call), its place.
@@ -70,8 +70,8 @@ class MessageFile {
       : file_(std::move(bytes)), name_(std::move(name)) {}
 
   std::string_view bytes() const { return file_.view; }
-  /// Takes a chunk in; @returns its number. @throws InputError "claims ..." beyond what such a file
-  /// can hold.
+  /// Adds a chunk; @returns its number. @throws InputError "claims ..." beyond what such a file can
+  /// hold.
   std::uint32_t add_chunk(Chunk chunk);
   /// The decompressed bytes of a chunk. @throws InputError "is ..." without a place.
   HeldBytes open_chunk(std::uint32_t number) const;
@@ -99,7 +99,7 @@ class MessageFile {
   std::vector<Chunk> chunks_;
   std::uint64_t claimed_ = 0;          ///< bytes of all chunks, decompressed
   mutable std::mutex mutex_;           ///< guards the members below
-  mutable std::vector<bool> checked_;  ///< by chunk: its CRC was found right
+  mutable std::vector<bool> checked_;  ///< by chunk: its CRC was found correct
   mutable std::uint32_t opened_ = MessagePlace::kFile;
   mutable HeldBytes opened_bytes_;
 };

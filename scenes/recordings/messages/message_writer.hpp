@@ -31,11 +31,11 @@ TopicSpec topic_spec(std::string name, ros::Wire wire, bool latched = false) {
 /// How the chunks of a file are compressed.
 enum class ChunkCompression { kNone, kLz4, kZstd };
 
-/// A chunk ends once it has as many, before compression.
+/// A chunk ends once it has this many bytes, before compression.
 inline constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 
-/// Writes a file of messages, MCAP or a ROS 1 bag. The file gets its name when it is finished; one
-/// that is not leaves nothing.
+/// Writes a file of messages, MCAP or a ROS 1 bag. The file gets its name when it is finished; an
+/// unfinished one leaves nothing behind.
 class MessageWriter {
  public:
   virtual ~MessageWriter() = default;
@@ -43,8 +43,8 @@ class MessageWriter {
   virtual ros::Wire wire() const = 0;
   /// @returns the topic's number
   virtual std::uint16_t add_topic(const TopicSpec& topic) = 0;
-  /// @param stamp_ns  when it was received; the reader of a bag knows no time 0, so that such a
-  ///                  message counts as received 1 ns later
+  /// @param stamp_ns  when it was received; readers of bags accept no time 0, so such a message
+  /// counts as received 1 ns later
   virtual void write(std::uint16_t topic, Stamp stamp_ns, std::string_view message) = 0;
   virtual void finish() = 0;
 };
@@ -54,7 +54,7 @@ class MessageWriter {
 std::unique_ptr<MessageWriter> write_mcap(const std::filesystem::path& file,
                                           ChunkCompression compression = ChunkCompression::kNone);
 
-/// A ROS 1 bag of version 2.0. @throws InputError also on zstd, which bags do not know.
+/// A ROS 1 bag of version 2.0. @throws InputError also on zstd, which bags do not support.
 std::unique_ptr<MessageWriter> write_bag(const std::filesystem::path& file,
                                          ChunkCompression compression = ChunkCompression::kNone);
 

@@ -9,7 +9,8 @@
 
 namespace mh {
 
-/// A file that is written piece by piece and gets its name at the end; without that it vanishes.
+/// A file that is written piece by piece and gets its name at the end; an unfinished one is
+/// removed.
 class OutputFile {
  public:
   /// @throws as make_output_folder(), throw_unwritable()

@@ -217,7 +217,7 @@ struct Transform {
   }
 };
 
-/// From one stream of a RealSense to another; in ROS 1 a header stands before it.
+/// From one stream of a RealSense to another; in ROS 1 a header precedes it.
 struct Extrinsics {
   static constexpr const char* kType = "realsense2_camera_msgs/Extrinsics";
   static constexpr const char* kTypeInRos1 = "realsense2_camera/Extrinsics";

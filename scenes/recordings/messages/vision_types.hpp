@@ -9,7 +9,7 @@
 
 namespace mh::ros {
 
-/// Of vision_msgs 0.0.1 in ROS 1 and 4.1 in ROS 2, which share few fields.
+/// From vision_msgs 0.0.1 in ROS 1 and 4.1 in ROS 2, which share few fields.
 struct ObjectHypothesis {
   static constexpr const char* kType = "vision_msgs/ObjectHypothesis";
   std::string class_id;
@@ -33,7 +33,7 @@ struct ObjectHypothesisWithPose {
   }
 };
 
-/// In ROS 1, of geometry_msgs.
+/// In ROS 1, from geometry_msgs.
 struct Pose2D {
   static constexpr const char* kType = "geometry_msgs/Pose2D";
   double x = 0, y = 0, theta = 0;
@@ -53,7 +53,7 @@ struct Point2D {
   }
 };
 
-/// In ROS 2, of vision_msgs.
+/// In ROS 2, from vision_msgs.
 struct PlacedPoint2D {
   static constexpr const char* kType = "vision_msgs/Pose2D";
   Point2D position;

@@ -17,7 +17,7 @@
 namespace mh::ros {
 
 /// How messages are put into bytes: as ROS 1 does, packed, or as ROS 2 does, in the Common Data
-/// Representation (CDR, version 1), where a number stands at a multiple of its size.
+/// Representation (CDR, version 1), where a number is aligned to its size.
 enum class Wire : std::uint8_t { kRos1, kCdr };
 
 static_assert(std::endian::native == std::endian::little);
@@ -98,7 +98,7 @@ std::string serialized(const M& message, Wire wire) {
 /// Reads a message's fields from bytes.
 class Parser {
  public:
-  /// @throws InputError if the bytes begin with another representation than CDR 1.
+  /// @throws InputError if the bytes begin with a representation other than CDR 1.
   Parser(std::string_view bytes, Wire wire) : all_(bytes), wire_(wire) {
     if (wire == Wire::kRos1) return;
     if (bytes.size() < 4) fail();
@@ -149,7 +149,7 @@ class Parser {
   }
   void get(Bytes& bytes) { bytes = take(length()); }
   void get(Time& time) {
-    std::int32_t seconds = 0;  // unsigned in ROS 1, which no stamp until 2038 tells
+    std::int32_t seconds = 0;  // unsigned in ROS 1, which makes no difference until 2038
     std::uint32_t rest_ns = 0;
     get(seconds);
     get(rest_ns);

@@ -20,8 +20,8 @@ bool has_no_distortion(const ros::CameraInfo& info) {
   return std::ranges::all_of(info.d, [](double k) { return k == 0; });
 }
 
-/// @throws InputError if the calibration is none that a pinhole with the distortion of plumb_bob or
-/// rational_polynomial has.
+/// @throws InputError if the calibration is not that of a pinhole with the distortion of plumb_bob
+/// or rational_polynomial.
 void set_distortion(Camera& camera, const ros::CameraInfo& info) {
   if (has_no_distortion(info)) return;
   const std::string& model = info.distortion_model;
@@ -144,13 +144,14 @@ bool have_sizes_of_their_own(const ImageTopic& color, const ImageTopic& depth) {
          (color.width_px != depth.width_px || color.height_px != depth.height_px);
 }
 
-/// color_from_depth, as a file states it; nullopt if it does not, or if the two are one already.
+/// color_from_depth, as a file states it; nullopt if it does not, or if the two already coincide.
 std::optional<SE3> color_from_depth(const ChosenTopics& chosen, const RosTopics& topics) {
   const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
   const auto color_tf = recorded_tf(topics, color), depth_tf = recorded_tf(topics, depth);
   if (color_tf && depth_tf && color_tf->first == depth_tf->first)
     return (color_tf->second * depth_tf->second.inverse()).normalized();
-  // Drivers align depth to color, but publish depth's own calibration with it: the frame tells.
+  // Drivers align depth to color, but publish depth's own calibration with it: the frame id reveals
+  // this.
   if (color.frame == depth.frame)
     return have_sizes_of_their_own(color, depth) ? std::optional(SE3()) : std::nullopt;
   if (auto fixed = fixed_transform(topics, color.frame, depth.frame);
@@ -162,7 +163,7 @@ std::optional<SE3> color_from_depth(const ChosenTopics& chosen, const RosTopics&
   return std::nullopt;
 }
 
-/// Whether depth is of another calibration than color, as far as the file says.
+/// Whether the calibrations of depth and color differ, as far as the file says.
 bool differ(const ChosenTopics& chosen) {
   constexpr double kSame_px = 1;
   const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
@@ -181,7 +182,7 @@ bool is_identity(const SE3& transform) {
 
 /// The depth camera that registers depth to color; nullopt where depth is registered already, or
 /// where it has to be taken as if it were, with a note.
-/// @throws InputError if the sizes differ and nothing tells how to register it.
+/// @throws InputError if the sizes differ and the file does not say how to register it.
 std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTopics& topics,
                                         const std::string& file, std::vector<std::string>& notes) {
   const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
@@ -189,7 +190,7 @@ std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTop
   const std::optional<SE3> transform = color_from_depth(chosen, topics);
   const bool apart = other_frame && transform && !is_identity(*transform);
   if (!differ(chosen) && !apart) return std::nullopt;
-  // The only calibration of a file stands for both where no other is known.
+  // The only calibration of a file applies to both.
   const bool has_own = chosen.depth_info != nullptr && chosen.depth_info != chosen.info;
   if (transform && has_own) {
     DepthCamera registering{{}, *transform};
@@ -223,7 +224,7 @@ bool is_in_meters(const ImageTopic& depth) {
   return depth.encoding.starts_with("32FC1");
 }
 
-/// The decimal number that was meant by a float.
+/// The decimal number that a float was rounded from.
 double meant(float value) {
   return std::stod(fmt::format("{}", value));
 }

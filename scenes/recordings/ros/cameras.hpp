@@ -18,8 +18,9 @@ struct RosCameras {
   double depth_per_meter = 0;        ///< of depth in whole numbers
 };
 
-/// From CameraInfo, or for color from a settings file; depth that is not registered to color by the
-/// transforms of tf, of RealSense's recorder or of its driver's extrinsics.
+/// Reads the cameras from CameraInfo or, for color, from a settings file. Depth that is not
+/// registered to color uses the transforms of tf, of RealSense's recorder or of its driver's
+/// extrinsics.
 /// @throws InputError naming file and topic if there is no calibration, one of a lens that is not
 /// supported, or depth that cannot be registered.
 RosCameras ros_cameras(const ChosenTopics& chosen, const RosTopics& topics,

@@ -26,7 +26,7 @@ bool is_one_of(const auto& encodings, const std::string& encoding) {
   return std::ranges::find(encodings, encoding) != encodings.end();
 }
 
-/// Ours, whatever camera they are of: labels and instances are neither color nor depth.
+/// Whether a topic is one of ours, of any camera: labels and instances are neither color nor depth.
 bool is_ours(const ImageTopic& topic) {
   return topic.name.ends_with("/labels/image") || topic.name.ends_with("/instances/image");
 }
@@ -97,7 +97,7 @@ class Chooser {
     std::vector<const ImageTopic*> found;
     for (const auto& [name, topic] : topics_.images)
       if (is(topic)) found.push_back(&topic);
-    // The compressed twin of an image gives way to it.
+    // An uncompressed image is preferred to its compressed twin.
     std::erase_if(found, [&](const ImageTopic* topic) {
       const auto twin = topics_.images.find(parent_of(topic->name));
       return topic->compressed && twin != topics_.images.end() && is(twin->second);
@@ -111,7 +111,7 @@ class Chooser {
     return images;
   }
 
-  /// @param encodings  that could have been, for the message
+  /// @param encodings that would be accepted, for the message
   const ImageTopic* only(const std::vector<const ImageTopic*>& found, const char* what,
                          const std::string& encodings) const {
     if (found.size() == 1) return found.front();

@@ -24,7 +24,7 @@ inline bool is_compressed_depth(const std::string& format) {
 }
 inline constexpr std::size_t kDepthHead = 12;  ///< bytes
 
-/// Of depth in whole numbers, where nothing else is stated: millimeters (REP 118).
+/// Units per meter of integer depth unless stated otherwise: millimeters (REP 118).
 inline constexpr double kRosDepthPerMeter = 1000;
 
 /// The depth image in a message, m; 0 where there is no return: 32FC1 (m), 16UC1 and mono16 of

@@ -59,7 +59,7 @@ std::vector<std::string> listed_in_metadata(const fs::path& folder,
     YamlReader paths = yaml.at("rosbag2_bagfile_information").at("relative_file_paths");
     for (const YamlReader& path : paths.items())
       listed.push_back(fs::path(path.as_string()).filename().string());
-  } catch (const InputError&) {  // the files themselves tell more
+  } catch (const InputError&) {  // opening the files gives a better message
     return {};
   }
   std::vector<std::string> sorted = listed;
@@ -67,7 +67,7 @@ std::vector<std::string> listed_in_metadata(const fs::path& folder,
   return sorted == names ? listed : std::vector<std::string>{};
 }
 
-/// The files by their numbers; empty if they are no parts of one recording.
+/// The files by their numbers; empty if they are not parts of one recording.
 std::map<std::uint32_t, std::string> numbered(const std::vector<std::string>& names) {
   std::map<std::uint32_t, std::string> by_number;
   std::string common;
@@ -81,7 +81,7 @@ std::map<std::uint32_t, std::string> numbered(const std::vector<std::string>& na
   return by_number;
 }
 
-/// The names of the parts in their order; empty if they are none.
+/// The names of the parts in their order; empty if they are not parts of one recording.
 std::vector<std::string> in_order(const fs::path& folder, const std::vector<std::string>& names,
                                   std::vector<std::string>& notes) {
   std::vector<std::string> listed = listed_in_metadata(folder, names);

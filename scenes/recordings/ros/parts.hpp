@@ -13,7 +13,7 @@ namespace mh {
 /// the time that ROS 1's recorder writes into NAME.
 /// @param pattern  "*.bag"
 /// @param notes    receives a line if there are several
-/// @throws InputError if a folder holds none, or several that are no parts of one recording.
+/// @throws InputError if a folder holds none, or several that are not parts of one recording.
 std::vector<std::filesystem::path> parts_at(const std::filesystem::path& path, const char* pattern,
                                             std::vector<std::string>& notes);
 

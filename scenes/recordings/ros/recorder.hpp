@@ -29,7 +29,7 @@ class RosRecorder : public SequenceWriter {
               std::optional<MessageLog> robot);
 
   void add(std::size_t index, const ExactFrame& frame) override;
-  /// A file that is written in one go knows no earlier run.
+  /// A file that is written in one go cannot be resumed.
   bool resume(std::size_t, Stamp, const SE3&) override { return false; }
   void finish() override;
 

@@ -203,7 +203,7 @@ struct Read {
   std::size_t messages = 0;
 };
 
-/// A part that is no such file is left out, unless it is the only one.
+/// A part that is not such a file is left out, unless it is the only one.
 void read_part(OpenMessages open, const MessageBytes& part, Read& read,
                std::vector<std::string>& notes) {
   const std::size_t number = read.files.size();

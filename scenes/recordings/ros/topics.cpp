@@ -22,7 +22,7 @@ std::string frame_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
 
-/// @throws InputError if it is no rigid transform.
+/// @throws InputError if it is not a rigid transform.
 SE3 rigid(const ros::Quaternion& q, const SE3& pose) {
   const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(std::abs(norm - 1) < 0.1) || !pose.translation().allFinite())
@@ -202,7 +202,8 @@ void RosTopics::add_image(const MessageChannel& channel, std::string_view messag
 void RosTopics::add_transform(const ros::TransformStamped& t, bool is_static, Stamp received_ns) {
   TfEdge& edge = tf[frame_name(t.child_frame_id)];
   const std::string parent = frame_name(t.header.frame_id);
-  if (edge.parent != parent) edge = {parent, is_static, {}, {}};  // it hangs elsewhere from now on
+  if (edge.parent != parent)
+    edge = {parent, is_static, {}, {}};  // it has another parent from now on
   edge.is_static = is_static;
   edge.poses.push_back({t.header.stamp.ns, rigid(t.transform)});
   edge.received_ns.push_back(received_ns);

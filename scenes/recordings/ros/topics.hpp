@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// An image message of a file: when it was taken, and where it stands.
+/// An image message of a file: when it was taken, and where it is stored.
 struct StoredImage {
   Stamp stamp_ns = 0;
   MessagePlace place;
@@ -25,7 +25,7 @@ struct ImageTopic {
   std::string name;
   bool compressed = false;          ///< sensor_msgs/CompressedImage
   std::string encoding;             ///< "rgb8"; of a compressed one its format, "jpeg"
-  int width_px = 0, height_px = 0;  ///< 0 of a compressed one whose head does not tell
+  int width_px = 0, height_px = 0;  ///< 0 for a compressed one whose header does not state it
   std::string frame;
   ros::Wire wire = ros::Wire::kRos1;
   std::vector<StoredImage> images;
@@ -45,7 +45,7 @@ struct PoseTopic {
   std::vector<Stamp> received_ns;  ///< when each came
 };
 
-/// A frame of tf, in the frame that it hangs on.
+/// A frame of tf, in its parent frame.
 struct TfEdge {
   std::string parent;
   bool is_static = false;
@@ -67,7 +67,7 @@ struct RosTopics {
   std::size_t unreadable = 0;    ///< messages of these types that could not be parsed
   std::string first_unreadable;  ///< what was wrong with the first
 
-  /// Takes a message in. Types that are of no use here are ignored.
+  /// Adds a message. Types that are not used here are ignored.
   void add(const MessageChannel& channel, std::string_view message, const MessagePlace& place);
 
  private:

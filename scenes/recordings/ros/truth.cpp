@@ -28,10 +28,10 @@ Trajectory ordered(std::vector<TimedPose> poses) {
 /// A frame and the edge of tf above it.
 using Link = std::pair<std::string, const TfEdge*>;
 
-/// The way from a frame up to `top`, or as far as tf goes if it is empty.
+/// The edges from a frame up to `top`, or as far as tf goes if it is empty.
 std::vector<Link> way_up(const RosTopics& topics, std::string frame, const std::string& top = "") {
   std::vector<Link> way;
-  std::set<std::string> seen;  // a circle ends where it closes
+  std::set<std::string> seen;  // stops at a cycle
   for (auto edge = topics.tf.find(frame);
        frame != top && edge != topics.tf.end() && seen.insert(frame).second;
        edge = topics.tf.find(frame)) {
@@ -41,7 +41,7 @@ std::vector<Link> way_up(const RosTopics& topics, std::string frame, const std::
   return way;
 }
 
-/// body_from_optical, if only static edges lie between; nullopt if the way does not meet `body`.
+/// body_from_optical, if only static edges lie between; nullopt if the edges do not lead to `body`.
 std::optional<SE3> fixed_from(const RosTopics& topics, const std::string& body,
                               const std::string& optical) {
   if (body.empty() || body == optical) return SE3();
@@ -153,7 +153,7 @@ std::optional<Trajectory> find_truth(const RosTopics& topics, const TopicNames& 
   return truth;
 }
 
-/// Whether all that tf says of an edge is the same.
+/// Whether tf always states the same transform for an edge.
 bool never_moves(const TfEdge& edge) {
   return std::ranges::all_of(edge.poses, [&](const TimedPose& pose) {
     const SE3 &a = pose.world_from_camera, &b = edge.poses.front().world_from_camera;
@@ -161,7 +161,8 @@ bool never_moves(const TfEdge& edge) {
   });
 }
 
-/// The frames above one, itself included, as far as nothing moves, and their poses: above_from_it.
+/// The frames above one, itself included, up to the first edge that moves, and their poses:
+/// above_from_it.
 std::vector<std::pair<std::string, SE3>> fixed_way_up(const RosTopics& topics,
                                                       const std::string& frame) {
   std::vector<std::pair<std::string, SE3>> above{{frame, SE3()}};
