@@ -24,10 +24,10 @@
 namespace mh {
 namespace {
 
-/// One test frame, with everything about it that no parameter point changes.
+/// One test frame, with everything about it that does not depend on the parameter point.
 struct Asked {
   QuerySet set;
-  std::size_t place;  ///< in its set's answers
+  std::size_t place;  ///< index in its set's answers
   Presentation first;
   PreparedFrame frame;  ///< of the first attempt
   TrueView view;
@@ -79,7 +79,7 @@ class RunAuditor {
 
  private:
   void prepare_set(QuerySet set) {
-    // The same frames under every point: those of the first tell which they are.
+    // Every point has the same frames: take those of the first.
     const std::vector<QueryScore>& scores = queries(run_.points.front(), set);
     for (std::size_t i = 0; i < scores.size(); ++i) asked_.push_back(prepare_query(set, i));
   }
@@ -155,7 +155,7 @@ class RunAuditor {
     return retrieved;
   }
 
-  /// Asks the system as the run did, with its decisions traced.
+  /// Queries the system as the run did, with its decisions traced.
   void answer_first(Asked& asked, const QueryScore& score, QueryAudit& audit) {
     DecisionTrace decisions;
     StepObservers observers;

@@ -15,12 +15,12 @@ namespace mh {
 void require_auditable(const RunSpec& spec);
 
 /// Executes a run as run_one() does, and keeps its finished map.
-/// @param frozen  receives it, under the settings of the run's last point
+/// @param frozen  receives the map, under the settings of the run's last point
 RunResult run_with_map(const RunSpec& spec, const World& world, RunTools tools, SlamState& frozen);
 
-/// Compares every query of a finished run with the truth of its scene. The system is asked again,
-/// on the side: the run's result stays as it is.
-/// @param frozen    of run_with_map(); ends under the settings of the last point
+/// Compares every query of a finished run with the truth of its scene. The system is queried again
+/// separately: the run's result does not change.
+/// @param frozen    from run_with_map(); ends under the settings of the last point
 /// @param progress  receives the share of the work that is done
 /// @throws MachineError if the map does not answer as it did in the run.
 RunAudit audit_run(

@@ -23,7 +23,7 @@ struct AuditOptions {
   /// Receives names and keys of all runs before any work; may throw.
   std::function<void(const PlannedKeys&)> planned = [](const auto&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};
-  /// Receives the share of the work that is done, and what is being done.
+  /// Receives the share of the work done, and the current step.
   std::function<void(double, std::string_view)> progress = [](double, std::string_view) {};
 };
 

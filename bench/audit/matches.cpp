@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-/// A decision of a search with what is true of it.
+/// A decision of a search with its ground truth.
 struct Judged {
   const MatchDecision* decision = nullptr;
   bool right = false;

@@ -22,16 +22,16 @@ inline constexpr MatchStage kMatchStages[] = {MatchStage::kWords, MatchStage::kG
                                               MatchStage::kLocalMap, MatchStage::kEveryKeyframe};
 inline constexpr std::size_t kMatchStageCount = 4;
 std::string_view name(MatchStage stage);
-/// nullopt: no stage of relocalization.
+/// nullopt: not a stage of relocalization.
 std::optional<MatchStage> stage_of(Matcher matcher);
 
-/// What there is to know of one end of a match.
+/// What is known about one end of a match.
 struct MatchEnd {
   std::optional<TruePoint> point;  ///< none: it shows no surface
   ClassId label = kVoid;           ///< as SLAM has it
 };
 
-/// Pairs of a stage, with the truth known, by the gate that each one met.
+/// Pairs of a stage whose truth is known, by the gate that decided each.
 struct GateCounts {
   std::array<std::int64_t, kMatchGates> right{}, wrong{};  ///< by MatchGate
 
@@ -39,8 +39,8 @@ struct GateCounts {
   std::int64_t kept_wrong() const { return wrong[0]; }
   /// Share of the kept pairs that are right; absent without any.
   std::optional<double> precision() const;
-  /// Share of the right pairs that were kept; absent without any. Of a point that was looked for,
-  /// only the nearest feature makes a pair.
+  /// Share of the right pairs that were kept; absent without any. Each searched point pairs only
+  /// with its nearest feature.
   std::optional<double> recall() const;
   GateCounts& operator+=(const GateCounts& more);
 };
@@ -54,11 +54,11 @@ void fields(C& counts, Visit& v) {
 
 /// What equation 2 changed in a stage.
 struct XiEffect {
-  // Right pairs that would be kept at xi = 1 and are not, by what took them; another: a pair that
-  // xi favors, or the rotation of most.
+  // Right pairs that are not kept but would be at xi = 1, by what removed them; another: a pair
+  // that xi favors, or the check of rotations.
   std::int64_t lost_to_threshold = 0, lost_to_ratio = 0, lost_to_another = 0;
   // The same by why their labels differ: one is void, one is within kBorder_px of another class, or
-  // else one must be wrong. The labels of the rest agree: another pair's change cost them.
+  // else one must be wrong. The rest have equal labels and were lost because another pair changed.
   std::int64_t lost_by_void = 0, lost_at_border = 0, lost_by_label_error = 0;
   std::int64_t right_gained = 0;  ///< kept, and would not be at xi = 1
   std::int64_t wrong_removed = 0, wrong_gained = 0;
@@ -107,7 +107,7 @@ void add(const MatchAudit& more, MatchAudit& sum);
 /// The two ends of a decision: the frame's feature, and the map's point.
 using EndsOf = std::function<std::pair<MatchEnd, MatchEnd>(const MatchDecision&)>;
 
-/// Compares the decisions of one step with the truth. Pairs of which an end shows no surface are
+/// Compares the decisions of one step with the truth. Pairs with an end that shows no surface are
 /// left out.
 /// @param policy  how void is treated by equation 2
 MatchAudit audit_matches(const DecisionTrace& decisions, const EndsOf& ends_of, VoidPolicy policy);

@@ -16,15 +16,15 @@ namespace mh {
 inline constexpr double kInSight = 0.1;
 /// A keyframe is relevant to a query if it shows at least this share of what the query sees.
 inline constexpr double kRelevant = 0.25;
-/// "The nearest": so many keyframes, by true distance, 1 rad equivalent to 1 m.
+/// "The nearest": this many keyframes, by true distance, 1 rad equivalent to 1 m.
 inline constexpr std::size_t kNearest = 5;
 
 /// Why the first attempt at a query gave no correct answer: the first of these that applies.
 enum class FirstCause {
   kNone,             ///< it was correct
-  kWrongCandidates,  ///< a keyframe alone would have given a correct answer
+  kWrongCandidates,  ///< some keyframe alone would have given a correct answer
   kNothingInSight,   ///< no keyframe shows kInSight of what the query sees
-  kFewMatches,       ///< with no keyframe enough matches by words to try a pose
+  kFewMatches,       ///< no keyframe has enough matches by words to try a pose
   kFalseAnswer,      ///< a pose was returned
   kFewInliers        ///< no pose with enough inliers
 };
@@ -38,7 +38,7 @@ constexpr Names<FirstCause, 6> words(FirstCause) {
            {"few_inliers", FirstCause::kFewInliers}}};
 }
 
-/// What is true of one query under one parameter point. All but `correct` and `attempts` is of the
+/// The audit of one query under one parameter point. All but `correct` and `attempts` refers to the
 /// first attempt.
 struct QueryAudit {
   std::size_t frame = 0;  ///< of its sequence
@@ -135,10 +135,10 @@ void fields(A& point, Visit& v) {
 
 /// The audit of one run.
 struct RunAudit {
-  std::vector<PointAudit> points;  ///< as RunSpec::points
+  std::vector<PointAudit> points;  ///< as in RunSpec::points
   // CPU time, s: not deterministic.
   double audit_s = 0, run_s = 0;
-  bool map_from_cache = false;  ///< run_s is then without the mapping
+  bool map_from_cache = false;  ///< run_s then excludes the mapping
 };
 
 template <MaybeConst<RunAudit> A, class Visit>

@@ -14,16 +14,15 @@
 
 namespace mh {
 
-/// What a system said when it was asked again.
+/// What a system answered when it was queried again.
 struct AnswerAgain {
   std::optional<SE3> world_from_camera;
   RelocalizationStage stage = RelocalizationStage::kNone;
 };
 
-/// Asks the queries of a finished run again, on its finished map, so that what the run did not keep
-/// can be observed. Under NeighborScores::kAsReleased answers depend on those before: queries are
-/// then asked in the order of the run, and leave() repeats the attempts after the first. The
-/// references outlive it.
+/// Repeats the queries of a finished run on its finished map, to observe what the run did not keep.
+/// Under NeighborScores::kAsReleased answers depend on earlier ones: queries are then made in the
+/// order of the run, and leave() repeats the attempts after the first. The references outlive it.
 class QueryReplay {
  public:
   QueryReplay(const RunSpec& spec, const World& world, SlamState& frozen)
@@ -33,17 +32,17 @@ class QueryReplay {
         mapped_scores_(frozen.tracker.stale_scores),
         released_(mapped_scores_) {}
 
-  /// From now on under one of the run's parameter points, from its first query on.
+  /// Switches to one of the run's parameter points, starting at its first query.
   void begin(const SemanticConfig& point);
   /// The streams of the first attempt.
   Presentation first(QuerySet set, std::size_t index) const;
-  /// A frame of a set's sequence, and what the system finds in it.
+  /// A frame of a set's sequence, and that frame with its features.
   RgbdFrame frame(QuerySet set, std::size_t index, RandomStream noise) const;
   PreparedFrame prepared(const RgbdFrame& frame) const;
-  /// What Algorithm 1 chooses for it, best first. Changes nothing.
+  /// What Algorithm 1 chooses for a frame, best first. Has no side effects.
   std::vector<KeyframeId> candidates(PreparedFrame& frame) const;
   AnswerAgain ask(PreparedFrame& frame, RandomStream draws, const StepObservers& observers);
-  /// The run's further attempts at a query, where they bear on the queries after it.
+  /// Repeats the run's further attempts at a query if they affect later queries.
   void leave(QuerySet set, const QueryAnswer& answer);
 
  private:

@@ -10,7 +10,7 @@ namespace mh {
 /// Whether each item of a ranked list is relevant, best first.
 using Relevance = std::vector<unsigned char>;
 
-/// Mean, over all relevant items, of the precision at their ranks; one that is not in the list
+/// Mean, over all relevant items, of the precision at their ranks; an item that is not in the list
 /// counts 0. Absent if nothing is relevant.
 /// @param relevant  in the list or not
 std::optional<double> average_precision(const Relevance& ranked, std::size_t relevant);

@@ -24,8 +24,8 @@ struct AuditedRun {
 /// the queries that have the value, absent if none has.
 struct AuditSummary {
   std::size_t queries = 0;
-  double correct = 0;        ///< of the run, after all attempts
-  double first_correct = 0;  ///< at the first attempt, as all that follows
+  double correct = 0;        ///< in the run, after all attempts
+  double first_correct = 0;  ///< at the first attempt, as are all fields below
   std::optional<double> first_correct_of_solvable;
   // First causes of those that were not correct.
   double wrong_candidates = 0, nothing_in_sight = 0, few_matches = 0, false_answer = 0,
@@ -35,7 +35,7 @@ struct AuditSummary {
   // Retrieval.
   double candidates = 0;                      ///< mean
   std::optional<double> relevant_candidates;  ///< share of all candidates
-  std::optional<double> candidate_solves;     ///< of solvable queries: some candidate does
+  std::optional<double> candidate_solves;     ///< of solvable queries: some candidate solves it
   std::optional<double> first_candidate_solves, most_similar_solves;  ///< of solvable queries
   std::optional<double> average_precision, precision_1, precision_5, precision_10, recall_1,
       recall_5, recall_10;
@@ -91,7 +91,7 @@ AuditSummary summarize(std::span<const QueryAudit* const> queries);
 /// point and query set that was used.
 struct AuditRow {
   std::string level, system, labels;
-  std::string settings;     ///< those that the suite varies; empty without a sweep
+  std::string settings;     ///< the varied ones; empty without a sweep
   std::string environment;  ///< empty: all of them
   QuerySet set = QuerySet::kHeldOut;
   AuditSummary summary;

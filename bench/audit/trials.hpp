@@ -13,14 +13,14 @@
 
 namespace mh {
 
-/// What came of one keyframe as the only candidate.
+/// The outcome with one keyframe as the only candidate.
 struct TrialOutcome {
   RelocalizationStage stage = RelocalizationStage::kNone;
   bool correct = false;
 };
 
-/// Outcomes known so far of one query under one xi and void policy, which alone bear on them: as
-/// the system is, without false matches, from the true pose.
+/// Outcomes known so far for one query under one xi and void policy, the only settings that affect
+/// them: of the system itself, without false matches, and from the true pose.
 struct TrialMemo {
   std::map<KeyframeId, TrialOutcome> plain, without_false, with_true_pose;
   std::optional<StageMatches> with_every_keyframe;  ///< matches by words
@@ -29,7 +29,7 @@ struct TrialMemo {
 /// Tries single keyframes for one query, each at most once.
 class Trials {
  public:
-  /// What the trials are of; the references outlive them.
+  /// The subject of the trials; the references outlive them.
   struct Subject {
     const SlamState& frozen;
     const PreparedFrame& frame;  ///< with its words
@@ -37,7 +37,7 @@ class Trials {
     const TrueMap& truth;
     const TrueView& view;  ///< of the query
     std::function<bool(const SE3& world_from_camera)> is_correct;
-    std::optional<SE3> camera_from_map;  ///< true; none: unknown in this map
+    std::optional<SE3> camera_from_map;  ///< the true pose; none: unknown in this map
   };
   Trials(Subject subject, TrialMemo& memo) : subject_(std::move(subject)), memo_(memo) {}
 
@@ -59,7 +59,7 @@ struct KeyframeOrders {
   std::span<const KeyframeId> co_visible;  ///< by co-visibility, those with any; best first
 };
 
-/// Fills in the ceilings of a query and its first cause. Tries no more keyframes than it must.
+/// Fills in the ceilings of a query and its first cause. Tries as few keyframes as possible.
 /// @param audit  has its answers and best_co_visible
 void find_ceilings(Trials& trials, const KeyframeOrders& orders, QueryAudit& audit);
 

@@ -15,11 +15,11 @@ namespace mh {
 /// What a finished map truly shows.
 struct TrueMap {
   std::vector<KeyframeId> live;                     ///< keyframes, by id
-  std::vector<std::optional<TrueView>> views;       ///< by keyframe id; none of erased ones
+  std::vector<std::optional<TrueView>> views;       ///< by keyframe id; none for erased ones
   std::vector<std::optional<TruePoint>> landmarks;  ///< by landmark id: see true_landmark()
 };
 
-/// The point that a landmark stands for: the median, by coordinate, of what the keypoints that
+/// The point that a landmark represents: the median, by coordinate, of what the keypoints that
 /// observe it show, so that one wrong observation does not move it. None if no keypoint shows
 /// anything.
 std::optional<TruePoint> true_landmark(const Landmark& landmark,

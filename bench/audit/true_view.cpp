@@ -15,7 +15,7 @@ double tolerance_m(double depth_m) {
 
 /// The depth at a pixel; where the 3x3 pixels around it show two surfaces, that of the nearer.
 float nearest_surface_m(const Grid2d<float>& depth_m, int x, int y) {
-  constexpr float kSameSurface = 1.05F;  // ratio of depths, as SLAM's features
+  constexpr float kSameSurface = 1.05F;  // ratio of depths, as in SLAM's features
   float nearest = 0, farthest = 0;
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth_m.height() - 1); ++v)
     for (int u = std::max(x - 1, 0); u <= std::min(x + 1, depth_m.width() - 1); ++u) {

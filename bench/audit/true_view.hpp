@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// Two points are of the same surface if they are no farther apart than this, or than this share of
+/// Two points are on the same surface if they are no farther apart than this, or than this share of
 /// their depth if that is more.
 inline constexpr double kSamePoint_m = 0.08;
 inline constexpr double kSamePointShare = 0.04;
@@ -23,7 +23,7 @@ inline constexpr double kSamePointShare = 0.04;
 struct TruePoint {
   Eigen::Vector3d in_world;
   double depth_m = 0;      ///< in the view that it was seen in
-  bool at_border = false;  ///< of two classes, kBorder_px away at most
+  bool at_border = false;  ///< at most kBorder_px from a border between classes
 };
 inline constexpr int kBorder_px = 3;
 

@@ -26,7 +26,7 @@ CLI::Validator seed_number();
 /// Accepts one of the given words; for a misspelling, the error suggests the nearest.
 CLI::Validator one_of_words(std::vector<std::string> words);
 
-/// Accepts any text but the empty one, which an unset variable of a shell leaves.
+/// Accepts any text except an empty one, as from an unset shell variable.
 CLI::Validator not_empty();
 
 /// Replaces a shipped name by its file (find_shipped; find_scene for scenes); leaves an empty one
@@ -39,8 +39,8 @@ void resolve(std::string& word, Shipped what);
 void require_writable(const std::filesystem::path& file,
                       const std::vector<std::filesystem::path>& read = {});
 
-/// As require_writable(), for a file that its own command may replace, but no other.
-/// @param is_ours  whether that is what such a file holds; an empty one is anybody's
+/// Like require_writable(), for a file that may be replaced only if this command wrote it.
+/// @param is_ours  whether such a file is one of ours; an empty file may always be replaced
 /// @param head     what it begins with
 /// @param kind  "`modelhouse map plan`", what writes it
 void require_replaceable(const std::filesystem::path& file, std::string_view head,
@@ -54,8 +54,7 @@ void require_replaceable(const std::filesystem::path& file,
 /// @throws InputError naming the file.
 void require_not_read(const std::filesystem::path& file, const ReadRecord& record);
 
-/// Of a folder and those around it, the ones that do not exist yet: in the end, those that are
-/// empty are removed again.
+/// The folders of a path that do not exist yet: at the end, those that are still empty are removed.
 class NewFolders {
  public:
   explicit NewFolders(std::filesystem::path folder);
@@ -77,7 +76,7 @@ class OutputFolder {
   /// @param command  "drive", as the user calls it
   /// @param names    of the files that it will write there
   /// @throws InputError if a file of such a name exists that the command did not write, or if
-  /// another command is at work there; as make_output_folder()
+  /// another command is working there; as make_output_folder()
   OutputFolder(const std::filesystem::path& folder, const std::string& command,
                std::vector<std::string> names, Others others = Others::kNone);
   ~OutputFolder();

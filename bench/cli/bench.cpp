@@ -51,9 +51,9 @@ struct BenchArguments {
   bool audit = false;
   std::optional<std::size_t> slurm;
   std::string sbatch;
-  // As given, for the process of a share of --slurm or of a library's episodes.
+  // The arguments as given, for the process of a share of --slurm or of a library's episodes.
   std::vector<std::string> arguments_of_part;
-  std::optional<std::string> only_run;  // the episodes of this run; its process tells `parent`
+  std::optional<std::string> only_run;  // the episodes of this run; its process reports to `parent`
   int parent = 0;
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
@@ -96,7 +96,7 @@ void run_only(const Suite& suite, EpisodeOptions episodes, const BenchArguments&
     if (!run.failure.empty()) throw MachineError(run.failure);
 }
 
-/// A suite of kidnappings: no queries are asked in it.
+/// Runs a suite of kidnappings, which has no queries.
 void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   if (options.audit) refuse_episodes(suite, "asks no queries for --audit");
   if (options.frames) throw InputError("--frames: a suite with `episodes` maps its whole tour");
@@ -295,7 +295,7 @@ void add_bench(CLI::App& app) {
       "Examples:\n  modelhouse bench model_house --jobs 2\n"
       "  modelhouse bench my_suite.yaml --scene house.glb --frames 600");
   command->callback([=] {
-    // What the starting command alone does; a share has a folder of its own.
+    // Options of the starting command only; a share has a folder of its own.
     const std::set<std::string> not_of_part{"suite",   "--out",   "--json",  "--shard",
                                             "--audit", "--slurm", "--sbatch"};
     for (const CLI::Option* option : command->get_options()) {

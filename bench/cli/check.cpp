@@ -41,7 +41,7 @@ fs::path baseline_file(const CheckArguments& options) {
 }
 
 /// Returns where an interrupted check of that suite leaves its finished results, to be resumed by
-/// the same command; nullopt if there is no place for it, or another process works there.
+/// the same command; nullopt if it cannot be created, or if another process works there.
 std::optional<OwnedFolder> place_for(const fs::path& suite) {
   const fs::path cache = Cache::default_folder();
   if (cache.empty()) return std::nullopt;

@@ -57,7 +57,7 @@ class Frames {
             "--settings {}: is for a recording, and the sources are images", options.settings));
       images_ = options.sources;
       for (const std::string& image : images_)
-        if (!is_there(image)) read_file(image);  // for its message: only a damaged one is skipped
+        if (!is_there(image)) read_file(image);  // for its message: damaged ones are skipped
       return;
     }
     if (options.sources.size() != 1)
@@ -71,7 +71,7 @@ class Frames {
     sequence_ = std::move(opened.sequence);
   }
   std::size_t size() const { return sequence_ ? sequence_->size() : images_.size(); }
-  /// Images in files have that of an RgbdFrame without one.
+  /// Image files have the stamp of an RgbdFrame without one.
   std::vector<Stamp> stamps_ns() const {
     return sequence_ ? stamps_of(*sequence_)
                      : std::vector<Stamp>(images_.size(), RgbdFrame{}.stamp_ns);
@@ -92,8 +92,8 @@ class Frames {
   std::vector<std::string> images_;
 };
 
-/// COCO's results of a frame. The category is the class's index, from 1, as own class names count;
-/// of COCO's 80 classes it is COCO's id.
+/// COCO's results of a frame. The category is COCO's id for COCO's 80 classes; otherwise the
+/// class's index, from 1.
 void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected& found,
                  bool of_coco) {
   std::map<int, int> category;  // by index among the 80
@@ -134,7 +134,7 @@ void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec
   }
 }
 
-/// What an earlier run of this command drew, as it noted.
+/// The images that an earlier run of this command drew, from its own list.
 std::vector<std::string> drawn_earlier(const fs::path& out) {
   std::vector<std::string> names;
   if (!is_file(out / kDrawn)) return names;
@@ -157,7 +157,7 @@ void require_no_other_images(const fs::path& out, const std::vector<std::size_t>
                       (out / name).string()));
 }
 
-/// Puts a finished result in the place of an earlier one.
+/// Replaces an earlier result by a finished one.
 void replace_earlier(const fs::path& work, const fs::path& out, const std::string& results,
                      const std::string& drawn) {
   std::error_code error;
@@ -185,7 +185,7 @@ void run(DetectorArguments options) {
   require_read_elsewhere(options, *spec);
   require_no_other_images(out, wanted);
   const OutputFolder folder(out, "detector run", {kResults, kDrawn});
-  const TemporaryFolder work(out);  // an earlier result stays until this one is whole
+  const TemporaryFolder work(out);  // an earlier result stays until this one is complete
   Progress progress("detector run");
   const KeepDetections in_cache = detections_in(options.detector.opened_cache("detector run"));
   bool made = false;  // by the network, not taken from the cache

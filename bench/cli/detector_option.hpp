@@ -30,8 +30,8 @@ struct DetectorOption {
             command.add_option("--detector-cache", cache,
                                "Cache folder for what it finds; without it, every image is run")};
   }
-  /// The cache of --detector-cache; warns on stderr if it can keep nothing.
-  /// @param command  as which it warns
+  /// The cache of --detector-cache; warns on stderr if it cannot be used.
+  /// @param command  named in the warning
   Cache opened_cache(const char* command) const {
     Cache opened(cache);
     if (!cache.empty())

@@ -47,7 +47,7 @@ struct DetectorScoreArguments {
   bool json = false;
 };
 
-/// COCO's evaluation asks for boxes down to here; a detector's own least score is far above.
+/// COCO's evaluation uses boxes with scores down to this; a detector's own threshold is far above.
 constexpr double kLeastScore = 0.01;
 
 std::vector<std::string> names_of(const DetectorScoreArguments& options) {
@@ -62,7 +62,7 @@ struct JudgedFrame {
   double missed_pixels = 0;
 };
 
-/// The frames of which a detector missed most.
+/// The frames in which a detector missed most.
 class Worst {
  public:
   void add(JudgedFrame frame) {
@@ -91,7 +91,7 @@ class Worst {
   std::vector<JudgedFrame> frames_;
 };
 
-/// The level's simulated detector with other dials, judged on the same frames.
+/// The level's simulated detector with other settings, judged on the same frames.
 struct Judged {
   DetectorScore real;
   std::optional<DetectorScore> simulated;
@@ -130,7 +130,7 @@ void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
   progress.end();
 }
 
-/// Judges the detector, then the simulated one with the dials that were measured.
+/// Judges the detector, then the simulated one with the measured settings.
 Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, Worst* worst) {
   const Cache cache = options.detector.opened_cache("detector");
   DetectorSpec spec = asked;
@@ -141,7 +141,7 @@ Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, W
   const SensorConfig sensors = load_sensor_config(options.level);
   const KeepDetections keep = detections_in(cache);
   DetectorJudge real(confidence);
-  std::vector<RenderedFrame> exact;  // without what the simulated detector does not look at
+  std::vector<RenderedFrame> exact;  // without what the simulated detector does not use
   std::vector<SE3> poses;
   for_each_moment(options, robot, sensors, [&](const Moment& moment, std::size_t index) {
     const RgbdFrame& frame = moment.sensed.frame;
@@ -329,7 +329,7 @@ void fit(DetectorScoreArguments options) {
   const ReadScope scope;
   const Judged judged = judge(options, spec, nullptr);
   require_unchanged(scope.record());
-  require_not_read(options.out, scope.record());  // what scenes and robot are made of, too
+  require_not_read(options.out, scope.record());  // also the files of scenes and robot
   if (judged.real.mean.truths == 0)
     throw InputError(fmt::format("no object of COCO's classes is in the {}: nothing is measured",
                                  counted(judged.real.images, "image")));

@@ -91,7 +91,7 @@ void run(EpisodeArguments options) {
   try {
     score = run_episode(episode_place(chosen, one.world, variant, one.mapped), *suite.episodes,
                         start, [&](const EpisodeMoment& moment) { record.add(moment); });
-  } catch (const OutsideError&) {  // what led there may say why
+  } catch (const OutsideError&) {  // the log up to there may show why
     for (const char* name : {"strip.png", "episode.json"}) std::filesystem::remove(out / name);
     write_atomically(out / "log.txt", record.log_so_far());
     throw;

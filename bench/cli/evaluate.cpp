@@ -133,7 +133,7 @@ std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
                                            read_trajectory(options.estimate, &notes)};
     for (const std::string& note : notes) fmt::print(stderr, "evaluate: warning: {}\n", note);
     for (TimedPose& pose : both.second) {
-      // Within these, differences of stamps are within a Stamp's range.
+      // Within these limits, differences of stamps fit into a Stamp.
       if (offset_ns > kLatest_ns - pose.stamp_ns || offset_ns < kEarliest_ns - pose.stamp_ns)
         throw InputError("--offset: leads to stamps that are not from -1e7 to 9.2e9 s");
       pose.stamp_ns += offset_ns;

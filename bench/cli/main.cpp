@@ -41,7 +41,7 @@ int fail(int code, std::string message) {
   return code;
 }
 
-/// Flushes what is still buffered: a full disk shows here at the latest.
+/// Flushes what is still buffered: a full disk is noticed here at the latest.
 int finish_output(int code) {
   std::cout.flush();
   const bool lost = std::fflush(stdout) != 0;
@@ -66,7 +66,7 @@ bool has_commands(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
-  // Whoever started a run wants to know that it was killed, not a line about it.
+  // The process that started a run must see that it was killed, not a line about it.
   if (argc < 2 || std::string_view(argv[1]) != "run-one") mh::tell_of_interrupts();
   // A file beyond `ulimit -f` is a failed write that is reported, not a silent end.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// `modelhouse map grid|cost|objects|plan|messages`: what a robot draws from a saved octree.
+// SPDX-License-Identifier: Apache-2.0 `modelhouse map grid|cost|objects|plan|messages`: what a
+// robot gets from a saved octree.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -79,7 +79,7 @@ VoxelMap load_map(const std::string& file) {
   return map;
 }
 
-/// @throws InputError if the map stands on no floor, or shows nothing between ground and head.
+/// @throws InputError if the map has no floor, or shows nothing between ground and head.
 OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
                       const ObstacleGridConfig& band) {
   if (!map.on_floor())
@@ -110,7 +110,7 @@ GrayImage decode_gray_image(const std::string& bytes) {
   return image;
 }
 
-/// Checks before the work that a pair of map image files can be written.
+/// Checks, before any work, that the two files of a map image can be written.
 void require_writable_map_image(const std::string& stem,
                                 const std::vector<std::filesystem::path>& read) {
   require_replaceable_map_image(stem);
@@ -192,8 +192,8 @@ void run(const MapMessagesArguments& options) {
              counted(study.objects.size(), "object"), counted(map.voxel_count(), "voxel"));
 }
 
-/// A goal at an object of a name: where a robot in an episode would stop; the first object, the
-/// best-scored first, that a path leads to.
+/// A goal next to a named object, where a robot in an episode would stop. Of several objects, the
+/// best-scored one that a path leads to.
 Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownMap& known,
                       const Vector2d& from_m, double clearance_m) {
   constexpr double kReach_m = 1.5;  // farther than this is not at the object

@@ -86,7 +86,8 @@ Posed run_slam(const MapBuildArguments& options, const Source& source,
   return posed_by(state);
 }
 
-/// The poses of frames by a trajectory, whose stamps may be others: those of motion capture are.
+/// The poses of frames by a trajectory, whose stamps may differ from theirs, as with motion
+/// capture.
 Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory) {
   Trajectory poses;
   for (std::size_t i = 0; i < frames.size(); ++i)
@@ -95,8 +96,7 @@ Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory)
   return poses;
 }
 
-/// Keeps the frames of the sequence at the stamps of known poses. @returns the poses of these
-/// frames
+/// Keeps the frames of the sequence at the stamps of known poses. @returns their poses
 Trajectory keep_posed(const MapBuildArguments& options, const Source& source,
                       const Trajectory& poses, const std::function<void(const RgbdFrame&)>& keep) {
   Trajectory kept;
@@ -116,8 +116,8 @@ Trajectory keep_posed(const MapBuildArguments& options, const Source& source,
   return kept;
 }
 
-/// The frame of the map: that of a scene, whose robot knows its dock; else the floor's; nullopt
-/// where no floor was seen.
+/// The frame of the map: that of a scene, whose robot knows its dock; else the floor's; nullopt if
+/// no floor was seen.
 std::optional<SE3> find_map_frame(const MapBuildArguments& options, const Source& source,
                                   const OccupancyMapper& mapper, const Trajectory& poses) {
   if (const Trajectory* truth = source.frames->truth(); options.is_scene() && truth != nullptr)
@@ -222,7 +222,7 @@ MapScores score(const MapBuildArguments& options, const Trajectory& truth,
                    mapped.lasers ? &*mapped.lasers : nullptr);
 }
 
-/// What an earlier build left in the folder goes: this one may write less.
+/// Removes what an earlier build left in the folder, since this one may write less.
 void remove_earlier(const fs::path& folder) {
   for (const char* name : kMapFiles) fs::remove(folder / name);
 }
@@ -282,7 +282,7 @@ void run(MapBuildArguments options) {
   if (options.score) scores = score(options, *source.frames->truth(), *mapped, mapper, study);
   const fs::path out = options.out;
   require_unchanged(reading.record());
-  remove_earlier(out);  // all that replaces it is known now
+  remove_earlier(out);  // everything that replaces it is computed by now
   write_map_files(out, mapper.map(), study);
   write_image(out / "grid_classes.png", classes);
   fmt::print("{}, grid of {} x {} cells, {}\n", built, study.grid.cells.width(),

@@ -28,7 +28,7 @@
 namespace mh::cli {
 namespace {
 
-/// States where a page comes from, so that nobody edits it by hand.
+/// States where a page comes from, so that it is not edited by hand.
 std::string heading(const char* title, const char* what) {
   return fmt::format(
       "# {}\n\nMade by `modelhouse reference {}`; a test holds this page to the code.\n\n", title,

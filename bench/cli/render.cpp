@@ -55,7 +55,7 @@ std::string digest_of_file(const std::string& file) {
   return file.empty() ? "" : hex(digest_file(file));
 }
 
-/// Everything that determines the images: a folder is resumed only if all of it is the same.
+/// Everything that determines the images: a folder is resumed only if none of it changed.
 /// @param inputs  all files read for the robot, including its URDF, and for the detector, if any
 std::string settings_of(const RenderArguments& o, const Scene& scene, const Trajectory& path,
                         const std::vector<InputDigest>& inputs) {

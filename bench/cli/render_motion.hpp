@@ -12,14 +12,14 @@
 
 namespace mh::cli {
 
-/// How the camera of `render` moves: by a motion, or not at all: at the poses of a file.
+/// How the camera of `render` moves: by a motion, or exactly at the poses of a file.
 class RenderMotion {
  public:
   void add_to(CLI::App& command);
-  /// Reads what needs no scene. @throws InputError unless exactly one of both was given.
+  /// Reads what needs no scene. @throws InputError unless exactly one of the two was given.
   void read();
 
-  /// As render.json states it.
+  /// Its text in render.json.
   std::string text() const;
   bool is_driven() const { return !has_poses() && mh::is_driven(motion_); }
   /// Whether the poses are those of the camera that is rendered, whichever it is.

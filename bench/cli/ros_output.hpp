@@ -16,7 +16,7 @@ struct RosOption {
   std::string compression = "none";
 
   void add_to(CLI::App& command);
-  /// @throws InputError if the format knows no such compression.
+  /// @throws InputError if the format does not support the compression.
   void check(const std::string& format) const;
   /// @param format  "mcap" or "rosbag"
   std::unique_ptr<MessageWriter> open(const std::string& format,
@@ -26,7 +26,7 @@ struct RosOption {
 /// Whether a format is a file of ROS messages.
 bool is_ros_format(const std::string& format);
 
-/// The last part of a folder's path, after which files in it are named.
+/// The last part of a folder's path, which names the files in it.
 std::string name_of_folder(const std::filesystem::path& folder);
 
 /// FOLDER/NAME.mcap or .bag.

@@ -16,7 +16,7 @@
 
 namespace mh::cli {
 
-/// What a source that is a scene begins with.
+/// Prefix of a source that is a scene.
 inline constexpr std::string_view kSceneSource = "scene:";
 
 /// A recording, or a scene with a tour, as options of a command name it.
@@ -28,7 +28,7 @@ struct SourceOptions {
   bool labels = true;  ///< false: a recording's own labels are not read
 
   bool is_scene() const { return source.starts_with(kSceneSource); }
-  /// Of a scene. @throws InputError if there is none.
+  /// The robot of a scene. @throws InputError if there is none.
   std::filesystem::path robot_file() const;
   void add_to(CLI::App& command);
   /// @throws InputError if an option does not fit the kind of source.
@@ -40,7 +40,7 @@ struct Source {
   std::unique_ptr<Sequence> frames;
 };
 
-/// Why no map came of a sequence, with the depth of its first image: a wrong unit shows there.
+/// Why a sequence gave no map, with the depth of its first image, which reveals a wrong unit.
 /// @param first, offered  the frames that were given
 std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,
                            std::size_t offered);

@@ -157,7 +157,7 @@ void run(SlamArguments options) {
   const ReadScope reading;
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   const auto spec = options.detector.spec();
-  options.labels = !options.plain && !spec;  // those would not be looked at
+  options.labels = !options.plain && !spec;  // they would not be used
   Source source = open_source(options);
   // Before the work, so that a mistake costs no time.
   if (spec) {

@@ -7,14 +7,14 @@
 
 namespace mh::cli {
 
-/// What the process of a run tells the one that started it, on standard output, as RunProcess
+/// What the process of a run reports to the one that started it, on standard output, as RunProcess
 /// reads it.
 class ToParent {
  public:
   void say(std::string_view stage);
-  /// In steps of half a percent.
+  /// Sent in steps of half a percent.
   void share(double share);
-  /// Frames pass faster than anyone can read; what begins with another word is told at once.
+  /// Frames pass faster than anyone can read; a status with another first word is sent at once.
   void status(std::string_view status);
 
  private:

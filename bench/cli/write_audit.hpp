@@ -19,12 +19,12 @@ struct WrittenAudit {
 };
 
 /// Audits a suite and writes the files into a folder.
-/// @param cache  as of AuditOptions
+/// @param cache  as in AuditOptions
 /// @throws InputError before any work if the folder holds results of other runs.
 WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
                          const std::optional<std::filesystem::path>& cache);
 
-/// Removes from a folder of results an audit of other runs than these are of, and says so.
+/// Removes an audit of other runs from a folder of results, and says so.
 void forget_other_audit(const std::filesystem::path& out);
 
 }  // namespace mh::cli

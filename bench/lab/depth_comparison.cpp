@@ -32,7 +32,7 @@ std::vector<Eigen::Vector2d> distorted(const Camera& camera,
 
 /// Whether a depth is found at a pixel or beside it: a keypoint on an edge has its neighbors'.
 bool shows(const Grid2d<float>& depth_m, int x, int y, float wanted_m) {
-  constexpr float kSame = 0.05F;  // of the depth: the noise may be another than in mapping
+  constexpr float kSame = 0.05F;  // of the depth: the noise may differ from that in mapping
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u)
       if (depth_m.contains(u, v) && std::abs(depth_m(u, v) - wanted_m) <= kSame * wanted_m)

@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// Tells whether a map was made of a sequence: its keyframes' keypoints have the depth that the
-/// frames of their stamps show there.
+/// Tells whether a map was made from a sequence, by comparing the depth of its keyframes' keypoints
+/// with the frames of the same stamps.
 class DepthComparison {
  public:
   /// @param map     outlives it

@@ -13,7 +13,7 @@
 
 namespace mh {
 
-/// What became of an object, or of a detection, at the detector's own least score: `truth` is void
+/// The outcome of an object, or of a detection, at the detector's own threshold: `truth` is void
 /// for a detection of nothing, `found` for an object that was missed. A detection belongs to the
 /// free object that it overlaps by at least 0.5, of its own class if there is one, else most.
 struct Outcome {
@@ -21,7 +21,7 @@ struct Outcome {
   friend auto operator<=>(const Outcome&, const Outcome&) = default;
 };
 
-/// Of one class of ours that COCO has.
+/// Scores of one class that both we and COCO have.
 struct ClassScore {
   ClassId class_id = kVoid;
   AveragePrecision precision;
@@ -40,22 +40,22 @@ struct DetectorScore {
   /// Means over the classes that occur (of a size, for the sizes).
   AveragePrecision mean;
   std::map<Outcome, std::size_t> outcomes;
-  /// Detections of nothing: by their class, and the class of most pixels of their box.
+  /// False alarms, by their class and the most frequent class of pixels in their box.
   std::map<std::pair<ClassId, ClassId>, std::size_t> false_alarms;
   std::size_t badly_placed =
       0;                       ///< overlap an object of their class by 0.1 to 0.5; no false alarms
-  DetectorConfig dials;        ///< of the simulated detector; NaN where nothing measured it
-  LabelScore box, foreground;  ///< by BoxFill; NaN where nothing measured it
+  DetectorConfig dials;        ///< settings of the simulated detector; NaN if not measured
+  LabelScore box, foreground;  ///< by BoxFill; NaN if not measured
 };
 
-/// Dials, but for those that were measured (see DetectorScore::dials).
+/// `dials` with the measured ones replaced (see DetectorScore::dials).
 DetectorConfig with_measured(DetectorConfig dials, const DetectorConfig& measured);
 
 /// Judges a detector by exact images. Objects are the visible parts of instances of COCO's classes;
-/// those of fewer than kMinBoxPixels pixels neither count nor are false.
+/// those with fewer than kMinBoxPixels pixels are ignored.
 class DetectorJudge {
  public:
-  /// @param confidence  least score of a box that counts outside of average precision
+  /// @param confidence  least score for a box to count, except in average precision
   explicit DetectorJudge(double confidence) : confidence_(confidence) {}
 
   /// @param found    in pixels of the exact image, best first

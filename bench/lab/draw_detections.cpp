@@ -36,8 +36,8 @@ void outline(Canvas& canvas, const ImageBox& box, Rgb8 color, double thickness) 
   canvas.line({box.left, bottom}, {box.left, box.top}, color, thickness);
 }
 
-/// Draws boxes with an edge that is seen on dark and bright ground, then their names: above the
-/// box, below it or inside, wherever no name stands yet. The first come first.
+/// Draws boxes with an edge that is visible on dark and bright ground, then their names: above the
+/// box, below it or inside, wherever there is no name yet, in their order.
 void draw_boxes(Canvas& canvas, const std::vector<NamedBox>& boxes) {
   for (const NamedBox& b : boxes)
     outline(canvas, b.box, is_bright(b.color) ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255}, 4);

@@ -44,7 +44,7 @@ inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities
 ImageStatistics measure_image(const cv::Mat& gray);
 ImageStatistics measure_image(const Grid2d<Rgb8>& color);
 
-/// A quantity as tables show it: three digits, whole from 1000 on.
+/// A quantity as tables show it: three digits, integers from 1000 up.
 std::string shown(double quantity);
 
 /// The value below which that share of a list falls, interpolated between neighbors; NaN if empty.

@@ -64,7 +64,7 @@ std::vector<SE3> scan_views(const Scene& scene, std::uint64_t seed, std::size_t 
     const double pitch = dice.number(-30, 12) * kDegree;
     // Four unused draws: without them, a seed would give different views.
     for (int i = 0; i < 4; ++i) dice.number(0, 1);
-    // Nobody scans a wall from very close: there must be free space 1 m ahead.
+    // A wall is not scanned from very close: there must be free space 1 m ahead.
     const Vector2d ahead = eye.head<2>() + Vector2d(std::cos(yaw), std::sin(yaw));
     if (depth_inside(room, eye.head<2>()) < kClearance_m || depth_inside(room, ahead) < 0 ||
         !is_free(scene, eye))

@@ -12,7 +12,7 @@
 namespace mh {
 
 /// The names of the first environments of each category.
-/// @param per_category  at most so many of each; 0: all
+/// @param per_category  at most this many of each; 0: all
 std::vector<std::string> generated_rooms(int per_category);
 
 /// One of several moments spread evenly over a scan, with the poses before and after it that

@@ -147,7 +147,7 @@ std::vector<TwinRow> summarize(const std::vector<TwinFrame>& frames) {
     }
     return all > 0 ? hits / all : std::numeric_limits<double>::quiet_NaN();
   };
-  // In the rendering, and as a bound: a rendering's own keypoints in another one of other noise.
+  // Recorded keypoints in the rendering; as a bound, rendered ones in a rendering with other noise.
   for (const auto& [key, name, part] :
        {std::tuple{"repeated", "keypoints repeated in the rendering, share",
                    &KeypointAgreement::repeated},

@@ -17,8 +17,8 @@
 
 namespace mh {
 
-/// The frames of a recording whose true poses are known, in the scene's frame; what a twin can be
-/// rendered for. A recorded frame without a pose is left out.
+/// The frames of a recording whose true poses are known, in the scene's frame; for which a twin can
+/// be rendered. A recorded frame without a pose is left out.
 class PosedFrames : public Sequence {
  public:
   /// @param scene_from_recording  from the frame of the recording's truth to that of its scene
@@ -42,19 +42,19 @@ class PosedFrames : public Sequence {
   std::size_t left_out_ = 0;
 };
 
-/// What becomes of an image's keypoints in another image from the same pose.
+/// What happens to an image's keypoints in another image from the same pose.
 struct KeypointAgreement {
-  std::size_t keypoints = 0;  ///< of the first image
-  std::size_t repeated = 0;   ///< the other has a keypoint within 3 px and one octave
-  std::size_t matched = 0;  ///< the most similar one within 20 px is one of these, at most 50 bits
-  std::size_t mismatched = 0;  ///< the most similar one within 20 px, at most 50 bits, is another
+  std::size_t keypoints = 0;   ///< of the first image
+  std::size_t repeated = 0;    ///< the other has a keypoint within 3 px and one octave
+  std::size_t matched = 0;     ///< the most similar one within 20 px and 50 bits is one of these
+  std::size_t mismatched = 0;  ///< the most similar one within 20 px and 50 bits is not
 };
 KeypointAgreement agreement(const Features& first, const Features& other);
 
 /// A recorded frame beside the rendering from its pose.
 struct TwinFrame {
   Stamp stamp_ns = 0;
-  ImageStatistics recorded{}, rendered{};                     ///< as measure_image()
+  ImageStatistics recorded{}, rendered{};                     ///< from measure_image()
   double recorded_depth_share = 0, rendered_depth_share = 0;  ///< of pixels with a return
   /// Median over pixels where both have a return; absent if none has.
   std::optional<double> depth_difference_m;  ///< |rendered - recorded|
@@ -62,7 +62,7 @@ struct TwinFrame {
   KeypointAgreement noise;  ///< rendered keypoints, in another rendering of the level's noise
 };
 
-/// Compares every so many frames of a recording with its twin.
+/// Compares frames of a recording, at a fixed interval, with its twin.
 /// @param twin  of the same length and stamps
 /// @param progress  share done; may be empty
 /// @returns those that both can deliver

@@ -18,7 +18,7 @@ struct VocabularyTraining {
   int rooms = 240;         ///< training rooms, each from its own seed, >= 1
   int views = 15;          ///< images per room, >= 1
   std::uint64_t seed = 1;  ///< of rooms, views, noise and tree: determines the vocabulary
-  /// Rays per vertex when light is baked, >= 1: corners need no fine light.
+  /// Rays per vertex when light is baked, >= 1: corners do not need fine light.
   int light_samples = 16;
   /// Standard deviation of the image noise, relative to full scale: words should describe what a
   /// real camera sees.

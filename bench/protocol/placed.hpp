@@ -7,12 +7,13 @@
 
 namespace mh {
 
-/// What is nearest to a query: for a held-out frame the next in time, for others the next in place.
+/// How the mapped frame nearest to a query is found: by time for a held-out frame, by place for
+/// others.
 NearestBy nearest_by(QuerySet set);
 
-/// Where an answer lies in the frame of the truth: as far from the query's true pose as it was
-/// scored, so relative to the nearest mapped frame (docs/protocol.md). nullopt if the query was not
-/// answered, or nothing was mapped that the answer could be compared with.
+/// Where an answer is in the frame of the truth: relative to the nearest mapped frame, as it was
+/// scored (docs/protocol.md), so that its distance from the query's true pose is its error. nullopt
+/// if the query was not answered, or nothing was mapped that the answer could be compared with.
 std::optional<SE3> answer_in_truth(const RunResult& run, QuerySet set, const QueryScore& query);
 
 }  // namespace mh

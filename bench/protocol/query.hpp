@@ -50,7 +50,7 @@ bool is_blank(const RgbdFrame& frame);
 
 /// The random streams of one presentation of a test frame.
 struct Presentation {
-  RandomStream noise, draws;  ///< of the frame, of the system
+  RandomStream noise, draws;  ///< noise of the frame, draws of the system
 };
 /// @param stream   of the set of queries
 /// @param index    of the test frame

@@ -22,7 +22,7 @@ namespace mh {
 struct PointResult {
   std::vector<QueryScore> held_out;
   std::vector<QueryScore> second_tour = {};  ///< never pooled with held_out
-  std::vector<QueryScore> graded = {};       ///< nor with these
+  std::vector<QueryScore> graded = {};       ///< nor with the two above
 };
 
 /// When and where a run's times were measured: times of different sessions are not comparable.
@@ -42,7 +42,7 @@ struct RunResult {
   Trajectory estimate;
   TrajectoryScore trajectory;
   EstimateFrames frames;
-  std::vector<PointResult> points;         ///< as spec.points
+  std::vector<PointResult> points;         ///< as in spec.points
   std::shared_ptr<const VoxelMap> volume;  ///< keyframe depth at its final poses, dock frame
   OccupancyGrid grid;                      ///< the part of it that obstructs a robot
   std::uint64_t map_digest = 0;            ///< of trajectory and grid

@@ -62,7 +62,7 @@ std::string stamp_fault(const Sequence& sequence, std::size_t i) {
 }
 
 std::optional<RgbdFrame> UsableFrames::frame(std::size_t i, RandomStream noise) {
-  if (!has_stamp_[i]) {  // no sign that nothing can be read
+  if (!has_stamp_[i]) {  // does not show that nothing can be read
     skipped_.add(stamp_fault(sequence_, i));
     return std::nullopt;
   }

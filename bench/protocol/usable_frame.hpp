@@ -12,8 +12,8 @@
 
 namespace mh {
 
-/// Frames of a recording that were shown to no system: they cannot be read, differ in size from the
-/// camera's, or have stamps that do not increase.
+/// Frames of a recording that were not shown to any system: they cannot be read, differ in size
+/// from the camera's, or have stamps that do not increase.
 struct SkippedFrames {
   static constexpr std::size_t kReasonsKept = 5;
   std::size_t count = 0;
@@ -57,7 +57,7 @@ class UsableFrames {
   /// Returns frame i; nullopt if it cannot be shown.
   /// @throws InputError if none of the first kHopeless requested frames can be shown.
   std::optional<RgbdFrame> frame(std::size_t i, RandomStream noise);
-  /// To be called at the end. @throws InputError if frames were requested and none could be shown.
+  /// Call it at the end. @throws InputError if frames were requested and none could be shown.
   void require_any() const;
   const SkippedFrames& skipped() const { return skipped_; }
 
@@ -71,7 +71,7 @@ class UsableFrames {
 };
 
 /// Reads the first kHopeless frames of a recording until one can be used.
-/// @throws InputError of the first frame if none can.
+/// @throws the first frame's InputError if none can.
 void require_usable_frames(const Sequence& sequence);
 
 }  // namespace mh

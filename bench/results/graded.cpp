@@ -44,7 +44,7 @@ struct Answers {
   double trials = 0, success = 0, correct = 0, false_positive = 0;
 };
 
-/// By query, those of a row that fall into a bin.
+/// A row's answers in a bin, by query.
 std::map<std::size_t, Answers> answers_in(const Row& row, const Axis& axis, std::size_t bin) {
   std::map<std::size_t, Answers> found;
   for (const Trial& trial : row.trials)
@@ -117,7 +117,7 @@ GradedBin bin_in(const Suite& suite, const Block& block, const std::vector<std::
   return bin;
 }
 
-/// Bins around each of the speeds that were asked; none if there is only one.
+/// Bins around each of the speeds that were used; none if there is only one.
 std::vector<double> edges_of_speeds(const std::vector<double>& speeds) {
   std::set<double> sorted(speeds.begin(), speeds.end());
   std::vector<double> edges;

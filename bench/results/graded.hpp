@@ -20,7 +20,7 @@ struct GradedShare {
 /// The graded queries between two edges of what they are graded by.
 struct GradedBin {
   double low = 0, high = 0;
-  std::size_t queries = 0;  ///< over scenes; each is asked in every trial
+  std::size_t queries = 0;  ///< over scenes; each is made in every trial
   std::vector<std::optional<GradedShare>> systems = {};  ///< as Suite::systems; absent: no answers
   /// Success of the suite's first pair of systems over the same queries, first minus second: with
   /// scenes as clusters if there are four, else by blocks of queries.
@@ -38,15 +38,15 @@ struct GradedCurve {
 
 /// Curves at the suite's first parameter point, per level and kind of labels: over distance and
 /// angle to the nearest mapped view and, where they differ, over the share of the view that the map
-/// shows and the speed; of a suite with several categories, over distance in each. Empty without
+/// shows and the speed; for a suite with several categories, over distance in each. Empty without
 /// graded queries.
 std::vector<GradedCurve> graded_curves(const Suite& suite, std::span<const Row> rows);
 
-/// How many views were drawn in a suite's scenes, and how many of these no mapped frame shows, so
-/// that they were not asked.
+/// How many views were drawn in a suite's scenes, and how many of them were not queried because no
+/// mapped frame shows them.
 struct GradedDraws {
   std::size_t asked = 0, hidden = 0;
-  std::size_t short_cells = 0, cells = 0;  ///< of bins, those that hold fewer than they should
+  std::size_t short_cells = 0, cells = 0;  ///< bins with fewer queries than wanted, and all bins
 };
 GradedDraws graded_draws(const Suite& suite, std::span<const Row> rows);
 

@@ -21,7 +21,7 @@ struct CategoryRow {
   Labels labels;
   std::size_t scenes = 0;  ///< where the system has a result; all figures are over these; may be 0
   std::size_t of = 0;      ///< scenes of the category in the suite
-  std::size_t failed = 0;  ///< runs that failed, in all of them
+  std::size_t failed = 0;  ///< failed runs in all of these scenes
   TrajectoryScore trajectory;                  ///< each figure over the scenes that have it
   QuerySummary held_out, second_tour, graded;  ///< over the scenes with such queries
 };
@@ -36,8 +36,8 @@ std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const 
 /// First minus second of each pair that the suite compares, over scenes: one family per pair, level
 /// and parameter point, corrected by Holm. In it are the share that the suite's `measure` names,
 /// correct or success, distance over the queries that both answered, ATE over the frames that both
-/// tracked. Outside stand the other share, false positive, and both shares of all queries pooled,
-/// with scenes as clusters.
+/// tracked. Outside the family are the other share, false positive, and both shares of all queries
+/// pooled, with scenes as clusters.
 struct SceneFamily {
   std::size_t level = 0, parameters = 0;
   SystemPair systems;
@@ -46,7 +46,7 @@ struct SceneFamily {
 std::vector<SceneFamily> compare_over_scenes(const Suite& suite, std::span<const Row> rows);
 
 /// Whether there are enough pairs to detect a loss as large as the margin: by the rule of three,
-/// fewer than 3 / margin may well contain no loss at all.
+/// fewer than 3 / margin may show no loss by chance.
 bool enough_for(const Comparison& share, double margin);
 
 /// Whether the interval of a share stays above -margin, over enough pairs: not inferior by more

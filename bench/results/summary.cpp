@@ -58,8 +58,7 @@ std::map<std::size_t, std::optional<double>> per_query(const Row& row, QuerySet 
   return medians;
 }
 
-/// Of the queries that both were asked: one of them may have been skipped for a system that needs
-/// its labels.
+/// For the queries made to both systems: some may have been skipped for a system that needs labels.
 template <class Get>
 std::vector<PairedDifference> differences(const Row& first, const Row& second, QuerySet set,
                                           Get get) {

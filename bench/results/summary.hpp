@@ -56,7 +56,7 @@ struct Family {
 /// is shown alongside.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 
-/// Per query that both were asked, in order: first minus second, each the median over trials.
+/// Per query made to both, in order: first minus second, each the median over trials.
 std::vector<PairedDifference> paired_success(const Row& first, const Row& second, QuerySet set);
 /// The same for correct answers; absent where an answer cannot be judged.
 std::vector<PairedDifference> paired_correct(const Row& first, const Row& second, QuerySet set);

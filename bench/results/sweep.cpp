@@ -45,7 +45,7 @@ std::vector<SweepResult> sweep_results(const Suite& suite, std::span<const Row> 
 std::optional<BestPoint> best_point(const Suite& suite, std::span<const Row> rows,
                                     const SweepResult& result, QuerySet set) {
   if (result.answers.empty() || !summary(result.answers.front(), set).correct) return std::nullopt;
-  // A point that failed in some scenes would be compared on the others only: it is never best.
+  // A point that failed in some scenes could be compared only on the others, so it is never best.
   const std::size_t scenes =
       std::ranges::max_element(result.answers, {}, &CategoryRow::scenes)->scenes;
   const auto correct = [&](const CategoryRow& row) {

@@ -23,7 +23,7 @@ struct RunAtWork {
 class Forecast {
  public:
   void note(const RunSpec& finished, double wall_s);
-  /// Duration of such a run from start to end; nullopt before anything has finished.
+  /// Duration of such a run; nullopt before any run has finished.
   std::optional<double> of(const RunSpec& run) const;
   /// Duration of all of these, one after the other; nullopt before anything has finished.
   std::optional<double> of_all(const std::vector<const RunSpec*>& runs) const;

@@ -38,7 +38,7 @@ void add_written(const fs::path& folder, int depth, std::vector<fs::path>& writt
       add_written(it->path(), depth - 1, written);
 }
 
-/// Where the environment's inputs lie, by their names; what is generated lies nowhere.
+/// Where the environment's inputs are stored, by their names; generated inputs are not stored.
 std::map<std::string_view, fs::path> sources_of(const Environment& e) {
   std::map<std::string_view, fs::path> all;
   if (e.is_recorded()) {

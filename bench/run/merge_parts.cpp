@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Copies what the output lacks of a file or folder. Each file appears whole or not at all, so that
-/// a copy that was stopped by a full disk can be resumed.
+/// Copies the parts of a file or folder that the output lacks. Each file appears complete or not at
+/// all, so that a copy that was stopped by a full disk can be resumed.
 void copy_missing(const fs::path& from, const fs::path& to) {
   if (fs::is_directory(from)) {
     make_output_folder(to);

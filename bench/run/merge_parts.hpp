@@ -15,7 +15,7 @@ namespace mh {
 std::vector<std::filesystem::path> mergeable_results(
     const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts);
 
-/// Copies what `out` lacks of the results, the folders of runs and the images of a suite's parts.
+/// Copies from a suite's parts the results, folders of runs and images that `out` lacks.
 /// @param say  receives a line about each part that adds nothing
 /// @pre mergeable_results() passed
 void merge_parts(const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts,

@@ -52,7 +52,7 @@ void check_recordings(const Environment& e, const Labels& labels,
   }
 }
 
-/// Says which settings of SLAM a calibration file has that a run does not: a suite ignores them,
+/// Lists settings of SLAM in a calibration file that a run does not use: a suite ignores them,
 /// except the readout time, which is the camera's.
 void warn_of_ignored_settings(const fs::path& file, const RunSpec& run,
                               const std::function<void(std::string_view)>& say) {
@@ -92,8 +92,8 @@ class Places {
  public:
   Places(const Suite& suite, const InputReader& inputs) : suite_(suite), inputs_(inputs) {}
 
-  /// @throws InputError if another environment reads the same, or shows the same images, or if the
-  /// environment is queried with the images that it maps.
+  /// @throws InputError if another environment reads the same files, or shows the same images, or
+  /// if the environment is queried with the images that it maps.
   void add(const Environment& e, const std::string& key) {
     const auto [known, is_new] = environment_of_.try_emplace(key, e.name);
     if (known->second != e.name)

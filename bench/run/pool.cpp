@@ -99,8 +99,8 @@ class Pool {
     return available_mb() - promised_mb > require_mb();
   }
 
-  /// Positions in waiting_, best first: images that are there and that nobody is at, images that
-  /// nobody has begun, the others.
+  /// Positions in waiting_, best first: images that exist and no run is using, images that no run
+  /// has begun, the others.
   std::vector<std::size_t> by_preference() const {
     std::set<std::string> in_use;
     for (const Running& r : running_) in_use.insert(r.what.job.images);
@@ -118,7 +118,7 @@ class Pool {
     while (another_fits() && start_next()) estimate_waiting();
   }
 
-  /// When runs begin or end, not at each report: there are thousands of them.
+  /// Called when runs begin or end, not at each of the thousands of reports.
   void estimate_waiting() {
     std::vector<const RunSpec*> waiting;
     for (const Waiting& w : waiting_) waiting.push_back(&w.job.spec);
@@ -252,7 +252,7 @@ class Pool {
     estimate_waiting();
     report();
   }
-  /// Whether no other run sees the same.
+  /// Whether no other run uses the same.
   bool was_last(const Job& job, std::string Job::*seen) const {
     const auto sees_it = [&](const Job& other) { return other.*seen == job.*seen; };
     return std::ranges::none_of(waiting_, sees_it, &Waiting::job) &&
@@ -292,7 +292,7 @@ class Pool {
   double require_mb_ = 0;  ///< of one run, as measured so far
   Forecast forecast_;
   std::vector<Waiting> waiting_;
-  std::optional<double> waiting_s_;  ///< what they will take, if that can be told
+  std::optional<double> waiting_s_;  ///< what they will take, if known
   std::vector<Running> running_;
   std::set<std::string> begun_;  // images that a run has begun to make
 };

@@ -17,8 +17,8 @@ namespace mh {
 struct Job {
   RunSpec spec;
   std::string key;
-  std::string images = {};  ///< what it sees: the same text for runs that see the same
-  std::string frames = {};  ///< what it maps: the same text for runs that see it with equal noise
+  std::string images = {};  ///< the images that it sees: equal for runs that see the same
+  std::string frames = {};  ///< the frames that it maps, noise included: likewise
 };
 
 /// Prefix of the error of a run that failed on bad input, which the user can fix.
@@ -41,7 +41,7 @@ struct PoolOptions {
   /// The command line of a run's process. It finishes by putting the result into the store.
   std::function<std::vector<std::string>(const Job&, const std::filesystem::path& description)>
       arguments;
-  /// Called when no more run will need what has this name (Job::frames, then Job::images).
+  /// Called when no run will need the data of this name any more (Job::frames, then Job::images).
   std::function<void(const std::string& name)> forget = [](const std::string&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
@@ -52,8 +52,8 @@ struct PoolOptions {
 /// waited for.
 ///
 /// - Runs that see the same images (Job::images) follow one another, so that one of them makes the
-///   images and the others find them: a process that is free takes a run of images that are there
-///   and that no other one is at, else of the next ones in the order of `jobs`.
+///   images and the others find them: a free process takes a run whose images exist and are not in
+///   use, else the next one in the order of `jobs`.
 /// - Another process starts only if there is enough memory for it and for what the running ones
 ///   still need (as measured on finished ones); one always runs.
 /// - A run that ends by itself without success is a failure and stays one. One that was killed from

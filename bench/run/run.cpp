@@ -46,7 +46,7 @@ void warn_missing_outputs(const Suite& suite, const BenchResults& results,
   std::set<std::string> views;
   for (const RunResult& run : results.runs) {
     runs += fs::exists(options.out / run.spec.name / "estimate.tum") ? 0 : 1;
-    if (run.spec.environment.is_recorded()) continue;  // no image is drawn of it
+    if (run.spec.environment.is_recorded()) continue;  // it has no images
     if (const std::string name = views_name(suite, run.spec); !fs::exists(options.out / name))
       views.insert(name);
   }
@@ -66,7 +66,8 @@ bool is_to_do(const Store& store, const Job& job, const BenchOptions& options) {
 }
 
 /// If a scene was changed and changed back, the existing files are from the run in between: they
-/// are removed, together with the result, which is rerun, or from next to a failure.
+/// are removed, together with the result, so that the run is repeated; so are files next to a
+/// failure.
 void forget_outdated_runs(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     const fs::path folder = out / job.spec.name;
@@ -86,7 +87,7 @@ double load_per_processor() {
   return load / std::max(1.0, static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
-/// @param wall_s  of this process so far, as cpu_s is of it
+/// @param wall_s wall time of this process so far, matching its cpu_s
 /// @param world_s, products_s  CPU time in addition to what `run` recorded
 RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
                              const SingleRunOptions& order) {
@@ -121,7 +122,8 @@ void take_share(std::vector<Job>& jobs, const BenchOptions& options) {
   }
 }
 
-/// Forgets which runs see the same where they must not share it, or where none is left to share it.
+/// Clears the names of shared data in jobs that must not share, or that have no other job to share
+/// with.
 void limit_sharing(std::vector<Job>& jobs, const BenchOptions& options) {
   std::map<std::string, int> viewers;
   for (const Job& job : jobs) ++viewers[job.frames];

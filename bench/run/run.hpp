@@ -28,14 +28,14 @@ struct BenchOptions {
   std::optional<std::filesystem::path> cache;
   double time_limit_s = 14400;  ///< of one run; 0 = none
   double memory_limit_mb = 0;   ///< of one run; 0 = none
-  /// Disk space, in options.out, for the images that runs leave for others; 0: each makes its own.
-  /// Never changes a result.
+  /// Disk space, in options.out, for images that runs share; 0: each renders its own. Never changes
+  /// a result.
   double images_limit_gb = 20;
   bool retry_failed = false;
   /// Metrics only: no occupancy map, no images and no files of runs.
   bool metrics_only = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
-  FolderHold* hold = nullptr;     ///< of `out`, kept beyond the runs; null: while they run
+  FolderHold* hold = nullptr;     ///< hold of `out`, kept after the runs; null: only while they run
   InputReader* inputs = nullptr;  ///< has read some of the inputs already; null: none
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
@@ -55,16 +55,16 @@ struct SingleRunOptions {
   std::filesystem::path store, folder;
   std::filesystem::path cache;  ///< for baked light; empty: keeps nothing
   std::filesystem::path maps;   ///< for finished maps; empty: keeps nothing
-  SharedImages images = {};     ///< of runs that see the same
-  bool share_noise = false;     ///< leaves mapping frames with their noise there, too
+  SharedImages images = {};     ///< of runs that see the same images
+  bool share_noise = false;     ///< also shares mapping frames with their noise there
   std::string key;
   std::string views;          ///< file name of the environment's contact sheet
   std::string session_start;  ///< start of the command that issued this order
   int jobs = 1;               ///< parallel runs; threads for baking light
-  bool metrics_only = false;  ///< as BenchOptions
+  bool metrics_only = false;  ///< as in BenchOptions
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};
-  std::function<void(std::string_view)> status = [](std::string_view) {};  ///< as RunTools
+  std::function<void(std::string_view)> status = [](std::string_view) {};  ///< as in RunTools
 };
 void execute_run(const SingleRunOptions& order);
 

@@ -67,14 +67,14 @@ class SequenceView : public Sequence {
   const Sequence& inner_;
 };
 
-/// What the files of a world were when its key was made.
+/// The state of a world's files when its key was made.
 class FilesAsKeyed {
  public:
   explicit FilesAsKeyed(const ReadRecord& held) {
     for (const FileObservation& o : held.observations)
       if (o.state.inode != 0) of_.emplace(o.path, o);
   }
-  /// @throws InputChanged if any that was read now is another, though it may be put back since
+  /// @throws InputChanged if any file that was just read differs, even if it was restored since
   void require(const ReadRecord& now) const {
     for (const FileObservation& o : now.observations) {
       const auto was = of_.find(o.path);
@@ -93,8 +93,8 @@ class FilesAsKeyed {
   std::map<fs::path, FileObservation> of_;
 };
 
-/// The frames as a run sees them: they are of the files of its key, the CPU time spent on making
-/// them is counted, and tests may change them.
+/// The frames as a run sees them: their files match its key, the CPU time spent on making them is
+/// counted, and tests may change them.
 class WatchedFrames : public SequenceView {
  public:
   /// @param recording  where they come from; empty: they are simulated
@@ -125,7 +125,7 @@ class WatchedFrames : public SequenceView {
       files_.require(reading.record());
       return frame;
     } catch (const InputError&) {
-      files_.require(reading.record());  // it cannot be read, for it was not there
+      files_.require(reading.record());  // it cannot be read because it was missing
       throw;
     }
   }

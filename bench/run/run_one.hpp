@@ -27,8 +27,8 @@ inline constexpr const char* kOutsideLog = "outside.log";
 /// that exchanges messages with us or a shared library. Null for an outside program that processes
 /// a folder of recorded frames instead.
 /// @param folder  for the log of an outside program
-/// @param status  receives what a library is being asked for
-/// @param hidden  as RunTools
+/// @param status  receives the current call into a library
+/// @param hidden  as in RunTools
 /// @throws InputError if settings are out of range; OutsideError if the program does not start.
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder,
@@ -39,7 +39,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
 RandomStream mapping_stream(const RunSpec& spec);
 
 /// The noises that the mapping frames of a trial's runs have in common: at first, and after each of
-/// its first restarts. A run with more than these is hardly like another.
+/// its first restarts. With more restarts, runs hardly have frames in common.
 std::vector<RandomStream> shared_noises(const RunSpec& spec);
 
 /// The stream that the queries of a set draw from (bench/protocol/query.hpp).

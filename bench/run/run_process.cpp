@@ -29,9 +29,9 @@ extern char** environ;
 namespace mh {
 namespace {
 
-/// This process' environment, in which glibc asks for pages of 2 MB where it can: a run touches
-/// some 300 MB once, mostly textures, and spent a fifth of its time on their page faults. A setting
-/// of the user's own stays.
+/// This process' environment, set so that glibc requests pages of 2 MB where possible: a run
+/// touches some 300 MB once, mostly textures, and spent a fifth of its time on their page faults. A
+/// setting by the user is kept.
 std::vector<char*> with_large_pages() {
   static std::string tunables = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
   std::vector<char*> all;
@@ -126,12 +126,12 @@ void RunProcess::kill() {
 
 void RunProcess::read_shares() {
   char buffer[4096];
-  constexpr int kMost = 256;  // pieces: one that always has more must not keep us
+  constexpr int kMost = 256;  // pieces: a process that prints endlessly must not block us
   for (int piece = 0; piece < kMost; ++piece) {
     const ssize_t got = read(output_, buffer, sizeof buffer);
     if (got <= 0) break;
     unread_.append(buffer, static_cast<std::size_t>(got));
-    // A library in it may print there, too, and without an end.
+    // A library in it may print there, too, without line ends.
     constexpr std::size_t kLongestLine = 1 << 16;
     if (unread_.size() > kLongestLine && unread_.find('\n') == std::string::npos) unread_.clear();
   }

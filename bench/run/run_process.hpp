@@ -39,8 +39,8 @@ struct ProcessEnd {
   RunCost cost;
 };
 
-/// Why a process ended that reported nothing: by which signal or exit code, what it was last seen
-/// doing, and whose code was in it.
+/// Why a process ended that reported nothing: by which signal or exit code, what it was last doing,
+/// and whose code it was running.
 /// @param status  RunProcess::status()
 std::string unreported_end(const ProcessEnd& end, const SystemSpec& system,
                            const std::string& status);

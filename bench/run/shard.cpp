@@ -19,8 +19,8 @@ namespace mh {
 namespace {
 
 // Measured: docs/measurements/cost_of_the_bench.md, "Shares of an array".
-constexpr double kImage_s = 0.066;  // an image with blur and rolling shutter, 640x480
-constexpr double kFrame_s = 0.017;  // a run's noise, SLAM and files, per frame whose image is there
+constexpr double kImage_s = 0.066;      // an image with blur and rolling shutter, 640x480
+constexpr double kFrame_s = 0.017;      // noise, SLAM and files of a run, per frame with an image
 constexpr double kAssumedFrames = 600;  // generated rooms have 300 to 1,500
 
 double frames_of(const std::optional<std::filesystem::path>& tour, const RunSpec& run) {
@@ -50,7 +50,7 @@ class SplitTable {
     return end_s_[end - 1] - begin_s_[begin];
   }
 
-  /// Begins of `parts` shares, none of them empty. @pre 1 <= parts <= runs
+  /// Starts of `parts` shares, none of them empty. @pre 1 <= parts <= runs
   std::vector<std::size_t> begins(std::size_t parts) {
     const std::size_t runs = begin_s_.size();
     std::vector<std::vector<std::size_t>> last_begin;  // of the split of the first runs, by part
@@ -71,8 +71,8 @@ class SplitTable {
 
  private:
   /// Fills next_[low .. high], whose last share begins within [first, last]. The cost is convex in
-  /// end_s_[end] - begin_s_[begin], both of which ascend: the best begin does not go back as the
-  /// end goes on, so that halves share the candidates.
+  /// end_s_[end] - begin_s_[begin], both of which ascend: the best start does not decrease as the
+  /// end increases, so that the two halves share the candidates.
   void fill(std::size_t low, std::size_t high, std::size_t first, std::size_t last) {
     if (low > high) return;
     const std::size_t middle = (low + high) / 2;
@@ -92,7 +92,7 @@ class SplitTable {
   std::vector<std::size_t> begin_;       // of the last part, by the number of runs
 };
 
-/// As many as are drawn if every bin is filled: none is known before the drive.
+/// The number if every bin is filled; the actual one is not known before the drive.
 double graded_queries(const RunSpec& run) {
   if (!run.graded) return 0;
   const GradedSpec& g = *run.graded;

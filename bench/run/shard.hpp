@@ -22,7 +22,7 @@ Shard parse_shard(const std::string& text);
 std::string images_of(const RunSpec& run);
 
 /// Predicted processor time of a run, known before anything has run. It serves to balance shares;
-/// docs/store.md states how far it is from what was measured.
+/// docs/measurements/cost_of_the_bench.md compares it with measured times.
 struct PredictedCost {
   std::string images;   ///< as images_of()
   double images_s = 0;  ///< making these images; spent once by all runs that see them
@@ -43,7 +43,7 @@ struct PredictedShare {
 /// eighth powers of the shares' costs, which approximates minimizing the most expensive share. A
 /// share that starts in the middle of runs with the same images must render those images again.
 /// Every run is in exactly one share; with more parts than runs the last shares are empty.
-/// @param runs  those that see the same images follow one another, as expand() orders them
+/// @param runs  those that see the same images are consecutive, as expand() orders them
 /// @returns `parts` shares
 std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts);
 std::vector<PredictedShare> split_runs(std::span<const RunSpec> runs, std::size_t parts);

@@ -12,7 +12,7 @@ namespace {
 volatile std::sig_atomic_t g_signal = 0;
 volatile std::sig_atomic_t g_goes_on = 0;
 
-/// Calls nothing that a signal's handler must not.
+/// Calls only functions that are safe in a signal handler.
 void end_at_once(int) {
   const char* line = interrupted_line(g_goes_on != 0);
   [[maybe_unused]] const auto written = write(STDERR_FILENO, line, std::strlen(line));
@@ -28,7 +28,7 @@ const char* interrupted_line(bool goes_on) {
 
 void tell_of_interrupts() {
   for (const int number : {SIGINT, SIGTERM}) std::signal(number, end_at_once);
-  // Ignored under nohup, which it stays.
+  // Under nohup it is ignored, and stays so.
   if (std::signal(SIGHUP, end_at_once) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 

@@ -5,8 +5,8 @@
 
 namespace mh {
 
-/// Thrown when the user interrupted the work (Ctrl-C, SIGTERM, SIGHUP): every process has ended,
-/// what is finished is kept.
+/// Thrown when the user interrupted the work (Ctrl-C, SIGTERM, SIGHUP): every process has ended;
+/// finished results are kept.
 struct Interrupted {
   int signal = 0;
   bool goes_on = true;  ///< whether the same command resumes from what is finished
@@ -18,9 +18,9 @@ inline constexpr int kInterruptedCode = 130;  ///< exit code
 const char* interrupted_line(bool goes_on);
 
 /// From now on SIGINT, SIGTERM and SIGHUP end the program at once, with that line and code 130;
-/// where a SignalWatch lives, it decides.
+/// while a SignalWatch exists, it handles them instead.
 void tell_of_interrupts();
-/// The same command resumes from what is finished: what tell_of_interrupts() says from now on.
+/// From now on, tell_of_interrupts() says that the same command resumes from what is finished.
 void interrupts_go_on();
 
 /// During its lifetime, records SIGINT, SIGTERM and SIGHUP instead of terminating.

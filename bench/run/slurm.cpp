@@ -101,8 +101,7 @@ void submit(const fs::path& folder, const std::vector<std::string>& words,
   }
 }
 
-/// Removes the files of runs that are not those of their results, as shares will bring the right
-/// ones.
+/// Removes files of runs that do not belong to their results; shares will bring the right ones.
 void remove_outdated(const Suite& suite, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     if (!shows_another_run(out / job.spec.name, job.key)) continue;

@@ -14,7 +14,7 @@ namespace mh {
 struct SlurmOptions {
   std::size_t shares = 1;           ///< tasks of the array
   std::vector<std::string> sbatch;  ///< further arguments of sbatch: partition, account, memory
-  /// Arguments that this program takes for one share: `bench SUITE ...`, without --shard and --out.
+  /// This program's arguments for one share: `bench SUITE ...`, without --shard and --out.
   std::vector<std::string> arguments;
 };
 
@@ -34,7 +34,7 @@ std::string task_script(const std::filesystem::path& executable, const std::file
                         const SlurmOptions& slurm);
 
 /// Like run_suite(), as a job array of Slurm: a share of the runs per task (split_runs), each into
-/// a folder of its own, merged into options.out in the end. Only shares with unfinished runs are
+/// a folder of its own, finally merged into options.out. Only shares with unfinished runs are
 /// submitted, so that the same call resumes.
 /// @throws InputError if an input cannot be read; MachineError if Slurm's commands are missing or
 /// nothing could be submitted; Interrupted on Ctrl-C, after the array was canceled.

@@ -36,7 +36,7 @@ class ColumnTexts {
   void operator()(const char* name, const T&) {
     add<T>(name, " NOT NULL");
   }
-  /// A setting: null where a system has none.
+  /// A setting: null if a system does not have it.
   template <class T>
   void operator()(const char* name, const T&, const SettingRange&, const char*) {
     text_ += fmt::format("  {} {},\n", name,

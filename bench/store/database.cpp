@@ -46,7 +46,7 @@ void enter_wal(SQLite::Database& db) {
 }
 
 /// Merging copies whole rows, so an extra or missing column is an error, and one of another type
-/// would change numbers. Other tables do no harm.
+/// would change numbers. Other tables are harmless.
 void require_schema(SQLite::Database& db, const fs::path& file) {
   SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   fresh.exec(schema());
@@ -93,7 +93,7 @@ fs::path log_of(const fs::path& file) {
   return file.string() + "-wal";
 }
 
-/// URI with which SQLite opens a file that nobody writes, without a lock or a log.
+/// URI by which SQLite opens a file that no process writes, without a lock or a log.
 std::string as_immutable(const fs::path& file) {
   std::string name = "file:";
   for (const char c : fs::absolute(file).string())
@@ -120,7 +120,7 @@ std::unique_ptr<SQLite::Database> open_to_write(const fs::path& file) {
   db.exec("PRAGMA synchronous = FULL");
   if (version_of(db) == 0) {
     SQLite::Transaction transaction = begin_writing(db);
-    if (version_of(db) == 0 &&  // no other process was faster
+    if (version_of(db) == 0 &&  // no other process was first
         db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0) {
       db.exec(schema());
       db.exec(fmt::format("PRAGMA user_version = {}", kSchemaVersion));

@@ -17,7 +17,7 @@ namespace mh {
 /// Opens or creates the file.
 std::unique_ptr<SQLite::Database> open_to_write(const std::filesystem::path& file);
 
-/// A file that was opened for reading.
+/// A file opened for reading only.
 struct UnchangedFile {
   std::string name;  ///< what SQLite opened: the file, a copy, or a URI with options
   std::unique_ptr<TemporaryFolder> copy;

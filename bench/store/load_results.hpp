@@ -14,7 +14,7 @@ namespace mh {
 struct BenchResults {
   std::vector<RunResult> runs;       ///< finished ones, in the order of expand(suite)
   std::vector<FailedRun> failed;     ///< failed ones, in the same order
-  std::vector<std::string> missing;  ///< names of those that are neither: of other shards
+  std::vector<std::string> missing;  ///< names of the others, such as runs of other shards
 };
 
 /// Loads the store's results for the runs of a suite.

@@ -112,7 +112,7 @@ void load_calls(SQLite::Database& db, const std::string& key, RunResult& run) {
   SQLite::Statement s(db, "SELECT * FROM calls WHERE key = ? ORDER BY call");
   s.bind(1, key);
   while (s.executeStep()) {
-    RowReader reader(s, 2);  // behind key and call
+    RowReader reader(s, 2);  // after key and call
     fields(run.mapping.calls.emplace_back(), reader);
   }
 }
@@ -140,7 +140,7 @@ void load_queries(SQLite::Database& db, const std::string& key, RunResult& run) 
       s.bind(2, static_cast<std::int64_t>(p));
       s.bind(3, std::string(name(set)));
       while (s.executeStep()) {
-        RowReader reader(s, 3);  // behind key, point and query_set
+        RowReader reader(s, 3);  // after key, point and query_set
         fields(list.emplace_back(), reader);
       }
       s.reset();

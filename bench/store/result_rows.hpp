@@ -13,7 +13,7 @@ namespace mh {
 
 // Converts a run to rows of the tables of schema.hpp and back. All within the caller's transaction.
 
-/// To be called after the run's other rows are there: it counts them.
+/// Call it after the run's other rows are stored: it counts them.
 void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,
              const std::string& error, const std::string& result);
 void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run);

@@ -12,13 +12,13 @@ namespace mh {
 // Each row of a results file, except in `claims`, has as its last column a digest of its table's
 // name and its other values: SQLite has no checksums, and a number with a flipped bit is still a
 // number. `runs` also stores how many rows each run has in the other tables, and `suite` how many
-// `plan` has, because a lost row has no digest left to check.
+// `plan` has, because a lost row leaves no digest to check.
 
-/// The tables whose rows carry one, in the order of the schema.
+/// The tables whose rows have one, in the order of the schema.
 inline constexpr const char* kDigestedTables[] = {"suite", "plan",   "runs",    "points", "metrics",
                                                   "calls", "frames", "queries", "times"};
 
-/// The tables that `runs.row_count` counts the rows of.
+/// The tables whose rows `runs.row_count` counts.
 inline constexpr const char* kTablesOfRuns[] = {"points", "metrics", "calls",
                                                 "frames", "queries", "times"};
 

@@ -40,10 +40,10 @@ enum class RunStatus { kDone, kFailed };
 using PlannedKeys = std::vector<std::pair<std::string, std::string>>;
 
 /// The results of a suite in one SQLite file (docs/store.md). A result is stored in one
-/// transaction: it is there as a whole or not at all, whenever a process dies. Several processes
-/// may use one file. Errors state what to do: InputError for a file that is damaged, has another
-/// schema or is not a results file; MachineError for a full disk or a file that another process
-/// keeps locked.
+/// transaction: it is there completely or not at all, even if a process dies. Several processes may
+/// use one file. Errors state what to do: InputError for a file that is damaged, has another schema
+/// or is not a results file; MachineError for a full disk or a file that another process keeps
+/// locked.
 class Store {
  public:
   /// Opens or creates the file.
@@ -54,13 +54,13 @@ class Store {
   /// log that a killed process left next to it is applied, as SQLite does.)
   /// @throws InputError if it does not exist; as check()
   static Store open_to_read(const std::filesystem::path& file);
-  /// @throws InputError naming file, table and row if a row is not what was stored.
+  /// @throws InputError naming file, table and row if a row differs from what was stored.
   void check() const;
 
   /// Records the suite and which result belongs to which of its runs, replacing the earlier record.
   /// Results stay.
   void plan(const Suite& suite, const SuiteOverrides& overrides, const PlannedKeys& key_of_name);
-  /// Whether that is the recorded suite, to the letter.
+  /// Whether that is exactly the recorded suite.
   bool is_planned(const Suite& suite, const SuiteOverrides& overrides,
                   const PlannedKeys& key_of_name) const;
   /// The recorded suite. @throws InputError if there is none, or if its files are gone.
@@ -71,8 +71,8 @@ class Store {
   /// Error of a failed run; empty if it did not fail.
   std::string error(const std::string& key) const;
 
-  /// Claims a run that is neither finished nor in progress; a claim whose process has died, or has
-  /// not shown itself for kClaimLife_s from another host, is taken over.
+  /// Claims a run that is neither finished nor in progress; a claim is taken over if its process
+  /// has died, or is on another host and silent for kClaimLife_s.
   bool claim(const std::string& key);
   void release(const std::string& key);
   void beat();  ///< this process's claims are alive
@@ -113,7 +113,7 @@ class Store {
   std::filesystem::path file_;
   std::string opened_;  ///< what SQLite opened to read: a copy's name, or a URI with options
   std::unique_ptr<TemporaryFolder> copy_;
-  std::unique_ptr<SQLite::Database> database_;  ///< closed before its copy goes
+  std::unique_ptr<SQLite::Database> database_;  ///< closed before its copy is removed
 };
 
 /// The current time, "2026-11-22T07:08:40Z".

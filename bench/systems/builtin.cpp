@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-/// Keyframes left by Algorithm 1, and of which queries its sums are.
+/// Keyframes left by Algorithm 1, and which queries its sums come from.
 Candidates as_candidates(const CandidateCounts& c, double gamma) {
   Candidates candidates{.keyframes = c.keyframes,
                         .c1 = c.c1,
@@ -85,7 +85,7 @@ class RememberingSession : public RelocalizationSession {
   RememberingSession(const SlamState& frozen, BuiltinMemo& memo) : frozen_(frozen), memo_(memo) {}
 
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
-    if (found_) {  // a frame after the one in which it was found: rare
+    if (found_) {  // a frame after the one in which it relocalized: rare
       localize(frozen_, tracker_, found_->first, found_->second);
       found_.reset();
     }
@@ -141,12 +141,12 @@ class BuiltinSystem : public System {
   }
   std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
     assert(frozen_);
-    if (released() != nullptr) return open_session();  // answers depend on those before: no memo
+    if (released() != nullptr) return open_session();  // answers depend on earlier ones: no memo
     return std::make_unique<RememberingSession>(state_, static_cast<BuiltinMemo&>(memo));
   }
 
  private:
-  /// What the queries so far left under these settings; null if the settings do not ask for it.
+  /// What the queries so far left under these settings; null if the settings do not use it.
   StaleScores* released() const {
     if (state_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return nullptr;
     const SemanticConfig& s = state_.config.semantics;

@@ -32,7 +32,7 @@ constexpr auto kLook = std::chrono::milliseconds(500);       // between two chec
 constexpr double kMegabyte = 1024.0 * 1024.0;
 constexpr double kLogLimit_mb = 64;                      // docs/outside_systems.md
 constexpr int kMoment_ms = 2000;                         // grace for a program that closed its pipe
-constexpr std::size_t kMostSaid = 200, kMostTold = 600;  // bytes of a log's line, of a message
+constexpr std::size_t kMostSaid = 200, kMostTold = 600;  // bytes: log line, message
 
 Clock::time_point after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -44,7 +44,8 @@ void close_if_open(int& fd) {
   fd = -1;
 }
 
-/// What lies below a folder: total size of its files, whether folders nest too deep to look into.
+/// What lies below a folder: total size of its files, whether folders are nested too deep to be
+/// searched.
 struct Contents {
   double mb = 0;
   bool too_deep = false;
@@ -152,7 +153,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::fail(std::string_view what) {
   watcher_->end_all();
   const std::vector<fs::path> folders = {folder_, log_.parent_path()};
-  // Its file may be another by now.
+  // Its file may have been replaced by now.
   std::string said = last_line_of(log_file_);
   if (said.starts_with("modelhouse: ")) said.clear();  // the watcher's note; reported separately
   said = told(without_folders(std::move(said), folders), kMostSaid);

@@ -14,8 +14,8 @@
 
 namespace mh {
 
-/// Opens a new file for what a program says, in place of an earlier one; -1 and errno if it cannot
-/// be.
+/// Opens a new file for what a program prints, replacing an earlier one; -1 and errno if that
+/// fails.
 int new_log(const std::filesystem::path& file);
 
 /// An outside program running under a watcher, with limits on time, memory and disk use. The
@@ -57,7 +57,7 @@ class ChildProcess {
   /// failure has the same message anywhere.
   [[noreturn]] void fail(std::string_view what);
 
-  /// By how much its folder has grown.
+  /// Growth of its folder.
   double written_mb() const;
 
  private:

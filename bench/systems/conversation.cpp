@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Request = nlohmann::ordered_json;
-using Json = nlohmann::json;  // of a reply: one of many keys costs no more than its length
+using Json = nlohmann::json;  // of a reply; with many keys, the cost stays linear in its length
 
 constexpr int kProtocol = 1;
 constexpr double kFarewell_s = 5;  // docs/outside_systems.md

@@ -9,8 +9,8 @@
 namespace mh {
 
 /// Which files of a folder have been opened since this object was made, by any process (inotify):
-/// how far a program is with a recording, whether or not it says so. Counts nothing where the
-/// system has no watch left.
+/// how far a program is in a recording, whether or not it reports it. Counts nothing if the system
+/// has no watch left.
 class FramesRead {
  public:
   explicit FramesRead(const std::filesystem::path& folder);

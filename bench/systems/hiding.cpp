@@ -40,18 +40,18 @@ bool put(const char* file, std::string_view text) {
 
 /// @returns 0, or errno of the call that failed
 int enter_namespace(const std::string& user_map, const std::string& group_map) {
-  const bool root = geteuid() == 0;  // in a user namespace it could not read what others own
+  const bool root = geteuid() == 0;  // in a user namespace it could not read files of other users
   if (unshare(root ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS) != 0) return errno;
   const bool mapped =
       root || (put("/proc/self/setgroups", "deny") && put("/proc/self/uid_map", user_map) &&
                put("/proc/self/gid_map", group_map));
   if (!mapped) return errno;
-  // What is mounted outside later still arrives; nothing goes the other way.
+  // Later mounts outside still appear here; mounts here do not appear outside.
   return mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) == 0 ? 0 : errno;
 }
 
-/// A shared memory in which nothing is but a folder of it.
-/// @returns 0, or errno of the call that failed: then all is as it was
+/// Gives this process a shared memory with nothing in it but one folder.
+/// @returns 0, or errno of the call that failed: then nothing has changed
 int make_memory_private(const char* own) {
   // Opened here, since a folder of the outer namespace cannot be mounted in this one.
   const int folder = open(own, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -71,7 +71,7 @@ int cover(const char* folder) {
   return mount("tmpfs", folder, "tmpfs", kHow, "mode=0755") == 0 ? 0 : errno;
 }
 
-/// Why it does not work here, tried by a process that ends at once; 0 if it does.
+/// Why hiding does not work here, tried in a process that ends at once; 0 if it does.
 int why_not(const std::string& user_map, const std::string& group_map) {
   const pid_t trial = _Fork();
   if (trial < 0) return errno;
@@ -105,7 +105,7 @@ Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> neede
       group_map_(fmt::format("{0} {0} 1\n", getegid())) {
   std::error_code error;
   if (lies_in(own, kMemory)) own_ = own.string();
-  std::set<fs::path> all;  // a folder before what it holds
+  std::set<fs::path> all;  // a folder before its contents
   for (const fs::path& path : hidden)
     if (const fs::path real = fs::canonical(path, error); !error) all.insert(real);
   for (const fs::path& path : all) {

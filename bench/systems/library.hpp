@@ -17,7 +17,7 @@ namespace mh {
 /// loaded once and stays loaded; each system is created from scratch.
 /// @param log       file for what the library prints
 /// @param on_call   receives each call before it is made, "track (call 20)": a crash ends this
-///                  process without another word
+/// process without any message
 /// @throws OutsideError, here and in every call, if the library cannot be loaded, has another
 ///         version, reports an error or returns an invalid reply.
 std::unique_ptr<System> make_library_system(const OutsideProgram& program, const Camera& camera,

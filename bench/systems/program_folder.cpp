@@ -35,7 +35,7 @@ bool is_true_folder(const fs::path& path) {
   return fs::symlink_status(path, error).type() == fs::file_type::directory;
 }
 
-/// Gives us all rights to a folder of a program, which may have denied them.
+/// Grants us all permissions to a program's folder, which the program may have removed.
 void open_up(const fs::path& folder) {
   std::error_code error;
   fs::permissions(folder, fs::perms::owner_all, fs::perm_options::add, error);
@@ -63,8 +63,8 @@ std::string list_of(const fs::path& folder) {
   return list;
 }
 
-/// Moves a folder to a name that is not taken, on another disk, too. There, what is neither a file
-/// nor a folder nor a link is left out, and what is too deep.
+/// Moves a folder to an unused name, also across disks. In that case, anything that is not a file,
+/// folder or link, or is nested too deep, is left out.
 void move_folder(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::rename(from, to, error);
@@ -88,7 +88,7 @@ void move_folder(const fs::path& from, const fs::path& to) {
 
 /// Where a program's folder is made: not below one that holds results, and with room for images.
 fs::path place_of_folders() {
-  const fs::path large = "/var/tmp";  // in memory on fewer systems than /tmp
+  const fs::path large = "/var/tmp";  // less often in memory than /tmp
   const bool usable = std::getenv("TMPDIR") == nullptr && access(large.c_str(), W_OK | X_OK) == 0;
   return usable ? large : fs::temp_directory_path();
 }

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// How deep folders in a program's folder may nest: paths cost as much as they have parts.
+/// How deep folders in a program's folder may nest: the cost of a path grows with its parts.
 inline constexpr int kDeepestFolder = 100;
 
 /// The folder given to an outside program, for its dataset and its output. It is new for each run
@@ -23,7 +23,7 @@ class ProgramFolder {
  public:
   /// @param run  exists; the program never learns its path
   explicit ProgramFolder(const std::filesystem::path& run);
-  /// Moves it, too, if possible.
+  /// Also moves it, if possible.
   ~ProgramFolder();
   ProgramFolder(const ProgramFolder&) = delete;
   ProgramFolder& operator=(const ProgramFolder&) = delete;

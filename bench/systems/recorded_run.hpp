@@ -27,7 +27,7 @@ std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Came
 ///                writes its trajectory.txt there
 /// @param stamps  of the dataset's frames, increasing
 /// @param log     file for what the program prints; outside the folder
-/// @param read    receives, again and again, how many of the color images were opened so far
+/// @param read    called repeatedly with the number of color images opened so far
 /// @returns the program's trajectory with the frames' own stamps
 /// @throws InputError if validate(program) does; OutsideError if the program fails, or its
 ///         trajectory is missing, malformed, or contains a non-finite number, a pose beyond

@@ -7,10 +7,9 @@
 
 namespace mh {
 
-/// A temporary folder, in memory if possible, in which a program may do what it likes. What is
-/// written there is each time a new file in this very folder: nothing that the program put into the
-/// place of a file, or of the folder, is opened or followed. Removed at the end, whatever the
-/// program made of it.
+/// A temporary folder, in memory if possible, in which a program may do anything. Each write
+/// creates a new file in this same folder: nothing that the program put in place of a file, or of
+/// the folder, is opened or followed. Removed at the end, whatever the program did to it.
 class ScratchFolder {
  public:
   ScratchFolder();

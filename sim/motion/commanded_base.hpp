@@ -45,12 +45,12 @@ class CommandedBase {
   SE3 world_from_base() const;
   const Contact& contact() const { return contact_; }  ///< of the last step
   double step_s() const { return world_.step_s(); }
-  /// As many physics steps as one frame of the robot's camera takes.
+  /// Physics steps per frame of the robot's camera.
   int steps_per_frame() const { return steps_per_frame_; }
   long steps() const { return steps_; }
   double time_s() const { return static_cast<double>(steps_) * world_.step_s(); }
 
-  // Since the start.
+  // Distance since the start.
   double length_m() const { return length_m_; }
   double max_penetration_m() const { return max_penetration_m_; }
   double contact_time_s() const { return contact_time_s_; }
@@ -70,7 +70,7 @@ class CommandedBase {
   BaseState state_;
   Contact contact_;
   double reflex_m_per_s_;
-  double driven_m_per_s_ = 0;  ///< speed without what others pushed
+  double driven_m_per_s_ = 0;  ///< speed, not counting pushes by others
   long steps_ = 0;
   double length_m_ = 0, max_penetration_m_ = 0, contact_time_s_ = 0, reflex_time_s_ = 0;
   std::vector<Bump> bumps_;

@@ -37,7 +37,7 @@ double reach_m(const WheelBase& wheels) {
   return rim_speeds_m_per_s(wheels, twist_of(wheels, 0, 1)).cwiseAbs().maxCoeff();
 }
 
-/// How many times more slowly a stretch must be driven to keep the limits; at most 1: as it is.
+/// The factor by which a stretch must be slowed down to keep the limits; at most 1: as it is.
 double slowness(const Stretch& stretch, const BaseLimits& limits, const WheelBase& wheels,
                 double step_s) {
   const auto n = static_cast<long>(stretch.position_m.size());
@@ -134,7 +134,7 @@ class DifferentialPlanner {
         waypoint);
   }
 
-  /// At constant speed, so that nothing but the bend itself turns the base.
+  /// The highest constant speed through a bend; at constant speed, only the bend turns the base.
   double fastest_through(const RoundedPath::Bend& bend) const {
     double most = std::min(
         planned_.max_turn_rad_per_s / bend.curvature_per_m,
@@ -174,16 +174,16 @@ class DifferentialPlanner {
         [&](double) { return waypoint; });
   }
 
-  /// Adds a stretch along one coordinate (way or angle) that begins at rest at 0, smoothed to keep
-  /// its jerk, as slow as the limits ask.
-  /// @param profile_at  the coordinate over time, when it is driven so many times more slowly
+  /// Adds a stretch along one coordinate (distance or angle) that begins at rest at 0, smoothed to
+  /// limit its jerk, as slow as the limits require.
+  /// @param profile_at the coordinate over time, if driven more slowly by this factor
   void add(const std::function<std::vector<double>(double)>& profile_at,
            const std::optional<double>& jerk, const PoseAt& pose_at,
            const WaypointAt& waypoint_at) {
     Stretch stretch;
     double slow = 1;
     for (int round = 0; round < kRounds; ++round) {
-      Stretch coordinate;  // as a straight way, which smoothed() keeps within the jerk
+      Stretch coordinate;  // as a straight line, which smoothed() keeps within the jerk
       for (int i = 0; i < 3; ++i) coordinate.position_m.emplace_back(0, 0);
       for (const double value : profile_at(slow)) coordinate.position_m.emplace_back(value, 0);
       coordinate.heading_rad.assign(coordinate.position_m.size(), 0);

@@ -22,8 +22,8 @@ namespace {
 // Drift from single precision is corrected gently; a push, firmly.
 constexpr double kDriftGain_per_s = 0.2, kPushGain_per_s = 2.0;
 constexpr double kDrift_m = 0.005;
-// A differential base steers back to its path within about a meter: the error aside fades like that
-// of a critically damped swing over the way, kSteer_per_m per meter.
+// A differential base steers back to its path within about a meter: the lateral error decays over
+// distance like a critically damped oscillation, kSteer_per_m per meter.
 constexpr double kSteer_per_m = 2.0;
 constexpr double kStuck_m = 0.15;  // if this far behind the plan, something is in the way
 constexpr double kArrived_m = 0.01, kTurned_rad = 0.005;
@@ -100,7 +100,7 @@ class Driver {
     return end;
   }
 
-  /// How far from the goal it is, as far as it can get nearer without turning.
+  /// Distance to the goal, counting only what can be corrected without turning.
   double off_m(const Goal& goal) const {
     const Eigen::Vector2d error_m = goal.position_m - state_.position_m;
     return robot_.differential() == nullptr
@@ -108,16 +108,16 @@ class Driver {
                : std::abs((Eigen::Rotation2Dd(-heading_rad_) * error_m).x());
   }
 
-  /// What the motors do for a velocity of the base on its reference.
+  /// The motors' velocity for a velocity of the base on its reference.
   JerkLimiter::Velocity plan_of(const Goal& reference, const BaseCommand& velocity) const {
     const double middle_rad =
         reference.heading_rad + 0.5 * velocity.turn_rad_per_s * world_.step_s();
     return motors_.commanded(velocity.velocity_m_per_s, velocity.turn_rad_per_s, middle_rad);
   }
 
-  /// The correction that is wanted to bring the base back to its reference: straight there, or (a
-  /// differential base) ahead, back, and by steering, as in Kanayama et al., "A stable tracking
-  /// control method for an autonomous mobile robot", ICRA 1990.
+  /// The correction that brings the base back to its reference: straight there, or (a differential
+  /// base) ahead, back, and by steering, as in Kanayama et al., "A stable tracking control method
+  /// for an autonomous mobile robot", ICRA 1990.
   JerkLimiter::Velocity toward(const Goal& reference, const JerkLimiter::Velocity& plan) const {
     const double turn_rad = reference.heading_rad - heading_rad_;
     Eigen::Vector2d error_m = reference.position_m - state_.position_m;

@@ -8,14 +8,15 @@
 
 namespace mh {
 
-/// Between the base's velocity over the floor and what its motors do (JerkLimiter::Velocity): of an
-/// omnidirectional base the same, of a differential one the speed of its middle straight ahead.
+/// Converts between the base's velocity over the floor and that of its motors
+/// (JerkLimiter::Velocity): the same for an omnidirectional base, the forward speed of its middle
+/// for a differential one.
 class Motors {
  public:
   /// @param differential  its wheels, outliving this; null for an omnidirectional base
   explicit Motors(const WheelBase* differential) : differential_(differential) {}
 
-  /// What the motors do for a velocity that is wanted over the floor (world).
+  /// The motors' velocity for a commanded velocity over the floor (world).
   JerkLimiter::Velocity commanded(const Eigen::Vector2d& m_per_s, double turn_rad_per_s,
                                   double heading_rad) const {
     if (differential_ == nullptr) return {.m_per_s = m_per_s, .turn_rad_per_s = turn_rad_per_s};
@@ -23,7 +24,7 @@ class Motors {
     return {.m_per_s = {ahead_of(*differential_, {in_base.x(), in_base.y(), turn_rad_per_s}), 0},
             .turn_rad_per_s = turn_rad_per_s};
   }
-  /// What they do as the base moves.
+  /// The motors' velocity for the base's actual motion.
   JerkLimiter::Velocity measured(const BaseState& state) const {
     return commanded(state.velocity_m_per_s, state.turn_rad_per_s, state.heading_rad);
   }

@@ -13,8 +13,9 @@ struct PathConfig {
   /// An arc starts and ends at most this far from its corner, m; so a right angle is rounded with
   /// this radius and passes the corner at 0.41 of it.
   double cut_m = 0.45;
-  /// The curvature grows and shrinks smoothly along a bend instead of jumping at its ends, as a
-  /// base needs that turns only with its way. Such a bend lies between the corner and its arc.
+  /// The curvature grows and shrinks smoothly along a bend instead of jumping at its ends, as
+  /// required by a base that turns only along its path. Such a bend lies between the corner and its
+  /// arc.
   bool eased = false;
 };
 
@@ -34,7 +35,8 @@ class RoundedPath {
   double length_m() const { return length_m_; }
   /// The point at arc length s; beyond either end the path continues straight.
   PathPoint at(double s_m) const;
-  /// The most of an arc or bend, without its sign; 0 on straight lines and beyond the ends.
+  /// The largest curvature of an arc or bend, without its sign; 0 on straight lines and beyond the
+  /// ends.
   struct Bend {
     double curvature_per_m = 0;
     double change_per_m2 = 0, second_change_per_m3 = 0;  ///< of the curvature: its derivatives

@@ -19,8 +19,8 @@ constexpr double kLookAhead_m = 0.7;    // on the way, the robot faces this far 
 constexpr double kFaceFirst_rad = 0.8;  // if more than this off the path: turn before driving
 constexpr double kHeadingGain_per_s = 3.0;
 constexpr double kNoTurn_rad = 0.005;  // a smaller turn is skipped
-// Of the limits: the rest is left to the controller that keeps the base on its reference, and to
-// the physics' single precision.
+// Shares of the limits: the rest is left to the controller that keeps the base on its reference,
+// and to the physics' single precision.
 constexpr double kVelocityShare = 0.999, kAccelerationShare = 0.99, kJerkShare = 0.95;
 
 double wrapped(double angle_rad) {

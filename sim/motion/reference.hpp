@@ -39,9 +39,9 @@ struct TourRun {
 };
 /// @param turns_at_stops  a waypoint with a heading is a stop
 std::vector<TourRun> runs_of(const Tour& tour, bool turns_at_stops);
-/// Less than this is not driven.
+/// Shorter legs are not driven.
 inline constexpr double kNoWay_m = 0.01;
-/// The limits without what is left to the controller that keeps the base on its reference.
+/// The limits minus the reserve for the controller that keeps the base on its reference.
 BaseLimits planned_limits(BaseLimits limits);
 /// Angles of a turn in place, one step apart from the first step to rest: accelerates up to the
 /// turn rate and back down.

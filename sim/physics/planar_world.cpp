@@ -25,8 +25,8 @@ Eigen::Vector2d limited(const Eigen::Vector2d& v, double limit) {
   return norm > limit ? Eigen::Vector2d(v * (limit / norm)) : v;
 }
 
-/// The change of velocity of a base whose wheels roll ahead and back alone: the motors' limits hold
-/// along its way, and across it the wheels' grip does what the command asks.
+/// The change of velocity of a base whose wheels roll only forward and backward: the motors' limits
+/// hold along its way, and across it the wheels' grip does what the command asks.
 Eigen::Vector2d gripped_change(const BaseCommand& command, const BaseState& now,
                                double max_velocity_m_per_s, double max_change_m_per_s,
                                double step_s) {

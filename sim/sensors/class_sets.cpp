@@ -22,7 +22,7 @@ enum Group : ClassId {
 };
 
 constexpr std::array<Group, 41> kGroupOfNyu40 = {
-    kObjects,                                         // 0: never asked
+    kObjects,                                         // 0: void, never looked up
     kWall,       kFloor,     kFurniture, kBed,        // wall, floor, cabinet, bed
     kChair,      kSofa,      kTable,     kWall,       // chair, sofa, table, door
     kWindow,     kFurniture, kPainting,  kFurniture,  // window, bookshelf, painting, counter

@@ -11,8 +11,8 @@ struct Difficult {
   /// Exposure control that suppresses the flicker of mains light at 50 Hz takes multiples of 10 ms;
   /// 30 is the longest that 30 frames per second leave (OmniVision OV7675 data sheet, 4).
   double exposure_ms = 30;
-  /// Light, as a share of what the level expects: 100 lx for 500 lx, what EN 12464-1 asks of
-  /// corridors and of offices.
+  /// Light, as a share of what the level expects: 100 lx for 500 lx, what EN 12464-1 requires in
+  /// corridors and in offices.
   double light = 0.2;
   /// Multiple of the path's speed. It brings a scan's median of 0.22 m/s and 13 deg/s close to
   /// EuRoC's difficult sequences, 0.75 m/s and 0.66 rad/s (Burri et al., IJRR 2016, table 2).

@@ -17,7 +17,7 @@ class FaultDraws {
   double normal(std::uint64_t purpose, std::uint64_t thing) const;
   /// Uniform in [0, 1], from the same numbers.
   double uniform(std::uint64_t purpose, std::uint64_t thing) const;
-  /// Bits that are constant for a thing.
+  /// Bits that are constant for an object.
   std::uint64_t persistent_bits(std::uint64_t purpose, std::uint64_t thing) const;
 
  private:

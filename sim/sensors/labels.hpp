@@ -13,7 +13,7 @@ namespace mh {
 
 /// The origin of a frame's labels. kExact: one-hot class per pixel, matching the color image: with
 /// a rolling shutter, labels are read out row by row, too (Shutter). Each visible object is a
-/// detection of its own (an entry of the palette), as a perfect panoptic segmentation tells.
+/// detection of its own (an entry of the palette), as in a perfect panoptic segmentation.
 /// kAnnotated: the same at a single instant, the stamp, as if a labeled mesh were rendered at the
 /// frame's pose (ScanNet's labels are made this way). kBoxes: the bounding box of the visible
 /// pixels of each instance of a COCO class is filled with its class; everything else is background.
@@ -74,7 +74,7 @@ struct LabelNoiseConfig {
   double swap = 0.0;       ///< share of instances that begin an exchange of classes with their
                            ///< nearest neighbor in the image
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
-  int erosion_px = 0;      ///< pixels within so many px of a border between labels become void
+  int erosion_px = 0;      ///< pixels within this many px of a border between labels become void
   ClassSet class_set = ClassSet::kAll;
   /// Whether labels are left unchanged.
   bool none() const {
@@ -106,7 +106,7 @@ struct LabelConfig {
   DetectorConfig detector = {};
   double persistent_share = 0.4;  ///< of the variance, 0 to 1
   double frame_share = 0.1;       ///< as above; the two sum to at most 1, the rest is the view's
-  std::uint64_t seed = 0;         ///< another seed is another network
+  std::uint64_t seed = 0;         ///< another seed acts as another network
   friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
 };
 

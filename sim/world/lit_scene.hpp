@@ -20,7 +20,7 @@ namespace mh {
 void light_scene(Scene& scene, int threads, const BakeWatch& baked = {});
 
 /// Returns a scene ready to be rendered: loaded and lit. @throws InputError naming file and place.
-/// @param warnings, frame  as of load_scene
+/// @param warnings, frame  as in load_scene
 Scene load_lit_scene(const std::filesystem::path& file, int threads,
                      std::vector<std::string>* warnings = nullptr, const SceneFrame& frame = {},
                      const BakeWatch& baked = {});

@@ -105,7 +105,7 @@ class RobotMessages {
     for (std::size_t i = 0; i < count(); ++i) {
       ros::Odometry message{header(i, ros::kOdomFrame), ros::kFootprintFrame, {}, {}};
       message.pose.pose = ros::pose_message(odom_from_base(i));
-      if (i > 0) {  // the mean since the reading before, in the base's frame
+      if (i > 0) {  // the mean since the previous reading, in the base's frame
         const double seconds = 1e-9 * static_cast<double>(stamp_ns(i) - stamp_ns(i - 1));
         const Vector6d step = (odom_from_base(i - 1).inverse() * odom_from_base(i)).log() / seconds;
         message.twist.twist = {vector_message(step.head<3>()), vector_message(step.tail<3>())};

@@ -25,7 +25,7 @@ RgbdFrame sense_exposed(const Shutter& shutter, const SensorConfig& sensors, std
                exposed.gain);
 }
 
-/// Labels what is seen at the path's i-th moment; of `seen` classes and instances count.
+/// Labels what is seen at the path's i-th moment; uses only classes and instances of `seen`.
 SemanticImage label_exposed(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
                             std::size_t i, RandomStream noise, const RenderedFrame& seen) {
   return sense_labels(seen, labels, sensors, shutter.path()[i].world_from_camera, noise.fork(i));
@@ -76,7 +76,7 @@ Shutter::Exposed SimulatedSequence::exposed(std::size_t i) const {
   return shared_ ? shared_->get(i, expose) : expose(i);
 }
 
-/// The exposure with the sensor's color and depth in the place of its own.
+/// The exposure, with its color and depth replaced by the sensor's.
 Shutter::Exposed SimulatedSequence::noisy(std::size_t i, RandomStream noise) const {
   const auto add_noise = [&](std::size_t k) {
     Shutter::Exposed made = exposed(k);

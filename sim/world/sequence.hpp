@@ -36,8 +36,8 @@ class SimulatedSequence : public Sequence {
                     std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
   /// From now on, exposures are shared with the processes that give the same folder and name, and
-  /// frames with one of images.noises with those that give the same noises, too.
-  /// @param name  stands for everything that the constructor received, save labels
+  /// frames with one of images.noises with those that also give the same noises.
+  /// @param name  stands for everything that the constructor received, except labels
   void share(const SharedImages& images, const std::string& name);
 
   const Camera& camera() const override { return shutter_.camera(); }

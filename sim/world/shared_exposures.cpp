@@ -154,7 +154,7 @@ SharedExposures::SharedExposures(SharedImages where, const std::string& name, co
   file_descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   append_descriptor_ = open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file_descriptor_ < 0) return;
-  // Records begin after the entries, whoever comes first.
+  // Records begin after the entries, whichever process comes first.
   flock(file_descriptor_, LOCK_EX);
   struct stat status {};
   const auto entries = static_cast<off_t>(frames * sizeof(Entry));
@@ -186,7 +186,7 @@ Shutter::Exposed SharedExposures::get(std::size_t i, const Make& make) {
   }
 }
 
-/// Makes the next frame that nobody has made or is making; false if there is none nearby.
+/// Makes the next frame that no process has made or is making; false if there is none nearby.
 bool SharedExposures::make_ahead(std::size_t i, std::size_t step, const Make& make) {
   constexpr std::size_t kAhead = 16;  // steps
   for (std::size_t k = 1, next = i + step; k <= kAhead && next < frames_; ++k, next += step) {
@@ -231,7 +231,7 @@ bool SharedExposures::has_room() const {
   std::error_code failed;
   const auto disk = std::filesystem::space(where_.folder, failed);
   if (failed || disk.available < bytes + kLeaveFree_bytes) return false;
-  // Files may be removed meanwhile: what cannot be read takes no room.
+  // Files may be removed meanwhile: what cannot be read takes no space.
   for (std::filesystem::recursive_directory_iterator entry(where_.folder, failed), end;
        !failed && entry != end; entry.increment(failed)) {
     std::error_code gone;
@@ -258,7 +258,7 @@ void SharedExposures::write(std::size_t i, const Shutter::Exposed& exposed) {
       pwrite(file_descriptor_, &entry, sizeof entry, static_cast<off_t>(i * sizeof entry)) ==
           sizeof entry)
     return;
-  // The disk is full, or the like: its room is given back once nobody reads it anymore.
+  // The disk is full, or the like: the space is freed once no process reads the file.
   writable_ = false;
   unlink(file_.c_str());
 }

@@ -28,7 +28,7 @@ struct SimulatedScene {
 struct SimulationConfig {
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0;
-  /// A frame is delivered every so many ticks of the camera: 3 are 10 Hz of 30, what Pepper's
+  /// A frame is delivered every this many ticks of the camera: 3 give 10 of 30 Hz, what Pepper's
   /// driver publishes (naoqi_driver aed1b87, boot_config.json).
   int ticks_per_frame = 3;
   LabelMode labels = LabelMode::kExact;
@@ -47,7 +47,7 @@ struct RobotObservation {
   SE3 odom_from_base;  ///< wheel odometry
 };
 
-/// A robot in a scene, stepped by whoever steers it: physics, sensors and camera of a robot that is
+/// A robot in a scene, stepped by its controller: physics, sensors and camera of a robot that is
 /// commanded by velocity. Command scripts (sim/motion/commands.hpp) drive on the same
 /// CommandedBase. Deterministic: the same commands give the same bits.
 class Simulation {
@@ -57,7 +57,7 @@ class Simulation {
   Simulation(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
              const SimulationConfig& config);
 
-  /// Drives by a velocity in the base's frame and returns what is sensed at the end. A differential
+  /// Drives at a velocity in the base's frame and returns what is sensed at the end. A differential
   /// base does not obey the second component.
   /// @param dt_s  rounded to whole ticks of the camera, at least one
   RobotObservation step(const Twist2d& command, double dt_s);
@@ -68,7 +68,7 @@ class Simulation {
   /// While the light is off, frames are blank.
   void switch_light(bool on) { light_ = on; }
 
-  // The truth: for scores alone.
+  // The truth: for scores only.
   const CommandedBase& truth() const { return base_; }
   double time_s() const { return base_.time_s(); }
 

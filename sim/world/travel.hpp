@@ -15,7 +15,7 @@
 
 namespace mh {
 
-/// The motions that are made for a scene, as their names begin.
+/// The beginnings of the names of motions that are generated for a scene.
 inline constexpr std::array<const char*, 3> kMadeMotions{"auto", "survey", "handheld"};
 
 /// Moves the camera through a scene by a named motion:
@@ -53,8 +53,8 @@ DrivenPath joined(DrivenPath first, const DrivenPath& second, double rate_hz);
 /// Whether the robot drives, moved by physics; otherwise only a camera is moved.
 bool is_driven(const std::string& motion);
 
-/// Note to the user on where the robot deviates from the motion's file, or what of a recorded path
-/// is left out; "" if nowhere.
+/// Note to the user on where the robot deviates from the motion's file, or what part of a recorded
+/// path is left out; "" if nowhere.
 std::string note_on(const std::string& motion, const Robot& robot);
 
 /// Returns the pedestrian as an obstacle for the physics, starting from a time along the path.

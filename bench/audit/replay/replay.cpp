@@ -21,12 +21,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a mesh of so many parts takes in base64: 9 bytes a vertex, 12 a triangle.
+/// Size of a mesh in base64: 9 bytes per vertex, 12 per triangle.
 std::size_t bytes_of(std::size_t vertices, std::size_t triangles) {
   return (9 * vertices + 12 * triangles) * 4 / 3;
 }
 
-/// The scene with faces as small as fit.
+/// The scene with faces as small as the size limit allows.
 Scene with_small_faces(const Scene& scene) {
   for (const float edge_m : {0.08F, 0.12F, 0.18F, 0.27F, 0.4F, 0.6F, 1.0F}) {
     Scene split = split_for_colors(scene, edge_m);
@@ -42,7 +42,7 @@ std::size_t used_vertices(const std::vector<std::uint32_t>& corners, std::size_t
   return static_cast<std::size_t>(std::ranges::count(used, true));
 }
 
-/// Triangles as few as fit, if there are too many.
+/// As many triangles as the size limit allows.
 std::vector<std::uint32_t> decimated(const Scene& scene) {
   std::vector<std::uint32_t> all;
   all.reserve(3 * scene.triangles.size());
@@ -58,7 +58,7 @@ std::vector<std::uint32_t> decimated(const Scene& scene) {
     few.resize(meshopt_simplify(few.data(), all.data(), all.size(), first, vertices,
                                 sizeof(Eigen::Vector3f), target, 0.02F, 0, nullptr));
     if (few.size() <= target + target / 4) continue;
-    // Many loose parts: only the other method gets there.
+    // With many loose parts, only the other method reaches the limit.
     few.resize(all.size());
     few.resize(meshopt_simplifySloppy(few.data(), all.data(), all.size(), first, vertices,
                                       sizeof(Eigen::Vector3f), target, 0.1F, nullptr));

@@ -12,12 +12,12 @@
 
 namespace mh {
 
-/// The most that a scene takes in a report, bytes of its script file.
+/// Maximum size of a scene in a report, bytes of its script file.
 inline constexpr std::size_t kMeshBytes = 3'000'000;
 
 /// A scene for a browser: positions in 16 bits within its box, colors with baked light at its
 /// vertices, triangles. Faces are split where texture or light shows, as finely as kMeshBytes
-/// allow; a scene that is too large as it is gets decimated (meshoptimizer).
+/// allows; a scene that is already too large is decimated (meshoptimizer).
 nlohmann::ordered_json mesh_json(const Scene& scene);
 
 /// Where replays come from.
@@ -27,7 +27,7 @@ struct ReplayTools {
   std::function<void(std::string_view)> say = [](std::string_view) {};
 };
 
-/// What a run's result does not hold.
+/// What a replay adds to a run's result.
 struct Replay {
   nlohmann::ordered_json scene;  ///< mesh, landmarks with their classes, keyframes
   nlohmann::ordered_json views;  ///< views_json()
@@ -35,8 +35,8 @@ struct Replay {
 
 /// Executes a run again and records it. Runs repeat bit for bit; `same` in the scene states whether
 /// this one gave the positions that the result holds (a results file rounds orientations).
-/// @throws InputError naming the run if it is of a recording or of an outside system; InputChanged
-/// if a file that it reads is not the one that the result is of.
+/// @throws InputError naming the run if it uses a recording or an outside system; InputChanged if a
+/// file that it reads differs from the one behind the result.
 Replay make_replay(const RunResult& result, const ReplayTools& tools);
 
 }  // namespace mh

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a byte beside a keypoint or a pair states.
+/// Flags of a keypoint or a pair, one byte.
 enum Flag : std::uint32_t {
   kHasLandmark = 1,  ///< a keypoint: the map has a landmark for it
   kIsRight = 1,      ///< a pair: both ends show the same surface
@@ -145,7 +145,7 @@ class ViewsOf {
     return base64(bytes);
   }
 
-  /// Where the image shows a keypoint, tenths of a pixel: its lens is that of the camera.
+  /// Where the image, with the camera's lens, shows a keypoint, in tenths of a pixel.
   void put_pixel(const Keypoint& keypoint, std::vector<std::uint8_t>& bytes) const {
     const Camera& c = frozen_.camera;
     const Eigen::Vector3d ray = c.unproject(keypoint.u_px, keypoint.v_px, 1.0);

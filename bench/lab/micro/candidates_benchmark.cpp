@@ -34,7 +34,7 @@ void add_half(std::vector<WeightedMember>& to, const std::vector<WeightedMember>
     if (random.uniform(member.id) < 0.5) to.push_back(member);
 }
 
-/// Ordered by id, once each, as AugmentedVector wants it.
+/// Ordered by id, once each, as AugmentedVector requires.
 void put_in_order(std::vector<WeightedMember>& members) {
   std::ranges::sort(members, {}, &WeightedMember::id);
   const auto repeated = std::ranges::unique(members, {}, &WeightedMember::id);

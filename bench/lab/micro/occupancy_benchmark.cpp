@@ -58,7 +58,7 @@ octomap::pose6d pose_of(const SE3& pose) {
                                static_cast<float>(q.y()), static_cast<float>(q.z()))};
 }
 
-/// What a loop closure does to a path: the drift of a hundredth of the way is spread over it.
+/// What a loop closure does to a path: a drift of 1 % of its length is spread over it.
 Trajectory closed(const Trajectory& poses) {
   Trajectory moved = poses;
   for (std::size_t i = 0; i < moved.size(); ++i) {

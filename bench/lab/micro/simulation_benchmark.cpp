@@ -41,7 +41,7 @@ Drive drive_about(const SimulatedScene& scene, const Robot& robot, const SensorC
   drive.setup_s = processor_s() - begun_s;
   const double start_s = processor_s();
   while (simulation.time_s() < seconds) {
-    // Turns, and drives a little to and fro.
+    // Turns, and drives a little back and forth.
     const bool forward = static_cast<int>(simulation.time_s() / 2) % 2 == 0;
     const RobotObservation seen = simulation.step({forward ? 0.15 : -0.15, 0, 0.5}, 0.1);
     if (seen.frame) {

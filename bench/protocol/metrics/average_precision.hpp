@@ -18,7 +18,7 @@ double box_overlap(const ImageBox& a, const ImageBox& b);
 struct TruthBox {
   ImageBox box;
   double area = 0;      ///< of the object itself, px: its visible pixels
-  bool ignore = false;  ///< neither found nor missed counts: too small to be asked for
+  bool ignore = false;  ///< ignored, found or missed: too small to be required
 };
 
 struct ScoredBox {

@@ -12,7 +12,7 @@ namespace mh {
 struct EvaluationOptions {
   Alignment alignment = Alignment::kSe3;
   Stamp max_difference_ns = kMaxStampDifference_ns;
-  /// Per frame step and per second.
+  /// Default: per frame step and per second.
   std::vector<RpeDelta> rpe_deltas = {{.value = 1, .unit = DeltaUnit::kFrames},
                                       {.value = 1, .unit = DeltaUnit::kSeconds}};
 };

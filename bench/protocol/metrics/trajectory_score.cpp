@@ -17,8 +17,8 @@ std::optional<double> rmse(const ErrorStatistics& s) {
   return s.count > 0 ? std::optional(s.rmse) : std::nullopt;
 }
 
-/// Whether the path extends far enough beside its main direction that the alignment's turn about it
-/// means something: an error of the positions turns it by about error / extent.
+/// Whether the path extends far enough sideways from its main direction to determine the
+/// alignment's rotation about it: position errors rotate it by about error / extent.
 bool turn_is_determined(const Trajectory& truth, double error_m) {
   constexpr double kLeastExtent = 10;  // in multiples of the error: a turn of 0.1 rad
   Eigen::MatrixX3d at(static_cast<Eigen::Index>(truth.size()), 3);

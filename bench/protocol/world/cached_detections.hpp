@@ -6,8 +6,7 @@
 
 namespace mh {
 
-/// Keeps what detectors found in a cache, by code and machine as well; null for a cache without a
-/// folder.
+/// Caches what detectors found; keys include code and machine. Null for a cache without a folder.
 KeepDetections detections_in(const Cache& cache);
 
 }  // namespace mh

@@ -15,7 +15,7 @@ using Say = std::function<void(std::string_view)>;
 
 /// Adds baked light to a scene that has lamps but none yet, from the cache if it is there.
 /// @param say    called when the light has to be baked; may be empty
-/// @param baked  as of bake_light
+/// @param baked  as in bake_light
 void light_from_cache(Scene& scene, int threads, const Cache& cache, const Say& say = {},
                       const BakeWatch& baked = {});
 

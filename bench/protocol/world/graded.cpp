@@ -24,21 +24,21 @@ namespace {
 constexpr std::uint64_t kGraded = 0x677261646564;  // this draw's own stream
 enum StreamName : std::uint64_t { kPlaces = 1, kScans = 2, kOrder = 3 };
 constexpr double kApart = 0.1;               // m + rad between any two queries
-constexpr std::size_t kDrawsPerQuery = 500;  // a cell that is rarer stays short of its number
+constexpr std::size_t kDrawsPerQuery = 500;  // cells that need more draws stay incomplete
 constexpr std::size_t kScansByHand = 8;
-constexpr double kLead_s = 2.0;     // by which the exposure control has settled
+constexpr double kLead_s = 2.0;     // after which the exposure control has settled
 constexpr std::size_t kBehind = 3;  // frames after the query, for its shutter
 
 constexpr Stamp kSecond_ns = 1'000'000'000;
 
-/// A view that may be asked, and the motion around it.
+/// A view that may become a query, and the motion around it.
 struct Candidate {
   SE3 world_from_camera;
   const Trajectory* scan = nullptr;  ///< null: at rest
   std::size_t at = 0;
 };
 
-/// Draws candidates without end, or until there are no more.
+/// Draws candidates, endlessly or until there are no more.
 class Source {
  public:
   virtual ~Source() = default;

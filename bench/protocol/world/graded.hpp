@@ -40,10 +40,10 @@ struct GradedPlace {
   bool by_hand = false;       ///< the mapping was a scan by hand, not a drive
 };
 
-/// Draws queries until each cell has its number, or so many draws were made that it hardly can get
-/// it. For a robot: at rest on the floor that it can reach, turned anyhow. For a scan by hand:
+/// Draws queries until each cell is full, or until so many draws were made that more are pointless.
+/// For a robot: at rest on the floor that it can reach, in a random direction. For a scan by hand:
 /// moments of other scans, each played at every speed; faster, the same poses pass in less time.
-/// No two queries are nearer than 0.1 (m + rad) to each other.
+/// Queries are at least 0.1 (m + rad) apart.
 /// @throws InputError if there is no floor.
 GradedQueries draw_graded(const GradedSpec& spec, const GradedPlace& place);
 

@@ -16,8 +16,8 @@ Camera smaller(const Camera& camera, int width_px);
 /// What a path's views show of a scene, by its mesh.
 class VisibleSurface {
  public:
-  /// @param apart_m  of the path's views, the next is used that is this far from the last one used,
-  ///                 1 rad equivalent to 1 m
+  /// @param apart_m  minimum distance between the path's views that are used, 1 rad equivalent to 1
+  /// m
   VisibleSurface(std::shared_ptr<const Renderer> renderer, const Camera& camera,
                  const Trajectory& path, double apart_m = 0.1);
 

@@ -39,7 +39,7 @@ struct SimulatedPlace {
   std::shared_ptr<const PedestrianScene>
       pedestrian_scene;  ///< with the pedestrians that are present during the mapping; or null
   SensorConfig sensors;  ///< the level
-  GradedQueries graded;  ///< empty if the run asks none
+  GradedQueries graded;  ///< empty if the run has none
 };
 
 /// The environment of one run, built once and then only read.
@@ -49,16 +49,16 @@ struct World {
   std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
   std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
   std::shared_ptr<const Vocabulary> vocabulary;
-  /// Of the recordings' rolling shutter by their calibration, in the place of the run's
-  /// `track.readout_s`; absent: the run's counts.
+  /// The rolling shutter's readout by the recordings' calibration, instead of the run's
+  /// `track.readout_s`; absent: the run's applies.
   std::optional<double> readout_s = {};
   bool cut = false;                     ///< the sequences were cut after RunSpec::max_frames
   std::vector<std::string> notes = {};  ///< PlaceFacts::notes
   std::vector<InputDigest> inputs;      ///< what was read to build it, by name
-  ReadRecord held = {};  ///< files of it that are read again: a recording's, an outside program's
+  ReadRecord held = {};  ///< files that are read again later: a recording's, an outside program's
 };
 
-/// What the queries of a set are frames of; null if there are none.
+/// The sequence that a set's queries are frames of; null if there is none.
 inline const Sequence* sequence_of(const World& world, QuerySet set) {
   return set == QuerySet::kHeldOut      ? world.mapping.get()
          : set == QuerySet::kSecondTour ? world.second.get()
@@ -66,10 +66,10 @@ inline const Sequence* sequence_of(const World& world, QuerySet set) {
 }
 
 /// Rebuilds the sequences of a simulated world from its existing paths.
-/// @param images  as of build_world()
+/// @param images  as in build_world()
 void simulate(World& world, LabelMode labels, const SharedImages& images = {});
 
-/// What results record of it.
+/// What results record about it.
 PlaceFacts facts(const World& world, const RunSpec& spec);
 
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours; or opens

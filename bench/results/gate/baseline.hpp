@@ -32,7 +32,7 @@ std::vector<std::string> changed_settings(const Baseline& before, const Baseline
 std::string to_text(const Baseline& baseline);
 void save_baseline(const Baseline& baseline, const std::filesystem::path& file);
 
-/// Whether a file's text is a baseline, of whatever version.
+/// Whether a file's text is a baseline, of any version.
 bool is_baseline(const std::string& text);
 
 /// @throws InputError naming the file if it is missing, not a baseline, damaged, or of a newer

@@ -15,7 +15,7 @@ struct RunFigures {
   std::uint64_t seed = 0;
   std::string digest;  ///< of images, poses and trajectory: equal bits, equal digest
   std::map<std::string, std::optional<double>, std::less<>> values = {};  ///< by measure, count
-  bool repeatable = true;  ///< as its system is; a baseline does not hold it
+  bool repeatable = true;  ///< whether its system is; not stored in a baseline
 };
 
 }  // namespace mh

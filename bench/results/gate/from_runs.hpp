@@ -20,7 +20,8 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs);
 /// Digest of what the runs of a suite consist of: places (by the content of all files read for
 /// them), systems, labels, seeds and protocol. What a change under test may alter (the method's
 /// settings, the vocabulary, tolerances) is excluded.
-/// @param inputs  reads those files, or has read them: for the same runs, to be of one moment
+/// @param inputs  reads those files, or has already read them for the same runs, so that all are
+/// consistent
 std::string gate_suite_digest(const Suite& suite, InputReader& inputs);
 
 /// What a change to the program may alter along with it: the section `slam`, systems' own settings,

@@ -58,7 +58,7 @@ std::optional<double> figure(const RunFigures& run, std::string_view name) {
   return found == run.values.end() ? std::nullopt : found->second;
 }
 
-/// after - before; a lost figure is infinitely worse, a gained one infinitely better.
+/// after - before; a figure that disappeared is infinitely worse, a new one infinitely better.
 double paired_change(const std::optional<double>& before, const std::optional<double>& after,
                      Better better) {
   if (before && after) return *after - *before;
@@ -135,7 +135,7 @@ const Tolerance* tolerance_for(const GateConfig& config, std::string_view scenar
   return found == config.tolerances.end() ? nullptr : &found->second;
 }
 
-/// Whether this measure applies: a scenario without a second tour has no queries in it.
+/// Whether this measure applies: a scenario without a second tour has no queries of that set.
 bool is_asked(const Pairing& pairing, const Metric& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return pair.first->values.contains(measure.name) || pair.second->values.contains(measure.name);

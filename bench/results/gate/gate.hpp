@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// Of a system that is not repeatable, so many trials are needed.
+/// Trials needed if a system is not repeatable.
 inline constexpr int kFewestRuns = 5;
 
 /// How one measure of one system changed in one scenario.
@@ -24,17 +24,17 @@ struct Change {
   const Metric* measure = nullptr;
   std::size_t pairs = 0;                          ///< seeds
   std::optional<double> before = {}, after = {};  ///< medians over the seeds that have the figure
-  /// Median over the seeds of after - before. Infinite where most seeds lost or gained the figure:
-  /// a lost figure is treated as the worst possible.
+  /// Median over the seeds of after - before. Infinite if the figure disappeared or appeared in
+  /// most seeds: a missing figure is treated as the worst possible.
   double change = 0;
   double tolerance = 0;
   /// A true worsening of this size is detected with 80 % power: tolerance + 0.84 standard errors of
   /// the median paired change. That is the error due to chance alone for a different but no worse
   /// program: before and after drawn independently, with the spread over the baseline's seeds, so
   /// 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 / queries above the
-  /// tolerance. Of a system that is not repeatable, before and after are drawn anew each time, with
-  /// the spread over the runs of both; its change must exceed the tolerance by 1.86 standard errors
-  /// to be more than chance, and `detectable` holds that as well.
+  /// tolerance. If a system is not repeatable, before and after are drawn anew each time, with the
+  /// spread over the runs of both; its change must exceed the tolerance by 1.86 standard errors to
+  /// be more than chance, and `detectable` holds that as well.
   double detectable = 0;
   bool repeatable = true;
   ChangeVerdict verdict = ChangeVerdict::kSame;
@@ -45,7 +45,7 @@ struct GateResult {
   std::size_t runs = 0;
   std::size_t identical = 0;              ///< runs whose digest equals the baseline's
   std::vector<std::string> unrepeatable;  ///< runs that differ on the same program and machine,
-                                          ///< of systems that are to repeat
+                                          ///< of systems that should repeat
   /// Measures with a tolerance but no figure, before or now: "corridor, plain-pepper: ate_rmse_m".
   std::vector<std::string> not_measured = {};
   bool same_origin = false;  ///< program, machine and settings are those of the baseline

@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// What JUnit XML of ours begins with: any file of another's is left alone.
+/// How our JUnit XML begins: files of other programs are left alone.
 inline constexpr std::string_view kJunitHead =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- modelhouse check -->\n";
 

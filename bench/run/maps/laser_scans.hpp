@@ -13,12 +13,12 @@
 namespace mh {
 
 /// Adds what a robot's lasers read at one moment.
-/// @param map_from_base  where the robot is taken to be
+/// @param map_from_base assumed pose of the robot
 /// @param lasers_m       by laser, as RobotReading's
 void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
                std::span<const std::vector<float>> lasers_m);
 
-/// The lasers of a robot on its way through a scene: a second source of a map beside depth.
+/// The lasers of a robot on its path through a scene: a second source for a map besides depth.
 class SceneLasers {
  public:
   /// @throws InputError if the robot has no lasers.

@@ -8,9 +8,9 @@
 
 namespace mh {
 
-/// Writes what RViz and Foxglove show of a map, once each, in frame `map`, at time 0: `/map` (the
-/// grid), `/global_costmap/costmap` (its costs as Nav2 publishes them), `/objects` (a box and a
-/// name for each), `/voxels` (the occupied ones in the colors of their classes).
+/// Writes a map for RViz and Foxglove, once each, in frame `map`, at time 0: `/map` (the grid),
+/// `/global_costmap/costmap` (its costs as Nav2 publishes them), `/objects` (a box and a name for
+/// each), `/voxels` (the occupied ones in the colors of their classes).
 /// @throws as the writer does
 void write_map_messages(MessageWriter& file, const VoxelMap& map, const MapStudy& study);
 

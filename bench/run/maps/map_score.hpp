@@ -37,13 +37,13 @@ VoxelScore score_voxels(const VoxelMap& map, const VoxelMap& exact, const TrueSp
 
 /// A grid against the true floor plan, both cut to the same cells.
 struct GridScore {
-  Share iou;       ///< of free cells: free in both, of free in either
+  Share iou;       ///< of free cells: free in both / free in either
   Share iou_seen;  ///< the same over cells that the grid knows
 };
 /// @pre equal resolutions, origins at multiples of it
 GridScore score_grid(const OccupancyGrid& grid, const OccupancyGrid& plan);
 
-/// A true object and what was found of it.
+/// A true object and the nearest found one.
 struct TrueObject {
   std::string name;
   ClassId class_id = kVoid;

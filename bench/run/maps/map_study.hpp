@@ -17,7 +17,7 @@
 
 namespace mh {
 
-/// What follows from a voxel map.
+/// What is derived from a voxel map.
 struct MapStudy {
   OccupancyGrid grid;
   std::vector<MapObject> objects;
@@ -53,7 +53,7 @@ const TimedPose* pose_at(const Trajectory& trajectory, Stamp stamp_ns);
 std::optional<FloorFrame> floor_of(const OccupancyMapper& mapper,
                                    const Trajectory& world_from_camera);
 
-/// A map against the exact mesh, and the same frames with true poses beside it.
+/// Scores of a map against the exact mesh, and of the same frames at true poses.
 struct MapScores {
   std::size_t keyframes = 0;
   VoxelScore voxels, voxels_true_poses;
@@ -70,7 +70,7 @@ struct MapScoreConfig {
 
 /// @param mapper  holds the map of `study` and the depth of its keyframes; frame: the scene's
 /// @param truth   poses of the keyframes; those without one are left out
-/// @param lasers  that the study's grid has scans of; may be null
+/// @param lasers  whose scans are in the study's grid; may be null
 MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Trajectory& truth,
                     const MapStudy& study, const MapScoreConfig& config,
                     const SceneLasers* lasers = nullptr);

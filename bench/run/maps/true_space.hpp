@@ -30,7 +30,7 @@ class TrueSpace {
   bool is_near(const Eigen::Vector3i& voxel, State state) const;
   /// The true floor plan between two heights: occupied where a surface is, free where a robot's
   /// place is connected with a seed without crossing an occupied cell, else unknown. Cut to the box
-  /// of the rooms, if the scene has any: what is seen through a window is no part of the plan.
+  /// of the rooms, if the scene has any: what is seen through a window is not part of the plan.
   OccupancyGrid floor_plan(double low_m, double high_m,
                            std::span<const Eigen::Vector3d> seeds) const;
 

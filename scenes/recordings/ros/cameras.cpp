@@ -190,7 +190,7 @@ std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTop
   const std::optional<SE3> transform = color_from_depth(chosen, topics);
   const bool apart = other_frame && transform && !is_identity(*transform);
   if (!differ(chosen) && !apart) return std::nullopt;
-  // The only calibration of a file applies to both.
+  // If a file has only one calibration, it applies to both.
   const bool has_own = chosen.depth_info != nullptr && chosen.depth_info != chosen.info;
   if (transform && has_own) {
     DepthCamera registering{{}, *transform};

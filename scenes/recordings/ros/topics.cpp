@@ -202,8 +202,7 @@ void RosTopics::add_image(const MessageChannel& channel, std::string_view messag
 void RosTopics::add_transform(const ros::TransformStamped& t, bool is_static, Stamp received_ns) {
   TfEdge& edge = tf[frame_name(t.child_frame_id)];
   const std::string parent = frame_name(t.header.frame_id);
-  if (edge.parent != parent)
-    edge = {parent, is_static, {}, {}};  // it has another parent from now on
+  if (edge.parent != parent) edge = {parent, is_static, {}, {}};  // it has a new parent from now on
   edge.is_static = is_static;
   edge.poses.push_back({t.header.stamp.ns, rigid(t.transform)});
   edge.received_ns.push_back(received_ns);
