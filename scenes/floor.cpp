@@ -341,7 +341,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   std::ranges::copy_if(some, std::back_inserter(inner), [&](const Sample& sample) {
     return (labeled || sample.level) && columns.among_things(columns.point(sample));
   });
-  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // the things are elsewhere
+  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // the objects are elsewhere
   const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(inner, columns.cell_m2());
   if (!z_m) return std::nullopt;
 

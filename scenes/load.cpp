@@ -25,7 +25,7 @@ namespace mh {
 
 namespace {
 
-/// A house has its floor at z = 0, whatever `frame` states.
+/// A house is z-up, with its floor at z = 0 unless `frame` states another height.
 Scene built(Scene house, const std::filesystem::path& file, const SceneFrame& frame) {
   if (frame.up == UpAxis::kY)
     throw InputError(fmt::format("{}: up: y: a house is built with z up", file.string()));
@@ -39,7 +39,7 @@ Scene settled(Scene scene, const SceneFrame& frame, std::vector<std::string>* wa
     scene.floor = found->floor;
     if (scene.rooms.empty() && *scene.floor.area_m2 > 0) scene.rooms.push_back(found->room);
     end_rooms_near_things(scene.rooms, found->things_m);
-  } else if (!scene.positions_m.empty()) {  // nowhere to stand: things rest on the lowest point
+  } else if (!scene.positions_m.empty()) {  // nowhere to stand: the lowest point is the floor
     const auto z = [](const Eigen::Vector3f& p) { return p.z(); };
     scene.floor.middle_m.z() = static_cast<double>(std::ranges::min(scene.positions_m, {}, z).z());
     scene.floor.area_m2 = 0;

@@ -104,7 +104,7 @@ struct Scene {
   std::vector<Room> rooms;  ///< empty for meshes without a plan
   Floor floor;
 
-  /// Of the rooms; without a plan, of the floor's faces.
+  /// Area of the rooms; without a plan, of the floor's faces.
   double floor_area_m2() const;
 };
 

@@ -20,8 +20,8 @@ struct AuditedRun {
   RunAudit audit;
 };
 
-/// Queries of one set, summed up. Shares are of all queries unless said otherwise; a mean is over
-/// the queries that have the value, absent if none has.
+/// Queries of one set, summed up. Shares refer to all queries unless stated otherwise; a mean is
+/// over the queries that have the value, absent if none has.
 struct AuditSummary {
   std::size_t queries = 0;
   double correct = 0;        ///< in the run, after all attempts

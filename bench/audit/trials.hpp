@@ -53,7 +53,7 @@ class Trials {
   TrialMemo& memo_;
 };
 
-/// Keyframes in the orders in which an audit asks for them.
+/// Keyframes in the orders in which an audit tries them.
 struct KeyframeOrders {
   std::span<const KeyframeId> nearest;     ///< by true distance
   std::span<const KeyframeId> co_visible;  ///< by co-visibility, those with any; best first

@@ -179,7 +179,7 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
   return keyframes;
 }
 
-/// A scene that is mapped, and its robot's lasers if they are asked for.
+/// A scene that is mapped, and its robot's lasers if requested.
 struct MappedScene {
   Scene scene;
   std::optional<SceneLasers> lasers;

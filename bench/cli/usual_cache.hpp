@@ -9,7 +9,7 @@
 namespace mh::cli {
 
 /// The cache that all commands share, or the one in a folder that the user names. Its keys cover
-/// everything that decides an entry, so that what one command made is as good as another's.
+/// everything that decides an entry, so commands can use one another's entries.
 inline Cache usual_cache(const std::string& folder = {}) {
   return Cache(folder.empty() ? Cache::default_folder() : std::filesystem::absolute(folder));
 }

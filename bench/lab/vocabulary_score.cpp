@@ -40,7 +40,7 @@ struct Ranking {
 };
 
 /// @param is_true  of each candidate, most similar first.
-/// @returns nullopt if none is true.
+/// @returns nullopt if no candidate is true.
 std::optional<Ranking> judge(const std::vector<bool>& is_true) {
   Ranking ranking;
   double hits = 0;

@@ -19,8 +19,8 @@ struct Candidates {
   std::optional<int> final;          ///< after equation 6
   std::optional<double> label_mass;  ///< share of the query vector's L1 mass held by labels
   std::optional<double> gamma;       ///< the weight of a label that gave it
-  /// Of the similarities that equation 5 sums: shares that no query computed, and that an earlier
-  /// query left; share of the latter in the sums; queries since they were left, mean.
+  /// Shares of equation 5's similarities that no query computed (unscored), or that an earlier
+  /// query left (stale); the stale ones' share of the sums, and their mean age in queries.
   std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
   friend bool operator==(const Candidates&, const Candidates&) = default;
 };

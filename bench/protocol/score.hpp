@@ -66,8 +66,8 @@ struct QueryScore {
   bool correct = false;  ///< returned, and within the protocol's limits
   bool false_positive =
       false;  ///< returned, and outside them (or nothing was mapped to compare with)
-  // Absent if no pose was returned or there is no anchor: nothing mapped, or no truth to find one
-  // by. The aligned distance is also absent if the true pose is unknown.
+  // Absent if no pose was returned or there is no anchor: nothing was mapped, or the truth is
+  // unknown. The aligned distance is also absent if the true pose is unknown.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
   std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
   QueryGrade grade = {};

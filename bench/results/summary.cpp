@@ -47,7 +47,7 @@ Row fill_in(Row row) {
   return row;
 }
 
-/// By the query's frame, the median of a value over trials; absent if no trial has one.
+/// The median of a value over trials, by the query's frame; absent if no trial has one.
 template <class Get>
 std::map<std::size_t, std::optional<double>> per_query(const Row& row, QuerySet set, Get get) {
   std::map<std::size_t, std::vector<std::optional<double>>> values;

@@ -44,7 +44,7 @@ void close_if_open(int& fd) {
   fd = -1;
 }
 
-/// What lies below a folder: total size of its files, whether folders are nested too deep to be
+/// Contents of a folder: total size of its files, whether folders are nested too deep to be
 /// searched.
 struct Contents {
   double mb = 0;

@@ -165,7 +165,7 @@ void ProgramFolder::move_to_run() {
     std::error_code error;
     if (fs::exists(fs::symlink_status(place, error))) continue;
     move_folder(path_, place);
-    // Last: a copy has times of its own. What the program itself put there goes.
+    // Last, since a copy has its own times. A file that the program put there is removed.
     remove_tree((place / kList).c_str());
     fs::remove(place / kList, error);
     write_atomically(place / kList, list_of(place));

@@ -19,8 +19,8 @@ struct FollowConfig {
   double arrived_m = 0.08;       ///< from the end of the path
 };
 
-/// The fastest that the base may move in a direction so that it can stop before the nearest of some
-/// places; infinite if none is in the way.
+/// The highest speed in a direction at which the base can still stop before the nearest of some
+/// places; infinite if none is in its path.
 /// @param radius_m  of the disc that must not touch
 double speed_before(std::span<const Eigen::Vector2d> obstacles_m, const Eigen::Vector2d& place_m,
                     const Eigen::Vector2d& direction, double radius_m, double braking_m_per_s2);
@@ -32,7 +32,7 @@ struct Steering {
   Twist2d command = Twist2d::Zero();
   double left_m = 0;     ///< of the path
   bool arrived = false;  ///< at its end
-  bool blocked = false;  ///< something stands in the way
+  bool blocked = false;  ///< an obstacle is in the way
 };
 
 /// @param path       in the frame of `at`; at least one place

@@ -11,15 +11,15 @@
 
 namespace mh {
 
-/// A floor from above, true or as a map shows it: each cell's distance to the nearest place where
-/// nothing can stand. Column grows with world x, row with world y.
+/// A floor from above, true or as a map shows it: each cell's distance to the nearest place that is
+/// not free. Column grows with world x, row with world y.
 struct FloorGrid {
   double resolution_m = 0.04;
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< center of cell (0, 0)
   /// Lower bound on the distance from the cell's center to the nearest obstacle or the edge of the
-  /// floor, m; 0 where something stands or there is no floor.
+  /// floor, m; 0 at obstacles and where there is no floor.
   Grid2d<float> clearance_m;
-  Grid2d<std::uint16_t> occupant;  ///< instance that stands in the cell, if known; 0 = nothing
+  Grid2d<std::uint16_t> occupant;  ///< instance that occupies the cell, if known; 0 = nothing
 
   using Cell = std::pair<int, int>;  ///< column, row
   /// The cell that contains a place; nullopt outside the grid.

@@ -68,7 +68,7 @@ void LocalMap::see_through(const Vector2d& start_m, const Vector2d& direction, d
 void LocalMap::add_lasers(const Equipment& equipment, std::span<const std::vector<float>> lasers_m,
                           const Pose2& odom_from_base) {
   move_to(odom_from_base.place_m);
-  if (std::uint8_t* c = cell(odom_from_base.place_m)) *c |= kSeen;  // it stands there
+  if (std::uint8_t* c = cell(odom_from_base.place_m)) *c |= kSeen;  // the robot is there
   for (std::size_t l = 0; l < std::min(lasers_m.size(), equipment.lasers.size()); ++l) {
     const LaserScanner& laser = equipment.lasers[l];
     const Pose2 odom_from_laser = odom_from_base * from_above(laser.base_from_laser);

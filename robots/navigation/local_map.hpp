@@ -43,7 +43,7 @@ class LocalMap {
   /// Something was touched there.
   void add_contact(const Eigen::Vector2d& place_in_odom_m);
 
-  /// Places (odometry frame) where something stands, within a radius of a place.
+  /// Obstacles (odometry frame) within a radius of a place.
   std::vector<Eigen::Vector2d> obstacles_near(const Eigen::Vector2d& place_m,
                                               double radius_m) const;
   /// The window as a grid to plan on; what was never seen is blocked.

@@ -28,7 +28,7 @@ constexpr double kBeforeThing_m = 0.1;
 constexpr double kReachSlack_m = 0.3;  // of the distances kept, beyond what counts as arrival
 
 /// Whether a wall stands on the straight line between two places; what is within 10 cm of `to_m`
-/// does not count: things stand against walls.
+/// does not count, since objects are placed against walls.
 /// @param walls  of the grid's cells; empty: none
 bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls, const Vector2d& from_m,
                   const Vector2d& to_m) {

@@ -21,7 +21,7 @@ namespace mh {
 struct KnownMap {
   FloorGrid grid;                ///< clearance; what is unknown is blocked
   Grid2d<std::uint8_t> blocked;  ///< of the same cells: occupied or unknown
-  Grid2d<std::uint8_t> walls;    ///< of the same cells: known as walls; empty: none is known
+  Grid2d<std::uint8_t> walls;    ///< of the same cells: known as walls; empty: no walls are known
 };
 
 /// What to drive to: a thing of the robot's own map, seen from above.
@@ -136,7 +136,7 @@ class Navigator {
   const Robot& robot_;
   std::vector<NavigatorGoal> goals_;
   NavigatorConfig config_;
-  // Of the goal that it aims at: its name, the map's cells' distances from it, its center.
+  // The current goal: its name, the distance of each cell of the map from it, its center.
   std::string name_;
   Grid2d<float> away_m_;
   Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();

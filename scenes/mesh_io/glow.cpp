@@ -30,7 +30,7 @@ Share share_of(const Scene& scene, std::size_t face, const Grid2d<Rgb8>& texture
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int i = 0; i < count; ++i)
     for (int j = 0; i + j < count; ++j) {
-      // Centers of the small triangles that stand on the first edge.
+      // Centers of the small triangles along the first edge.
       const float a = (static_cast<float>(i) + 1.0F / 3.0F) / static_cast<float>(count);
       const float b = (static_cast<float>(j) + 1.0F / 3.0F) / static_cast<float>(count);
       sum += sample_texture(texture, first + a * step1 + b * step2);

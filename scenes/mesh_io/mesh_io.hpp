@@ -31,8 +31,8 @@ struct MeshUse {
 /// - node names `name#class=CLASS#instance=ID`, as save_glb writes them, or glTF node extras
 ///   `class` (a name or an id) and `instance`;
 /// - a side table <stem>.labels.yaml or labels.yaml next to the mesh, pattern -> class, for names
-///   of nodes, meshes and materials (LabelRules); a node whose pieces are of several classes is an
-///   instance for each;
+///   of nodes, meshes and materials (LabelRules); a node whose pieces have several classes becomes
+///   one instance per class;
 /// - otherwise the node's name: "kitchen/night_stand_2" is a night stand; every node is an
 ///   instance.
 ///

@@ -14,9 +14,9 @@ struct DepthCamera {
 };
 
 /// Registers a depth image to the color camera: each pixel's point goes to the pixel nearest to
-/// where the color camera sees it, with its depth there; of several, the nearest point is kept.
-/// Where the color camera's pixels are finer, a point goes to all of those that its pixel covers.
-/// Pixels without a point have depth 0.
+/// where the color camera sees it, with its depth there; of several, the nearest point is kept. If
+/// the color camera's pixels are finer, a point goes to all that its pixel covers. Pixels without a
+/// point have depth 0.
 /// @param depth_m  along z of the depth camera; 0: not measured
 Grid2d<float> registered_depth(const Grid2d<float>& depth_m, const DepthCamera& depth,
                                const Camera& color);

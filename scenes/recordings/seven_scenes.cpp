@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr double kSevenScenesRate_hz = 30;   // of the Kinect; the files have no stamps
 constexpr Stamp kPause_ns = 10'000'000'000;  // between two sequences: nothing connects them
 
-/// The folders that a split names: "sequence7" stands for seq-07 beside it.
+/// The folders that a split names: "sequence7" means seq-07 next to it.
 std::vector<fs::path> folders_of(const fs::path& split) {
   std::istringstream words(read_text(split));
   std::vector<fs::path> folders;

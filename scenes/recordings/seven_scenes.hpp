@@ -14,7 +14,7 @@ extern const SequenceReader kSevenScenesReader;
 
 /// Its color camera: 525 px, principal point in the middle (Brachmann et al., DSAC and later).
 Camera seven_scenes_color();
-/// Its depth camera: 585 px, 320, 240 (the data set's page), and where it stands beside the color
+/// Its depth camera: 585 px, 320, 240 (the data set's page), and its position relative to the color
 /// camera. The data set does not state the latter: it is that of another Kinect (LIRIS, VOIR
 /// platform), as in Brachmann et al., ICCV 2021.
 DepthCamera seven_scenes_depth();

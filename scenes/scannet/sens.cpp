@@ -304,7 +304,7 @@ class SensFile : public Recording {
   RecordingInfo info_;
   std::int32_t color_kind_ = kJpeg, depth_kind_ = kZlib;
   std::vector<FrameRecord> frames_;
-  std::size_t whole_ = 0;  ///< of the frames; a truncated file has lost those behind
+  std::size_t whole_ = 0;  ///< complete frames; a truncated file has lost the later ones
 };
 
 /// Writes values one after the other.

@@ -16,7 +16,7 @@ namespace mh {
 /// A moment in which the base began to touch something.
 struct Bump {
   double time_s = 0;
-  /// Of the robot, toward what it touches; at most the speed that its wheels gave it, so that one
+  /// Speed of the robot toward what it touches; at most the speed from its wheels, so that a robot
   /// that is shoved against a wall does not count as having driven there.
   double speed_m_per_s = 0;
   InstanceId instance = 0;

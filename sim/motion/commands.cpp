@@ -38,7 +38,7 @@ bool has_reflex(const Robot& robot) {
   return robot.equipment && robot.equipment->reflex;
 }
 
-/// @throws InputError if the script asks for what the robot does not have.
+/// @throws InputError if the script needs something that the robot lacks.
 void require_obeyed(const CommandScript& script, const Robot& robot) {
   const auto refuse = [&](int line, const std::string& what) {
     throw InputError(

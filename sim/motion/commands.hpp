@@ -49,8 +49,8 @@ struct CommandedDrive {
 /// destination: if something is in the way, the robot stops before it (reflex) or against it.
 /// @param others  moving obstacles
 /// @throws InputError, naming file and line, if the start is inside something, a head angle is out
-/// of the joint's range, or the script asks for what the robot cannot do: move its head or wake a
-/// reflex without having one, go sideways on a differential base.
+/// of the joint's range, or the script needs something that the robot lacks: a head, a reflex,
+/// sideways motion of a differential base.
 CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript& script,
                      const std::vector<MovingObstacle>& others = {});
 

@@ -26,7 +26,7 @@ Eigen::Vector2d limited(const Eigen::Vector2d& v, double limit) {
 }
 
 /// The change of velocity of a base whose wheels roll only forward and backward: the motors' limits
-/// hold along its way, and across it the wheels' grip does what the command asks.
+/// hold along its way, and across it the wheels' grip follows the command.
 Eigen::Vector2d gripped_change(const BaseCommand& command, const BaseState& now,
                                double max_velocity_m_per_s, double max_change_m_per_s,
                                double step_s) {

@@ -4,7 +4,7 @@
 namespace mh {
 namespace {
 
-// NYU40's ids, of the class that stands for each of 13 groups.
+// NYU40's id of the class that represents each of 13 groups.
 enum Group : ClassId {
   kWall = 1,
   kFloor = 2,

@@ -92,7 +92,7 @@ SemanticImage exact_image(const RenderedFrame& truth, const std::vector<VisibleO
   return image;
 }
 
-/// Replaces each class by the one that stands for it in a set; entries stay apart.
+/// Replaces each class by the one that represents it in a set; entries stay separate.
 void group_classes(SemanticImage& image, ClassSet set) {
   if (set == ClassSet::kAll) return;
   for (ClassDistribution& labels : image.palette) {

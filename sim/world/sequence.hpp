@@ -37,7 +37,7 @@ class SimulatedSequence : public Sequence {
 
   /// From now on, exposures are shared with the processes that give the same folder and name, and
   /// frames with one of images.noises with those that also give the same noises.
-  /// @param name  stands for everything that the constructor received, except labels
+  /// @param name identifies everything that the constructor received, except labels
   void share(const SharedImages& images, const std::string& name);
 
   const Camera& camera() const override { return shutter_.camera(); }

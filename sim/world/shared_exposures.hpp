@@ -38,7 +38,7 @@ class SharedExposures {
  public:
   using Make = std::function<Shutter::Exposed(std::size_t)>;
 
-  /// @param name    names the file, in folders of its own or not; stands for scene, camera, path,
+  /// @param name    names the file, which may have its own folders; identifies scene, camera, path,
   ///                sensors and, if exposures are given with it, noise
   /// @param camera  of the exposures
   /// @param frames  of the path

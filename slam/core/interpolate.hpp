@@ -18,9 +18,9 @@ inline constexpr Stamp kMaxNeighborGap_ns = 500'000'000;
 inline constexpr Stamp kMaxTruthGap_ns = 50'000'000;
 
 /// Returns the pose at a moment: the one of that stamp, else interpolated between its neighbors in
-/// time, position linearly, rotation along the shortest arc. For mapped frames, this is the query
-/// camera's pose in the system's own map by the paper's estimate. nullopt if a neighbor is missing
-/// or they are more than max_gap_ns apart.
+/// time, position linearly, rotation along the shortest arc. For mapped frames, this is the paper's
+/// estimate of the query camera's pose in the system's own map. nullopt if a neighbor is missing or
+/// they are more than max_gap_ns apart.
 std::optional<SE3> interpolated_pose(const Trajectory& trajectory, Stamp stamp_ns,
                                      Stamp max_gap_ns = kMaxNeighborGap_ns);
 

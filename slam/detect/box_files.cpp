@@ -74,7 +74,7 @@ std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
   return named(all.by_stamp[std::llround(seconds * 1e6) * 1000]);
 }
 
-/// Whole numbers of one file are of one kind: if one is beyond every index, all are stamps in ns.
+/// If one whole number in a file is beyond every index, all are stamps in ns.
 void move_stamps(FiledBoxes& all) {
   if (all.by_index.empty() || all.by_index.rbegin()->first < kMostFrames) return;
   for (auto& [number, filed] : all.by_index) {

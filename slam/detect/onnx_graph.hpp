@@ -28,7 +28,7 @@ std::optional<std::size_t> value_count(const OnnxShape& shape);
 std::optional<OnnxTensor> read_onnx_tensor(std::string_view bytes);
 OnnxShape onnx_tensor_shape(std::string_view bytes);
 bool is_half_precision(std::string_view tensor_bytes);
-/// As 32-bit floats, or 64-bit whole numbers.
+/// Written as 32-bit floats, or 64-bit integers.
 std::string write_onnx_tensor(const std::string& name, const OnnxTensor& tensor);
 
 /// An operation of a graph.

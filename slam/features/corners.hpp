@@ -24,7 +24,7 @@ std::vector<Corner> find_corners(const cv::Mat& image, int edge_px, int threshol
 std::vector<Corner> spread(const std::vector<Corner>& corners, int count);
 
 /// Distributes `total` features over levels in a geometric series of ratio `ratio`, finest level
-/// first. What a level cannot supply goes to the others, the finest first.
+/// first. What a level cannot supply is taken from the others, the finest first.
 /// @param available  corners found per level.
 std::vector<int> share_out(int total, double ratio, const std::vector<int>& available);
 

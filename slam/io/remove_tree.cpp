@@ -59,7 +59,7 @@ bool move_up(int from, const char* name, int to, unsigned& number) {
 void remove_tree(const char* folder) {
   const int top = open_folder(AT_FDCWD, folder);
   if (top < 0) {
-    unlink(folder);  // somebody put something else there
+    unlink(folder);  // another process put something else there
     return;
   }
   unsigned number = 0;

@@ -16,7 +16,7 @@ enum class MatchGate {
   kKept,
   kThreshold,  ///< farther than the gate allows
   kRatio,      ///< the second nearest is about as near
-  kTaken,      ///< a feature goes to one point, and another was nearer
+  kTaken,      ///< a feature matches one point only, and another was nearer
   kRotation    ///< rotated differently from most other pairs
 };
 inline constexpr std::size_t kMatchGates = 5;
@@ -34,7 +34,7 @@ constexpr std::string_view name(MatchGate gate) {
 
 /// One such pair, as a matcher logs it.
 struct GatedPair {
-  std::uint32_t asked = 0;    ///< the point: a feature of the first view, or a target
+  std::uint32_t asked = 0;    ///< the searched point: a feature of the first view, or a target
   std::uint32_t feature = 0;  ///< the nearest one, after equation 2
   MatchGate gate = MatchGate::kKept;
 };

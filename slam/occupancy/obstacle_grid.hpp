@@ -66,7 +66,7 @@ class ScanGrid {
   /// Adds what the scans say to a grid, which grows as needed: occupied where the log-odds of hits
   /// and misses (VoxelMap's increments) are not negative, free where they saw through and the grid
   /// is unknown. Occupied cells of the grid stay: the laser's plane passes below a table top.
-  /// @pre the grid's origin is a multiple of its resolution, as of obstacle_grid()
+  /// @pre the grid's origin is a multiple of its resolution, as in obstacle_grid()
   /// @throws InputError if the resolutions differ.
   void add_to(OccupancyGrid& grid) const;
 

@@ -14,7 +14,7 @@ octomap::OcTreeKey key_of_block(const Eigen::Vector3i& index) {
           static_cast<octomap::key_type>(voxel.z())};
 }
 
-/// The child of a node `level` levels above the voxels in which a place of the block lies.
+/// Which child contains a place of the block, for a node `level` levels above the voxels.
 unsigned child_of(unsigned place, unsigned level) {
   const unsigned x = place >> level & 1U, y = place >> (3 + level) & 1U,
                  z = place >> (6 + level) & 1U;

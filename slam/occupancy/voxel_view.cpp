@@ -79,7 +79,7 @@ struct More {
   float operator()(float a, float b) const { return std::max(a, b); }
 };
 
-/// The image with another value where there is no return.
+/// The image with pixels without a return set to another value.
 Grid2d<float> with_none_as(const Grid2d<float>& depth_m, float none) {
   Grid2d<float> image = depth_m;
   for (float& z : image)

@@ -48,7 +48,8 @@ struct DepthModel {
   /// How far around the pixel of a voxel's center the image must show nothing in the voxel or in
   /// front of it: half the side of the seen square, in voxels.
   double around_voxels = 0.5;
-  /// How far behind a voxel's center everything around must be, in voxels along the optical axis.
+  /// How far behind a voxel's center all returns around it must be, in voxels along the optical
+  /// axis.
   double before_voxels = 0.6;
 };
 

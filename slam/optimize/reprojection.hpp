@@ -99,7 +99,7 @@ inline CameraFrameTerm camera_frame_term(const Eigen::Vector3d& point_in_camera,
 }
 
 /// hat(p) * m: each column of m crossed from the left.
-// Where several sources are compiled as one, GCC leaves it out of line: 1 % of SLAM.
+// Forced inline, since GCC does not inline it in unity builds, which costs 1 % of SLAM.
 [[gnu::always_inline]] inline Eigen::Matrix3d cross_columns(const Eigen::Vector3d& p,
                                                             const Eigen::Matrix3d& m) {
   Eigen::Matrix3d result;

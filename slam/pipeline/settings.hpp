@@ -40,8 +40,8 @@ std::string format_settings(const Settings& settings);
 /// notes, each line ends in a comment stating the meaning and the allowed values.
 std::string format_slam_config(const SlamConfig& config, bool notes = false);
 /// Reads sections of SLAM settings; absent keys keep their values from `config`. `base: orb_slam2`
-/// stands for that acceptance. Leaves keys that
-/// are not SLAM sections to the caller, who calls yaml.finish(). @throws InputError.
+/// sets that acceptance. Leaves keys that are not SLAM sections to the caller, who calls
+/// yaml.finish(). @throws InputError.
 SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config = {});
 
 }  // namespace mh

@@ -72,7 +72,7 @@ class Vocabulary {
   std::size_t node_count() const { return centers_.size(); }
   std::uint32_t training_images() const { return training_images_; }  ///< 0 = unknown
   std::uint64_t training_descriptors() const { return training_descriptors_; }
-  /// Of the content of the file: equal digests, equal vocabularies. 0 if empty.
+  /// Digest of the file's content: equal digests, equal vocabularies. 0 if empty.
   std::uint64_t digest() const { return digest_; }
 
  private:

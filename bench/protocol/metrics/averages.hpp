@@ -9,7 +9,7 @@ namespace mh {
 
 /// The middle value (mean of the two middle ones); 0 for an empty list.
 double median(std::vector<double> values);
-/// The median of the known values; absent if none is known.
+/// The median of the known values; absent if there are none.
 std::optional<double> median_of_known(std::span<const std::optional<double>> values);
 /// 0 for an empty list.
 double mean(std::span<const double> values);

@@ -32,7 +32,7 @@ struct Change {
   /// the median paired change. That is the error due to chance alone for a different but no worse
   /// program: before and after drawn independently, with the spread over the baseline's seeds, so
   /// 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 / queries above the
-  /// tolerance. If a system is not repeatable, before and after are drawn anew each time, with the
+  /// tolerance. If a system is not repeatable, before and after are drawn again each time, with the
   /// spread over the runs of both; its change must exceed the tolerance by 1.86 standard errors to
   /// be more than chance, and `detectable` holds that as well.
   double detectable = 0;

@@ -45,7 +45,7 @@ std::array<float, 2> pair_in(const Json& transform, const char* name,
   return {transform[name].at(0).get<float>(), transform[name].at(1).get<float>()};
 }
 
-/// In u to the right and v downward, `rotation` turns from v to u.
+/// With u to the right and v downward, `rotation` turns from v to u.
 UvPlacement placement_of(const Json& texture, const Json& transform) {
   UvPlacement placement{.set = index_in(texture, "texCoord", 0)};
   if (!transform.is_object()) return placement;

@@ -163,7 +163,7 @@ class BagWriter : public MessageWriter {
   std::vector<bool> is_sent_;             ///< by id: written in a chunk
   ByteWriter chunk_, chunk_infos_;
   std::uint32_t chunks_ = 0;
-  /// Of the open chunk: stamp and place of each message, by topic.
+  /// Stamp and place of each message of the open chunk, by topic.
   std::map<std::uint16_t, std::vector<std::pair<Stamp, std::uint32_t>>> index_;
 };
 

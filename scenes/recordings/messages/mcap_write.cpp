@@ -248,7 +248,7 @@ class McapWriter : public MessageWriter {
   std::vector<std::string> schemas_, channels_;  ///< records, by id
   std::vector<std::uint64_t> counts_;            ///< messages by channel
   ByteWriter chunk_;
-  /// Of the open chunk: stamp and place of each message, by channel.
+  /// Stamp and place of each message of the open chunk, by channel.
   std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> index_;
   ChunkEntry entry_;  ///< of the open chunk
   std::vector<ChunkEntry> chunks_;

@@ -24,7 +24,7 @@ struct Duration {
   std::int64_t ns = 0;
 };
 
-/// uint8[], as a view of bytes that live elsewhere: those of an image are not copied.
+/// uint8[], as a view of bytes stored elsewhere, so that those of an image are not copied.
 using Bytes = std::string_view;
 
 struct Header {

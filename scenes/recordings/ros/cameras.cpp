@@ -49,7 +49,7 @@ struct Axis {
 
   std::uint32_t step() const { return std::max(joined, 1U); }
   double focal() const { return focal_px / step(); }
-  /// Pixel centers are at integers: that of joined ones lies between theirs.
+  /// Pixel centers are at integers: the center of joined ones is between theirs.
   double center() const { return (center_px - offset_px - 0.5 * (step() - 1)) / step(); }
   int size() const {
     return static_cast<int>(std::min(part_px > 0 ? part_px : size_px, 65535U) / step());
@@ -174,7 +174,7 @@ bool differ(const ChosenTopics& chosen) {
                              [&](std::size_t i) { return std::abs(a.k[i] - b.k[i]) > kSame_px; });
 }
 
-/// Whether a transform moves a point by less than any camera could tell.
+/// Whether a transform moves points by less than any camera could measure.
 bool is_identity(const SE3& transform) {
   constexpr double kNone = 1e-6;
   return transform.translation().norm() < kNone && angle_between_rad(transform, SE3()) < kNone;

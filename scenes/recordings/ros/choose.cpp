@@ -49,7 +49,7 @@ std::string parent_of(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
 }
 
-/// Of several, those whose names begin as the color's does: "/camera2/...".
+/// Those whose names begin as the color's does, if there are several: "/camera2/...".
 std::vector<const ImageTopic*> of_same_camera(std::vector<const ImageTopic*> topics,
                                               const ImageTopic& color) {
   const auto camera_of = [](const std::string& name) { return name.substr(0, name.find('/', 1)); };

@@ -95,7 +95,7 @@ const Conversion* conversion_of(const std::string& encoding) {
   return found == kConversions.end() ? nullptr : &*found;
 }
 
-/// @param stored  rows of bytes, as they lie in the message
+/// @param stored rows of bytes, as in the message
 Grid2d<Rgb8> converted(const cv::Mat& stored, const Conversion& conversion, int width, int height) {
   const bool mosaic = std::string_view(conversion.encoding).starts_with("bayer");
   if (mosaic ? width < 3 || height < 3 : width % 2 != 0 || height % (conversion.rows_of_2 - 1) != 0)

@@ -56,7 +56,7 @@ bool stands_still(const auto& stamped) {
          });
 }
 
-/// A topic's poses, or an edge's, with the times of receipt where the stamps stand still.
+/// A topic's poses, or an edge's, with the times of receipt if all stamps are equal.
 /// @returns whether they did
 bool repair(auto& topic) {
   if (!stands_still(topic.poses)) return false;

@@ -59,7 +59,7 @@ struct RosTopics {
   std::map<std::string, Calibration> calibrations;
   std::map<std::string, PoseTopic> poses;
   std::map<std::string, TfEdge> tf;  ///< by the child's name
-  /// By topic: between two cameras, as RealSense's recorder and driver state it.
+  /// Transforms between two cameras by topic, as RealSense's recorder and driver state them.
   std::map<std::string, SE3> transforms;
   /// Meters per unit of depth, by what the names of its topics begin with (RealSense); each value
   /// once, in the file's order.

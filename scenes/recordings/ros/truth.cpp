@@ -69,7 +69,7 @@ std::optional<Trajectory> by_tf(const RosTopics& topics, const ImageTopic& color
   const auto moving =
       std::ranges::count_if(way, [](const Link& l) { return !is_fixed(*l.second); });
   if (moving == 0) return std::nullopt;
-  // By edge, sorted; where a single one moves, its own stamps are exact.
+  // Poses by edge, sorted. If only one edge moves, its own stamps are used: they are exact.
   std::vector<Trajectory> edges;
   std::vector<Stamp> stamps;
   for (const StoredImage& image : color.images) stamps.push_back(image.stamp_ns);
