@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// What a finished map truly shows.
+/// Ground truth of what a finished map shows.
 struct TrueMap {
   std::vector<KeyframeId> live;                     ///< keyframes, by id
   std::vector<std::optional<TrueView>> views;       ///< by keyframe id; none for erased ones

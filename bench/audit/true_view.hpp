@@ -19,7 +19,7 @@ namespace mh {
 inline constexpr double kSamePoint_m = 0.08;
 inline constexpr double kSamePointShare = 0.04;
 
-/// What a keypoint truly shows.
+/// Ground truth of what a keypoint shows.
 struct TruePoint {
   Eigen::Vector3d in_world;
   double depth_m = 0;      ///< in the view that it was seen in

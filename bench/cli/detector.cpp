@@ -118,7 +118,8 @@ bool is_image_name(const std::string& name) {
                              [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// What a command reads could be taken for what it writes.
+/// @throws InputError if a file that is read is in the output folder, where it could be taken for
+/// output.
 void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec& spec) {
   std::vector<fs::path> read = {spec.boxes};
   for (const std::string& source : options.sources)

@@ -21,7 +21,7 @@ inline constexpr int kInputChangedCode = 5;
 /// Exit code on bad input that is found only during the run.
 inline constexpr int kBadInputCode = 2;
 
-/// What begins the line by which Modelhouse reports an error.
+/// Beginning of a line in which Modelhouse reports an error.
 inline constexpr std::string_view kErrorMark = "modelhouse: error: ";
 
 /// First character of a line that reports a run's status; the latest counts.

@@ -30,7 +30,7 @@ double frames_of(const std::optional<std::filesystem::path>& tour, const RunSpec
   return run.max_frames ? std::min(frames, static_cast<double>(*run.max_frames)) : frames;
 }
 
-/// The cheapest split of the first runs into parts, for any number of them.
+/// Finds the cheapest split of runs into any number of parts.
 class SplitTable {
  public:
   explicit SplitTable(std::span<const PredictedCost> runs) {
@@ -53,7 +53,8 @@ class SplitTable {
   /// Starts of `parts` shares, none of them empty. @pre 1 <= parts <= runs
   std::vector<std::size_t> begins(std::size_t parts) {
     const std::size_t runs = begin_s_.size();
-    std::vector<std::vector<std::size_t>> last_begin;  // of the split of the first runs, by part
+    std::vector<std::vector<std::size_t>>
+        last_begin;  // per part: of the best split, by the number of runs split
     least_.assign(runs + 1, std::numeric_limits<double>::infinity());
     least_[0] = 0;
     for (std::size_t part = 1; part <= parts; ++part) {

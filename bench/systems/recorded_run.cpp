@@ -34,7 +34,7 @@ std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
   return best;
 }
 
-/// What the program wrote as its trajectory: a file of its own folder, not what a link leads to.
+/// The trajectory that the program wrote: a file in its own folder, not the target of a link.
 /// @param home  the folder's canonical path, before the program ran
 std::string written_text(const fs::path& home, ChildProcess& child) {
   constexpr std::uintmax_t kLongest = std::uintmax_t{64} << 20;  // one is about 1e5 bytes

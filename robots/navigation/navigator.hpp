@@ -24,7 +24,7 @@ struct KnownMap {
   Grid2d<std::uint8_t> walls;    ///< of the same cells: known as walls; empty: no walls are known
 };
 
-/// What to drive to: a thing of the robot's own map, seen from above.
+/// A goal: an object of the robot's own map, seen from above.
 struct NavigatorGoal {
   std::string name;                       ///< for its messages
   std::vector<Eigen::Vector2d> places_m;  ///< centers of the cells that it covers, map frame

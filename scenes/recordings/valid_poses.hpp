@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// Reads the true poses of a recording; nullopt if none is left of them. @param notes  receives
+/// Reads the true poses of a recording; nullopt if no valid ones are left. @param notes  receives
 /// what was left out (trajectory_io.hpp), or that there is no truth
 /// @throws InputError if the file cannot be read or does not contain poses.
 std::optional<Trajectory> read_truth(const std::filesystem::path& file,

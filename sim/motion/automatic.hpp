@@ -24,7 +24,7 @@ struct AutomaticTourConfig {
 Tour automatic_tour(const Scene& scene, const Robot& robot, const AutomaticTourConfig& config = {});
 
 /// Returns the tour with paths over the free floor instead of straight lines: waypoints that avoid
-/// obstacles between two of its own are inserted before the latter.
+/// obstacles are inserted between its own.
 /// @throws InputError naming tour, line and the waypoint that cannot be reached, and what blocks
 /// it.
 Tour planned(const Scene& scene, const Robot& robot, const Tour& tour);

@@ -101,7 +101,7 @@ Grid2d<Surface> find_surfaces(const Grid2d<float>& depth_m, const Camera& camera
   return surfaces;
 }
 
-/// What is known of the pixels of a row: arrays, so that passes without table lookups are
+/// What is known about the pixels of a row: arrays, so that passes without table lookups are
 /// vectorized.
 struct Row {
   explicit Row(std::size_t width)

@@ -19,7 +19,7 @@ struct DriveRecord {
   const Trajectory& camera;               ///< world_from_camera, stamps of the path
   std::optional<RobotReadings> readings;  ///< of a robot with equipment
   std::optional<FloorGrid> grid;          ///< of the level scene
-  SE3 world_from_level;                   ///< what readings and grid refer to
+  SE3 world_from_level;                   ///< from the frame of readings and grid
 };
 
 /// Collects what belongs to a drive: sensor readings of a robot that has equipment, and the floor

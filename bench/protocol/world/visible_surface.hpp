@@ -13,7 +13,7 @@ namespace mh {
 /// The camera with the same view in an image of another width; the height follows.
 Camera smaller(const Camera& camera, int width_px);
 
-/// What a path's views show of a scene, by its mesh.
+/// The part of a scene's mesh that a path's views show.
 class VisibleSurface {
  public:
   /// @param apart_m  minimum distance between the path's views that are used, 1 rad equivalent to 1

@@ -26,7 +26,8 @@ class SceneLasers {
   ~SceneLasers();
   SceneLasers(SceneLasers&&) noexcept;
 
-  /// What the lasers read at each pose that has a true one, placed where the pose says.
+  /// The lasers' readings at the true pose of each pose that has one, placed at the (estimated)
+  /// pose.
   /// @param map_from_camera    ordered by stamp
   /// @param world_from_camera  the true poses, ordered by stamp; of a camera on the robot
   ScanGrid scans(const Trajectory& map_from_camera, const Trajectory& world_from_camera,

@@ -127,8 +127,8 @@ Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
   }
 }
 
-/// What precedes "/tf/0" in the names of transforms of RealSense's recorder: the stream, which an
-/// image's name begins with. @returns the stream's pose: stream_from_reference
+/// The transform of RealSense's recorder for an image's stream, with whose name the image's name
+/// begins. @returns the end of the transform's name ("/tf/0"), and stream_from_reference
 std::optional<std::pair<std::string, SE3>> recorded_tf(const RosTopics& topics,
                                                        const ImageTopic& images) {
   for (const auto& [name, stream_from_reference] : topics.transforms) {

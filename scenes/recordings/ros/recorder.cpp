@@ -68,7 +68,7 @@ std::vector<ros::Detection2D> detections_of(const Grid2d<ClassId>& classes,
     std::array<int, 256> pixels;                   // by class
   };
   std::map<InstanceId, Seen> all;
-  Seen* seen = nullptr;  // of the pixel before, as mostly of this one
+  Seen* seen = nullptr;  // of the previous pixel, usually also of this one
   InstanceId last = 0;
   for (int y = 0; y < instances.height(); ++y)
     for (int x = 0; x < instances.width(); ++x) {

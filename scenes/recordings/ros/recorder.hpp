@@ -61,7 +61,7 @@ class RosRecorder : public SequenceWriter {
   Camera camera_;
   std::optional<MessageLog> robot_;
   Topics topics_{};
-  std::vector<std::uint16_t> robot_topics_;  ///< in the file, by the log's
+  std::vector<std::uint16_t> robot_topics_;  ///< topics of the file, by topic of the log
   std::mutex mutex_;                         ///< guards the file and the members below
   std::size_t next_ = 0;                     ///< frame to be written
   std::size_t next_robot_ = 0;               ///< entry of the log

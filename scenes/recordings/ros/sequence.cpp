@@ -31,7 +31,7 @@ struct StoredFrame {
   std::optional<StoredImage> labels;
 };
 
-/// What is needed of a topic to read its images.
+/// What is needed to read a topic's images.
 struct ImageSource {
   std::string name;
   bool compressed = false;
