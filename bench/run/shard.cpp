@@ -53,8 +53,7 @@ class SplitTable {
   /// Starts of `parts` shares, none of them empty. @pre 1 <= parts <= runs
   std::vector<std::size_t> begins(std::size_t parts) {
     const std::size_t runs = begin_s_.size();
-    std::vector<std::vector<std::size_t>>
-        last_begin;  // per part: of the best split, by the number of runs split
+    std::vector<std::vector<std::size_t>> last_begin;  // by part, then number of runs
     least_.assign(runs + 1, std::numeric_limits<double>::infinity());
     least_[0] = 0;
     for (std::size_t part = 1; part <= parts; ++part) {

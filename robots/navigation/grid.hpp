@@ -46,7 +46,7 @@ Grid2d<float> distances(const Grid2d<std::uint8_t>& marked);
 /// half a diagonal closer than the center of its cell.
 Grid2d<float> clearances_m(const Grid2d<std::uint8_t>& blocked, double resolution_m);
 
-/// The grid of a map that says where something blocks the way, not what.
+/// The grid of a map that shows where obstacles are, but not which.
 /// @param origin_m  center of cell (0, 0)
 FloorGrid floor_grid_of(const Grid2d<std::uint8_t>& blocked, double resolution_m,
                         const Eigen::Vector2d& origin_m);

@@ -231,9 +231,9 @@ std::optional<std::size_t> Layout::add(const LayoutItem& item, double front_m) {
     if (hinders) {
       Grid2d<float> after = room_m_;
       narrow(after, footprint);
-      // No floor may be large enough for the robot yet unreachable, and wherever the robot gets, it
-      // has its clearance. Plans are in whole millimeters: exact fits and near misses are decided
-      // the same way by every check.
+      // All floor that is wide enough for the robot must be reachable, with the clearance on every
+      // path. Plans are in whole millimeters: exact fits and near misses are decided the same way
+      // by every check.
       constexpr double kTie_m = 0.0002;
       for (const double radius : {kRobotRadius_m, kRobotRadius_m + kPlay_m})
         for (const double tie : {-kTie_m, kTie_m})

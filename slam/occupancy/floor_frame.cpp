@@ -59,7 +59,7 @@ bool can_be_floor(const Plane& plane, const Surroundings& around) {
   return static_cast<double>(below) <= kMostBelow * static_cast<double>(around.all.size());
 }
 
-/// The least-squares plane of the points on a plane.
+/// Refits a plane by least squares to the points on it.
 Plane refined(const Plane& plane, const std::vector<Vector3d>& points) {
   Vector3d mean = Vector3d::Zero();
   double count = 0;
