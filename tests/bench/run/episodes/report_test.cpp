@@ -56,7 +56,7 @@ Suite suite_of(std::initializer_list<const char*> environments, std::size_t star
   suite.systems = {{.kind = SystemKind::kSemantic, .name = "semantic", .outside = {}},
                    {.kind = SystemKind::kPlain, .name = "plain", .outside = {}}};
   suite.compare = {{0, 1}};
-  suite.episodes = EpisodesSpec{.starts = starts, .variants = std::move(variants)};
+  suite.episodes = EpisodesSpec{.goals = {}, .starts = starts, .variants = std::move(variants)};
   return suite;
 }
 

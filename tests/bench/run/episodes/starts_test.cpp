@@ -70,7 +70,7 @@ Scene room_with_a_bed() {
 TEST(DrawStarts, AreOnTheFloorAndKnowTheShortestWay) {
   const Scene scene = room_with_a_bed();
   const Robot robot = test::pepper();
-  const EpisodesSpec spec{.starts = 12, .goals = {"toilet", "bed"}};
+  const EpisodesSpec spec{.goals = {"toilet", "bed"}, .starts = 12};
   const std::vector<EpisodeStart> starts = draw_starts(spec, scene, robot);
   ASSERT_EQ(starts.size(), 12U);
   for (const EpisodeStart& start : starts) {
@@ -82,9 +82,9 @@ TEST(DrawStarts, AreOnTheFloorAndKnowTheShortestWay) {
   }
   EXPECT_GT((starts[0].place_m - starts[1].place_m).norm(), 0.05);
   const std::vector<EpisodeStart> fewer =
-      draw_starts({.starts = 3, .goals = {"toilet", "bed"}}, scene, robot);
+      draw_starts({.goals = {"toilet", "bed"}, .starts = 3}, scene, robot);
   for (std::size_t i = 0; i < fewer.size(); ++i) EXPECT_EQ(fewer[i].place_m, starts[i].place_m);
-  EXPECT_THROW(draw_starts({.starts = 1, .goals = {"toilet"}}, scene, robot), InputError);
+  EXPECT_THROW(draw_starts({.goals = {"toilet"}, .starts = 1}, scene, robot), InputError);
 }
 
 /// A bed and a sideboard stand flush against the two sides of a wall of 10 cm; it ends before x = 8
@@ -104,7 +104,7 @@ Scene room_with_a_bed_behind_a_wall() {
 
 TEST(DrawStarts, NobodyArrivesThroughAWall) {
   const std::vector<EpisodeStart> starts = draw_starts(
-      {.starts = 40, .goals = {"bed"}}, room_with_a_bed_behind_a_wall(), test::pepper());
+      {.goals = {"bed"}, .starts = 40}, room_with_a_bed_behind_a_wall(), test::pepper());
   const EpisodeStart& start = starts.front();
   EXPECT_FALSE(is_arrival(start, {4, 4.2}, 1.0));  // 0.9 m away, behind sideboard and wall
   EXPECT_FALSE(is_arrival(start, {2.6, 4.7}, 1.0));
@@ -129,7 +129,7 @@ TEST(DrawStarts, NobodyArrivesFromAnotherRoomOfTheModelHouse) {
   };
   for (const char* goal : {"refrigerator", "sofa", "bed", "desk"}) {
     const EpisodeStart start =
-        draw_starts({.starts = 1, .goals = {goal}}, scene, test::pepper()).front();
+        draw_starts({.goals = {goal}, .starts = 1}, scene, test::pepper()).front();
     ASSERT_EQ(start.boxes.size(), 1U) << goal;
     const auto own = room_of(0.5 * (start.boxes[0].first + start.boxes[0].second));
     ASSERT_NE(own, scene.rooms.end()) << goal;
