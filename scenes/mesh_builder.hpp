@@ -61,7 +61,6 @@ class MeshBuilder {
   /// Enters a nested frame: outer_from_inner applies to everything until pop().
   void push(const Eigen::Isometry3f& outer_from_inner);
   void pop();
-  const Eigen::Isometry3f& world_from_local() const { return frames_.back(); }
 
   void box(MaterialId material, const Eigen::Vector3f& min_m, const Eigen::Vector3f& max_m,
            const BoxStyle& style = {});
@@ -104,7 +103,6 @@ class MeshBuilder {
   void leaf(MaterialId material, const Eigen::Vector3f& root, const Eigen::Vector3f& way,
             float length_m, float width_m, float droop);
 
-  std::size_t triangle_count() const { return scene_.triangles.size(); }
   /// Adds lights, rooms and a name to the scene being built.
   Scene& scene() { return scene_; }
   /// Converts texture coordinates to repeats of the materials, computes the objects' boxes and

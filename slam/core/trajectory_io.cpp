@@ -310,8 +310,4 @@ std::string format_kitti(const Trajectory& trajectory) {
   return text;
 }
 
-void write_kitti(const std::filesystem::path& file, const Trajectory& trajectory) {
-  write_atomically(file, format_kitti(trajectory));
-}
-
 }  // namespace mh

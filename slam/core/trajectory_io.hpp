@@ -48,7 +48,6 @@ Trajectory read_kitti(const std::filesystem::path& file, Stamp period_ns = 100'0
 Trajectory parse_kitti(const std::string& text, const std::string& name,
                        Stamp period_ns = 100'000'000);
 std::string format_kitti(const Trajectory& trajectory);
-void write_kitti(const std::filesystem::path& file, const Trajectory& trajectory);
 
 /// Converts decimal seconds to integer nanoseconds without going through floating point; digits
 /// beyond the ninth decimal are rounded. Accepts both "1305031229.5287" and

@@ -107,7 +107,7 @@ Grid2d<std::uint8_t> blocked_cells(const OccupancyGrid& grid) {
   return blocked;
 }
 
-void ScanGrid::tell(const SE3& map_from_sensor, const RangeScan& scan, int sign) {
+void ScanGrid::add_scan(const SE3& map_from_sensor, const RangeScan& scan) {
   const Vector2d eye = map_from_sensor.translation().head<2>() / resolution_m_;
   const Vector2d ahead = map_from_sensor.rotation().col(0).head<2>();
   const double heading = std::atan2(ahead.y(), ahead.x());
@@ -122,14 +122,9 @@ void ScanGrid::tell(const SE3& map_from_sensor, const RangeScan& scan, int sign)
                          [&](const Vector2i& cell) { misses.emplace(cell.y(), cell.x()); });
     hits.emplace(static_cast<int>(std::floor(end.y())), static_cast<int>(std::floor(end.x())));
   }
-  const auto count = [&](const std::pair<int, int>& cell, int Counts::*number) {
-    const auto at = cells_.try_emplace(cell).first;
-    at->second.*number += sign;
-    if (at->second.hits == 0 && at->second.misses == 0) cells_.erase(at);
-  };
-  for (const auto& cell : hits) count(cell, &Counts::hits);
+  for (const auto& cell : hits) ++cells_[cell].hits;
   for (const auto& cell : misses)
-    if (!hits.contains(cell)) count(cell, &Counts::misses);
+    if (!hits.contains(cell)) ++cells_[cell].misses;
 }
 
 void ScanGrid::add_to(OccupancyGrid& grid) const {

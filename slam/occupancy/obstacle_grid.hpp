@@ -56,13 +56,7 @@ class ScanGrid {
  public:
   explicit ScanGrid(double resolution_m = 0.05) : resolution_m_(resolution_m) {}
   /// Adds a scan taken at a pose. @param map_from_sensor  a plane's: only x, y and heading count
-  void add_scan(const SE3& map_from_sensor, const RangeScan& scan) {
-    tell(map_from_sensor, scan, 1);
-  }
-  /// Removes a scan that was added with the same pose and readings.
-  void remove_scan(const SE3& map_from_sensor, const RangeScan& scan) {
-    tell(map_from_sensor, scan, -1);
-  }
+  void add_scan(const SE3& map_from_sensor, const RangeScan& scan);
   /// Adds what the scans say to a grid, which grows as needed: occupied where the log-odds of hits
   /// and misses (VoxelMap's increments) are not negative, free where they saw through and the grid
   /// is unknown. Occupied cells of the grid stay: the laser's plane passes below a table top.
@@ -74,8 +68,6 @@ class ScanGrid {
   struct Counts {
     int hits = 0, misses = 0;
   };
-  void tell(const SE3& map_from_sensor, const RangeScan& scan, int sign);
-
   double resolution_m_;
   std::map<std::pair<int, int>, Counts> cells_;  // by (row, column)
 };
