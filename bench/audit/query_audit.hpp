@@ -6,9 +6,9 @@
 
 #include "bench/audit/matches.hpp"
 #include "bench/protocol/metrics/query_summary.hpp"
+#include "slam/core/relocalization_stage.hpp"
 #include "slam/io/fields.hpp"
 #include "slam/io/words.hpp"
-#include "slam/relocalize/outcome.hpp"
 
 namespace mh {
 

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "bench/suite/protocol_config.hpp"
+#include "slam/core/loop_closure.hpp"
 #include "slam/core/trajectory.hpp"
-#include "slam/loop/closure.hpp"
 
 namespace mh {
 

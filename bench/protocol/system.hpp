@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
 #include "bench/protocol/report.hpp"
-#include "slam/config/semantics.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"
@@ -45,9 +45,10 @@ class System {
   virtual void freeze() = 0;
   /// Ends all processing; only trajectory() may be called afterward.
   virtual void finish() {}
-  /// From the next session on, uses these semantic settings for queries, instead of those used for
-  /// mapping. Call freeze() first. A system without such settings ignores the call.
-  virtual void set_query_settings(const SemanticConfig&) {}
+  /// From the next session on, answers queries with the settings of this point of the run's sweep
+  /// (RunSpec::points), instead of those used for mapping. Call freeze() first. A system without
+  /// such settings ignores the call.
+  virtual void use_point(std::size_t /*point*/) {}
   /// Serializes the finished map; a system that restores it gives bit-identical answers. Call
   /// freeze() first. An empty result means that this system cannot be saved.
   virtual std::string save() const { return {}; }

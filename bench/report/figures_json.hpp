@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/protocol/metrics/metric.hpp"
-#include "slam/match/counts.hpp"
+#include "slam/core/match_counts.hpp"
 
 namespace mh {
 

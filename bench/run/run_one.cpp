@@ -199,7 +199,7 @@ class QueryRound {
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
       const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
       for (std::size_t p = first; p < end; ++p) {
-        if (!once) frozen.set_query_settings(spec_.points[p]);
+        if (!once) frozen.use_point(p);
         try {
           const QueryAnswer answer =
               query(frozen, index, frames, spec_.protocol, stream_, memo.get());
@@ -300,7 +300,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
   }
   SlamConfig settings = spec.slam;
   if (world.readout_s) settings.track.readout_s = *world.readout_s;
-  return make_builtin_system(world.mapping->camera(), settings, world.vocabulary);
+  return make_builtin_system(world.mapping->camera(), settings, world.vocabulary, spec.points);
 }
 
 RandomStream mapping_stream(const RunSpec& spec) {
@@ -410,7 +410,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
         rounds.emplace_back(spec, set, world, files, tamper, run);
     for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
       const std::size_t end = end_of_alike(spec.points, p);
-      system.set_query_settings(spec.points[p]);
+      system.use_point(p);
       for (const QueryRound& round : rounds)
         round.put(system, p, end, lists(run, round.set()), work);
     }

@@ -105,8 +105,10 @@ class RememberingSession : public RelocalizationSession {
 
 class BuiltinSystem : public System {
  public:
-  explicit BuiltinSystem(SlamState own)
-      : own_(std::make_unique<SlamState>(std::move(own))), state_(*own_) {}
+  BuiltinSystem(SlamState own, std::vector<SemanticConfig> points)
+      : own_(std::make_unique<SlamState>(std::move(own))),
+        state_(*own_),
+        points_(std::move(points)) {}
   BuiltinSystem(SlamState& state, const BuiltinOptions& options)
       : state_(state), options_(options), found_(!state.tracked_frames.empty()) {}
 
@@ -122,9 +124,9 @@ class BuiltinSystem : public System {
   void rewind() override { mh::rewind(state_); }
   void reset() override { state_ = make_slam(state_.camera, state_.config, state_.vocabulary); }
   void freeze() override { frozen_ = true; }
-  void set_query_settings(const SemanticConfig& settings) override {
+  void use_point(std::size_t point) override {
     assert(frozen_);
-    mh::set_query_settings(state_, settings);
+    if (!points_.empty()) set_query_settings(state_, points_.at(point));
   }
   std::string save() const override {
     assert(frozen_);
@@ -169,6 +171,7 @@ class BuiltinSystem : public System {
 
   std::unique_ptr<SlamState> own_;
   SlamState& state_;
+  std::vector<SemanticConfig> points_;
   BuiltinOptions options_;
   using QuerySettings = std::tuple<double, double, double, double, Overlap, bool>;
   /// Under NeighborScores::kAsReleased sessions do share this: they depend on their order.
@@ -180,8 +183,10 @@ class BuiltinSystem : public System {
 }  // namespace
 
 std::unique_ptr<System> make_builtin_system(const Camera& camera, const SlamConfig& config,
-                                            std::shared_ptr<const Vocabulary> vocabulary) {
-  return std::make_unique<BuiltinSystem>(make_slam(camera, config, std::move(vocabulary)));
+                                            std::shared_ptr<const Vocabulary> vocabulary,
+                                            std::vector<SemanticConfig> points) {
+  return std::make_unique<BuiltinSystem>(make_slam(camera, config, std::move(vocabulary)),
+                                         std::move(points));
 }
 
 std::unique_ptr<System> make_builtin_system(SlamState& state, const BuiltinOptions& options) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "bench/protocol/system.hpp"
 #include "slam/pipeline/slam.hpp"
@@ -9,9 +10,11 @@
 namespace mh {
 
 /// Modelhouse's own SLAM, semantic or plain depending on the configuration.
+/// @param points  settings of its queries, for use_point(); none: those of `config`
 /// @throws InputError / std::invalid_argument if camera or configuration are out of range.
 std::unique_ptr<System> make_builtin_system(const Camera& camera, const SlamConfig& config,
-                                            std::shared_ptr<const Vocabulary> vocabulary);
+                                            std::shared_ptr<const Vocabulary> vocabulary,
+                                            std::vector<SemanticConfig> points = {});
 
 struct BuiltinOptions {
   StepObservers observers = {};

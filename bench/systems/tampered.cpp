@@ -21,9 +21,7 @@ class TamperedSystem : public System {
   void reset() override { inner_->reset(); }
   void freeze() override { inner_->freeze(); }
   void finish() override { inner_->finish(); }
-  void set_query_settings(const SemanticConfig& settings) override {
-    inner_->set_query_settings(settings);
-  }
+  void use_point(std::size_t point) override { inner_->use_point(point); }
   Trajectory trajectory() const override { return inner_->trajectory(); }
   std::unique_ptr<QueryMemo> make_memo() const override { return inner_->make_memo(); }
   std::unique_ptr<RelocalizationSession> open_session() const override {

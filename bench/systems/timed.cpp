@@ -70,9 +70,9 @@ void TimedSystem::freeze() {
   inner_->freeze();
 }
 
-void TimedSystem::set_query_settings(const SemanticConfig& settings) {
+void TimedSystem::use_point(std::size_t point) {
   const ProcessorTimer timer(processor_s_);
-  inner_->set_query_settings(settings);
+  inner_->use_point(point);
 }
 
 Trajectory TimedSystem::trajectory() const {

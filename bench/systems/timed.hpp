@@ -36,7 +36,7 @@ class TimedSystem : public System {
   void reset() override;
   void freeze() override;
   void finish() override { inner_->finish(); }
-  void set_query_settings(const SemanticConfig& settings) override;
+  void use_point(std::size_t point) override;
   std::string save() const override { return inner_->save(); }
   void restore(const std::string& saved) override { inner_->restore(saved); }
   Trajectory trajectory() const override;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "slam/core/camera.hpp"
+#include "slam/core/match_counts.hpp"
 #include "slam/map/map.hpp"
-#include "slam/match/counts.hpp"
 #include "slam/match/match.hpp"
 #include "slam/match/trace.hpp"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "slam/config/semantics.hpp"
+#include "slam/core/match_counts.hpp"
 #include "slam/features/feature_grid.hpp"
 #include "slam/features/features.hpp"
-#include "slam/match/counts.hpp"
 #include "slam/match/gate.hpp"
 #include "slam/vocabulary/word_index.hpp"
 

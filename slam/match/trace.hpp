@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "slam/core/ids.hpp"
-#include "slam/match/counts.hpp"
+#include "slam/core/match_counts.hpp"
 #include "slam/match/gate.hpp"
 
 namespace mh {

@@ -3,11 +3,12 @@
 
 #include <optional>
 
+#include "slam/core/loop_closure.hpp"
+#include "slam/core/match_counts.hpp"
+#include "slam/core/relocalization_stage.hpp"
 #include "slam/core/se3.hpp"
 #include "slam/core/track_status.hpp"
-#include "slam/loop/closure.hpp"
-#include "slam/match/counts.hpp"
-#include "slam/relocalize/outcome.hpp"
+#include "slam/relocalize/candidate_counts.hpp"
 
 namespace mh {
 

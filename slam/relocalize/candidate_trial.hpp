@@ -8,8 +8,8 @@
 
 #include "slam/config/semantics.hpp"
 #include "slam/core/random.hpp"
+#include "slam/core/relocalization_stage.hpp"
 #include "slam/match/context.hpp"
-#include "slam/relocalize/outcome.hpp"
 
 namespace mh {
 

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "slam/core/random.hpp"
+#include "slam/core/relocalization_stage.hpp"
 #include "slam/match/context.hpp"
+#include "slam/relocalize/candidate_counts.hpp"
 #include "slam/relocalize/candidate_trial.hpp"
-#include "slam/relocalize/outcome.hpp"
 #include "slam/relocalize/stale_scores.hpp"
 #include "slam/semantics/candidate_selection.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/match/counts.hpp"
+#include "slam/core/match_counts.hpp"
 
 namespace mh {
 
