@@ -3,7 +3,7 @@
 # header-only package for find_package(Modelhouse).
 include(CMakePackageConfigHelpers)
 
-install(TARGETS modelhouse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS modelhouse modelhouse-library-host RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # Data keep the layout of the sources: suites name their files relative to their own folder.
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)

@@ -17,7 +17,6 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/set_option.hpp"
-#include "bench/cli/to_parent.hpp"
 #include "bench/cli/write_audit.hpp"
 #include "bench/run/episodes/report.hpp"
 #include "bench/run/run.hpp"
@@ -51,10 +50,8 @@ struct BenchArguments {
   bool audit = false;
   std::optional<std::size_t> slurm;
   std::string sbatch;
-  // The arguments as given, for the process of a share of --slurm or of a library's episodes.
+  // The arguments as given, for the process of a share of --slurm.
   std::vector<std::string> arguments_of_part;
-  std::optional<std::string> only_run;  // the episodes of this run; its process reports to `parent`
-  int parent = 0;
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
   double images_limit_gb = BenchOptions{}.images_limit_gb;
@@ -84,18 +81,6 @@ std::filesystem::path usual_folder(const Suite& suite, bool varied) {
   return std::filesystem::path("out") / name;
 }
 
-/// The episodes of one run, in a process of their own.
-void run_only(const Suite& suite, EpisodeOptions episodes, const BenchArguments& options) {
-  die_with(options.parent);
-  ToParent parent;
-  episodes.only = options.only_run;
-  episodes.say = [&](std::string_view stage) { parent.say(stage); };
-  episodes.progress = [&](double share) { parent.share(share); };
-  episodes.status = [&](std::string_view status) { parent.status(status); };
-  for (const EpisodeRun& run : run_episodes(suite, episodes))
-    if (!run.failure.empty()) throw MachineError(run.failure);
-}
-
 /// Runs a suite of kidnappings, which has no queries.
 void run_kidnappings(const Suite& suite, const BenchArguments& options) {
   if (options.audit) refuse_episodes(suite, "asks no queries for --audit");
@@ -121,9 +106,6 @@ void run_kidnappings(const Suite& suite, const BenchArguments& options) {
       options.out.empty() ? usual_folder(suite, false) : std::filesystem::path(options.out);
   episodes.jobs = options.jobs;
   episodes.cache = cache_folder(options);
-  if (options.only_run) return run_only(suite, std::move(episodes), options);
-  episodes.arguments = {"bench", options.suite, "--out=" + episodes.out.string()};
-  std::ranges::copy(options.arguments_of_part, std::back_inserter(episodes.arguments));
   std::vector<std::string> names(std::begin(kEpisodeFiles), std::end(kEpisodeFiles));
   for (const RunSpec& run : episode_runs(suite))
     if (run.system.is_outside()) names.push_back(run.name + "/" + kOutsideLog);
@@ -282,8 +264,6 @@ void add_bench(CLI::App& app) {
                    "GB of disk, in --out, for images that runs share; 0 = each makes its own")
       ->check(number_between(0.0, 1e6));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
-  command->add_option("--only-run", options->only_run)->group("");  // for bench alone: not listed
-  command->add_option("--parent", options->parent)->group("");
   command->add_flag_callback(
       "--print-settings",
       [] {

@@ -88,7 +88,7 @@ Json system_json(const SystemSpec& system) {
     return {{"name", system.name}, {"system", name(system.kind)}, {"slam", slam}};
   }
   const OutsideProgram& p = system.outside;
-  if (p.mode == OutsideMode::kLibrary)
+  if (p.is_library())
     return {{"name", system.name},
             {"library", p.library},
             {"settings", p.settings},

@@ -237,8 +237,7 @@ class Pool {
 
   static std::string describe(const Running& ended, const ProcessEnd& end) {
     if (!ended.cut_off.empty()) return ended.cut_off;
-    if (end.signal != 0 || !end.reported)
-      return unreported_end(end, ended.what.job.spec.system, ended.process->status());
+    if (end.signal != 0 || !end.reported) return unreported_end(end, ended.process->status());
     return end.code == kBadInputCode ? std::string(kBadInputMark) + end.message : end.message;
   }
 

@@ -15,7 +15,6 @@
 #include "bench/systems/builtin.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/finished_map.hpp"
-#include "bench/systems/library.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "bench/systems/tampered.hpp"
@@ -288,13 +287,9 @@ Trajectory run_recorded(const RunSpec& spec, const World& world, const Sequence&
 }  // namespace
 
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, const fs::path& folder,
-                                    std::function<void(std::string_view)> status,
                                     const std::vector<fs::path>& hidden) {
   if (spec.system.is_outside()) {
     if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
-    if (spec.system.is_library())
-      return make_library_system(spec.system.outside, world.mapping->camera(), spec.seed,
-                                 folder / kOutsideLog, std::move(status));
     return make_conversation_system(program_of(spec, world, hidden), world.mapping->camera(),
                                     spec.seed, folder / kOutsideLog);
   }
@@ -348,9 +343,9 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   PathWatch program_paths(of_program);
   require_unchanged(world.held);
 
-  std::unique_ptr<System> inner =
-      tools.system ? tools.system(spec, world)
-                   : make_system(spec, world, tools.folder, tools.status, tools.hidden);
+  std::unique_ptr<System> inner = tools.system
+                                      ? tools.system(spec, world)
+                                      : make_system(spec, world, tools.folder, tools.hidden);
   if (inner == nullptr) {  // a program that only returns a trajectory: no queries
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
     run.estimate = run_recorded(spec, world, frames, tools, work, run.mapping.skipped);

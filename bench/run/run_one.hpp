@@ -23,16 +23,14 @@ struct RunTamper {
 /// What an outside program of a run prints, in the run's folder.
 inline constexpr const char* kOutsideLog = "outside.log";
 
-/// The system of a run: our own SLAM with the run's settings, or an outside one, either a program
-/// that exchanges messages with us or a shared library. Null for an outside program that processes
-/// a folder of recorded frames instead.
+/// The system of a run: our own SLAM with the run's settings, or an outside one that exchanges
+/// messages with us. Null for an outside program that processes a folder of recorded frames
+/// instead.
 /// @param folder  for the log of an outside program
-/// @param status  receives the current call into a library
 /// @param hidden  as in RunTools
 /// @throws InputError if settings are out of range; OutsideError if the program does not start.
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder,
-                                    std::function<void(std::string_view)> status = {},
                                     const std::vector<std::filesystem::path>& hidden = {});
 
 /// The stream that mapping draws from (bench/protocol/mapping.hpp).

@@ -60,12 +60,8 @@ double seconds(const timeval& t) {
 
 }  // namespace
 
-std::string unreported_end(const ProcessEnd& end, const SystemSpec& system,
-                           const std::string& status) {
-  std::string where = status.empty() ? "" : ", last seen at '" + status + "'";
-  if (system.is_library())
-    where += fmt::format(", with outside library '{}' ({}) in its process", system.name,
-                         system.outside.library);
+std::string unreported_end(const ProcessEnd& end, const std::string& status) {
+  const std::string where = status.empty() ? "" : ", last seen at '" + status + "'";
   const std::string last = end.message.empty() ? "" : ": " + end.message;
   if (end.signal != 0)
     return fmt::format("ended by signal {} ({}){}{}", end.signal, strsignal(end.signal), where,

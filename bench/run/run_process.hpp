@@ -30,20 +30,17 @@ inline constexpr char kStatusMark = '~';
 /// How a process ended.
 struct ProcessEnd {
   bool good = false;
-  int signal = 0;       ///< that killed it; 0 = it exited
-  int code = 0;         ///< exit code
-  std::string message;  ///< the last line of its standard error
-  /// The message is an error that Modelhouse itself reported. A library of the user's may end the
-  /// process with any code, and without one.
-  bool reported = false;
+  int signal = 0;         ///< that killed it; 0 = it exited
+  int code = 0;           ///< exit code
+  std::string message;    ///< the last line of its standard error
+  bool reported = false;  ///< the message is an error that Modelhouse itself reported
   RunCost cost;
 };
 
-/// Why a process ended that reported nothing: by which signal or exit code, what it was last doing,
-/// and whose code it was running.
+/// Why a process ended that reported nothing: by which signal or exit code, and what it was last
+/// doing.
 /// @param status  RunProcess::status()
-std::string unreported_end(const ProcessEnd& end, const SystemSpec& system,
-                           const std::string& status);
+std::string unreported_end(const ProcessEnd& end, const std::string& status);
 
 /// A process of our own executable that executes one run. It dies with this one. On standard output
 /// it prints the share of the work done, one per line, and the names of long stages.

@@ -241,13 +241,10 @@ fs::path place_of(const OutsideProgram& program, const std::string& text) {
 }  // namespace
 
 void require_program(const OutsideProgram& program) {
-  if (program.mode == OutsideMode::kLibrary) {
+  const std::string who = (program.place.empty() ? "" : program.place + ": ") + described(program);
+  if (program.is_library()) {
     if (const char* reason = why_unreadable(program.folder / program.library); reason != nullptr)
-      throw InputError(
-          fmt::format("{}outside library '{}': '{}' cannot be loaded: {}; has it been "
-                      "built?",
-                      program.place.empty() ? "" : program.place + ": ", program.name,
-                      program.library, reason));
+      throw InputError(fmt::format("{} cannot be loaded: {}; has it been built?", who, reason));
     return;
   }
   const std::vector<Word> words = words_of(program);
@@ -256,9 +253,7 @@ void require_program(const OutsideProgram& program) {
   const std::string& word = *first->token.text;
   if (word.empty() || word[0] == '-') return;
   const auto refuse = [&](const std::string& why) {
-    throw InputError(fmt::format("{}outside program '{}' ({}): '{}' cannot be started: {}",
-                                 program.place.empty() ? "" : program.place + ": ", program.name,
-                                 program.command, word, why));
+    throw InputError(fmt::format("{}: '{}' cannot be started: {}", who, word, why));
   };
   if (word.find('/') != std::string::npos) {
     const fs::path file = place_of(program, word);

@@ -74,14 +74,15 @@ std::string shell_quoted(std::string_view value) {
 }
 
 void validate(const OutsideProgram& program) {
-  const bool loaded = program.mode == OutsideMode::kLibrary;
+  limits(program, [&](const char* key, double value, const SettingRange& range, auto&&...) {
+    if (!allows(range, value))
+      throw InputError(
+          fmt::format("{}: {}: {} is outside {}", program.name, key, value, interval(range)));
+  });
+  if (program.is_library()) return;
   const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: {}: {}", program.name, loaded ? "library" : "command", what));
+    throw InputError(fmt::format("{}: command: {}", program.name, what));
   };
-  if (loaded) {
-    if (program.library.empty()) fail("is empty");
-    return;
-  }
   if (program.command.find_first_not_of(" \t\n") == std::string::npos) fail("is empty");
   const bool dataset = program.mode == OutsideMode::kTrajectory;
   const std::span<const std::string_view> known =
@@ -100,11 +101,12 @@ void validate(const OutsideProgram& program) {
     fail(fmt::format("{} stands within quotes: its value comes quoted", quoted));
   if (dataset && !writes_trajectory)
     fail("{trajectory} is missing: where is it to write its poses?");
-  limits(program, [&](const char* key, double value, const SettingRange& range, auto&&...) {
-    if (!allows(range, value))
-      throw InputError(
-          fmt::format("{}: {}: {} is outside {}", program.name, key, value, interval(range)));
-  });
+}
+
+std::string described(const OutsideProgram& program) {
+  return program.is_library()
+             ? fmt::format("outside library '{}' ({})", program.name, program.library)
+             : fmt::format("outside program '{}' ({})", program.name, program.command);
 }
 
 std::string fill_in(std::string_view command, std::string_view placeholder,

@@ -16,7 +16,6 @@ namespace mh {
 enum class OutsideMode {
   kTrajectory,    ///< receives a recorded folder, writes a trajectory
   kConversation,  ///< receives frame after frame over standard input and output
-  kLibrary,       ///< is loaded into this process and called
 };
 
 /// A SLAM system that a suite names by its command line or its shared library
@@ -29,14 +28,20 @@ struct OutsideProgram {
   double run_limit_s = 3600, reply_limit_s = 60, memory_limit_mb = 0, disk_limit_mb = 4096;
   /// Files that it reads in addition to those that the command names, relative to its folder.
   std::vector<std::string> inputs = {};
-  std::string library = {};   ///< in mode kLibrary the file to load, relative to the folder
-  std::string settings = {};  ///< its settings file, relative to the folder; empty: none
+  /// A shared library in place of a command, relative to the folder: modelhouse-library-host speaks
+  /// for it.
+  std::string library = {};
+  std::string settings = {};  ///< of the library, relative to the folder; empty: none
   /// Files and folders that it must not see; not from the suite.
   std::vector<std::filesystem::path> hidden = {};
   std::string place = {};  ///< "suite.yaml:12", for messages; empty: not from a file
+  bool is_library() const { return !library.empty(); }
 };
 
-/// Lists the limits of a command: visit(key, value, range, meaning, the only mode that it applies
+/// "outside program 'orb' (./orb {settings})", "outside library 'mine' (libmine.so)": for messages.
+std::string described(const OutsideProgram& program);
+
+/// Lists the limits of a program: visit(key, value, range, meaning, the only mode that it applies
 /// to; none: both).
 template <MaybeConst<OutsideProgram> P, class Visit>
 void limits(P& p, Visit&& visit) {
@@ -55,7 +60,7 @@ void limits(P& p, Visit&& visit) {
         both);
 }
 
-/// Refuses an empty command or library, limits out of range, an unknown placeholder and a
+/// Refuses an empty command, limits out of range, an unknown placeholder and a
 /// trajectory command without {trajectory}. Known placeholders: {dataset} {associations} {settings}
 /// {labels} {trajectory} {seed} in trajectory mode, {settings} {seed} in conversation mode;
 /// `${NAME}` is left to the shell.

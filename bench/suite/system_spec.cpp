@@ -16,9 +16,7 @@ constexpr Names<SystemKind, 2> kOurs{
 constexpr Names<OutsideMode, 2> kModes{
     {{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
 
-void read_command(YamlReader& node, OutsideProgram& program) {
-  program.command = node.string("command");
-  program.mode = one_of(node.at("protocol"), kModes);
+void read_limits(YamlReader& node, OutsideProgram& program) {
   limits(program, [&](const char* key, double& value, const SettingRange& range, const char*,
                       std::optional<OutsideMode> only) {
     const auto limit = node.find(key);
@@ -30,15 +28,11 @@ void read_command(YamlReader& node, OutsideProgram& program) {
 }
 
 void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& paths) {
-  program.mode = OutsideMode::kLibrary;
+  program.mode = OutsideMode::kConversation;
   program.library = node.string("library");
-  const auto refuse = [&](const char* key, auto&&...) {
-    if (const auto other = node.find(key))
-      other->fail("is of a command: a library runs in the bench's own process");
-  };
-  refuse("command");
-  refuse("protocol");
-  limits(program, refuse);
+  if (program.library.empty()) node.at("library").fail("is empty");
+  for (const char* key : {"command", "protocol"})
+    if (const auto other = node.find(key)) other->fail("is of a command: this is a library");
   if (const auto settings = node.find("settings")) {
     named_file(*settings, paths);
     program.settings = settings->as_string();
@@ -90,7 +84,7 @@ std::string_view name(SystemKind kind) {
   return kind == SystemKind::kOutside ? "outside" : name_of(kind, kOurs);
 }
 std::string_view name(OutsideMode mode) {
-  return mode == OutsideMode::kLibrary ? "library" : name_of(mode, kModes);
+  return name_of(mode, kModes);
 }
 
 std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
@@ -115,10 +109,13 @@ std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
   const bool is_library = node.find("library").has_value();
   const char* key = is_library ? "library" : "command";
   program.place = fmt::format("{}:{}", node.file(), node.at(key).line());
-  if (is_library)
+  if (is_library) {
     read_library(node, program, paths);
-  else
-    read_command(node, program);
+  } else {
+    program.command = node.string("command");
+    program.mode = one_of(node.at("protocol"), kModes);
+  }
+  read_limits(node, program);
   if (const auto inputs = node.find("inputs"))
     for (const YamlReader& input : inputs->items()) {
       named_file(input, paths);

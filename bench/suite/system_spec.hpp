@@ -16,7 +16,7 @@ namespace mh {
 enum class SystemKind { kSemantic, kPlain, kOutside };
 std::string_view name(SystemKind kind);
 
-/// The mode of an outside system: trajectory, conversation (as written in suites) or library.
+/// The mode of an outside system, as written in suites.
 std::string_view name(OutsideMode mode);
 
 /// A system under test, as a suite names it.
@@ -33,8 +33,6 @@ struct SystemSpec {
 
   // Its capabilities; no other code checks its kind.
   bool is_outside() const { return kind == SystemKind::kOutside; }
-  /// Its code runs in the process of the bench that asks it.
-  bool is_library() const { return is_outside() && outside.mode == OutsideMode::kLibrary; }
   bool sees_labels() const { return kind != SystemKind::kPlain; }
   /// Has the settings of SlamConfig. It needs a vocabulary, and reports candidates, matches and how
   /// far a relocalization got; for an outside system all of that is optional.
@@ -53,7 +51,7 @@ struct SystemSpec {
 /// system: plain, slam: {...}}, or a mapping {name, command, protocol: trajectory | conversation}
 /// with `run_limit_s`, `reply_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
 /// `repeatable: false`, and `inputs`, a list of files. The command runs in the suite's folder. Or a
-/// mapping {name, library} with `settings`, a file, `repeatable` and `inputs`.
+/// mapping {name, library} with `settings`, a file, and the rest of these keys.
 /// @returns that system; a command with `vary: {n: [500, 1000]}` is one for each combination of
 /// values, which stand for {n} in it and in names: "orb_n_500", "orb_n_1000"
 /// @throws InputError naming file, line, field and value; an input that must exist and does not.

@@ -157,7 +157,7 @@ void ChildProcess::fail(std::string_view what) {
   std::string said = last_line_of(log_file_);
   if (said.starts_with("modelhouse: ")) said.clear();  // the watcher's note; reported separately
   said = told(without_folders(std::move(said), folders), kMostSaid);
-  throw OutsideError(fmt::format("outside program '{}' ({}) {}{}", program_.name, program_.command,
+  throw OutsideError(fmt::format("{} {}{}", described(program_),
                                  told(without_folders(std::string(what), folders), kMostTold),
                                  said.empty() ? "" : "; it last wrote: " + said));
 }

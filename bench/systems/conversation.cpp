@@ -28,14 +28,15 @@ using Request = nlohmann::ordered_json;
 using Json = nlohmann::json;  // of a reply; with many keys, the cost stays linear in its length
 
 constexpr int kProtocol = 1;
+constexpr const char* kLibraryHost = "modelhouse-library-host";
 constexpr double kFarewell_s = 5;  // docs/outside_systems.md
+constexpr std::size_t kMostOfError = 300;
 
-std::string shortened(std::string_view line) {
-  constexpr std::size_t kMost = 120;
-  std::string text(line.substr(0, kMost));
+std::string shortened(std::string_view line, std::size_t most = 120) {
+  std::string text(line.substr(0, most));
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
-  return line.size() > kMost ? text + "..." : text;
+  return line.size() > most ? text + "..." : text;
 }
 
 /// k4 to k6 only where they are not 0.
@@ -56,6 +57,18 @@ Request json_of(const Camera& camera) {
                   {"bf", camera.baseline_m * camera.fx_px}};
   if (d.is_rational()) json.update({{"k4", d.k4}, {"k5", d.k5}, {"k6", d.k6}});
   return json;
+}
+
+/// Starts the program that speaks for a library. It lies beside this program.
+std::string host_command(const OutsideProgram& program, std::uint64_t seed) {
+  const auto quoted = [&](const fs::path& file) {
+    return shell_quoted(fs::absolute(file).string());
+  };
+  const fs::path own = fs::read_symlink("/proc/self/exe");
+  std::string command = fmt::format("exec {} {} {}", quoted(own.parent_path() / kLibraryHost),
+                                    quoted(program.folder / program.library), seed);
+  if (!program.settings.empty()) command += " " + quoted(program.folder / program.settings);
+  return command;
 }
 
 /// The exchange of lines: numbers requests and checks replies.
@@ -92,7 +105,7 @@ class Conversation {
     const std::string line = child_.read_line(reply_limit_s_, doing_);
     Json reply = parse(line);
     if (const auto it = reply.find("error"); it != reply.end())
-      fail(fmt::format("reported an error: {}", shortened(it->dump())));
+      fail(fmt::format("reported an error: {}", shortened(it->dump(), kMostOfError)));
     const auto id = reply.find("id");
     if (id == reply.end() || !id->is_number_integer())
       fail(fmt::format("gave no request number (\"id\") in '{}'", shortened(line)));
@@ -151,6 +164,7 @@ class Conversation {
   }
   std::string command(const OutsideProgram& program, const Camera& camera, std::uint64_t seed) {
     write_atomically(settings(), settings_text(camera));
+    if (program.is_library()) return host_command(program, seed);
     return expand_command(program.command,
                           {{"settings", settings().string()}, {"seed", std::to_string(seed)}});
   }

@@ -157,7 +157,7 @@ MappedSystem map_tour(const RunSpec& spec, const EpisodeWorld& place, const MapT
   const Sequence& frames = *place.mapping;
   const RandomStream stream = RandomStream(spec.seed).fork(kTourStream);
   MappedSystem mapped;
-  mapped.system = make_system(spec, place.world, tools.folder, tools.status, tools.hidden);
+  mapped.system = make_system(spec, place.world, tools.folder, tools.hidden);
   const Unlabeled unlabeled(frames);
   double furthest = 0;
   const auto map_now = [&] {

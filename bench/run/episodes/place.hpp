@@ -78,7 +78,6 @@ struct MapTools {
   std::vector<std::filesystem::path> hidden = {};  ///< as RunTools
   std::function<void(std::string_view)> say = [](std::string_view) {};  ///< as EpisodeOptions
   std::function<void(double)> progress = [](double) {};
-  std::function<void(std::string_view)> status = {};  ///< receives what a library is asked for
 };
 
 /// Maps the tour with the system of a run, or takes its map from the cache, and makes the robot's

@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/run/episodes/episode_store.hpp"
-#include "bench/run/episodes/own_process.hpp"
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/find_program.hpp"
 #include "bench/suite/inputs.hpp"
@@ -208,11 +207,10 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
     }
   }
   const std::size_t of_run = suite.episodes->variants.size() * suite.episodes->starts;
-  const std::size_t all = of_run * (options.only ? 1 : runs.size());
+  const std::size_t all = of_run * runs.size();
   std::set<std::string> checked;
   const auto check = [&](const EpisodeRun& run) {  // before anything is mapped
-    if (!options.only && checked.insert(run.spec.environment.name).second)
-      require_goals(run.spec, *suite.episodes);
+    if (checked.insert(run.spec.environment.name).second) require_goals(run.spec, *suite.episodes);
   };
   const std::filesystem::path file = options.out / "episodes.sqlite";
   if (!is_there(file)) std::ranges::for_each(runs, check);  // a refused suite leaves no file
@@ -220,18 +218,13 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
   for (const EpisodeRun& run : runs)
     if (store.load(run.key).size() < of_run) check(run);
   std::size_t done = 0;
-  const auto report = [&](double more) {
-    options.progress((static_cast<double>(done) + more) / static_cast<double>(all));
-  };
   const std::function<void()> one_done = [&] {
-    ++done;
-    report(0);
+    options.progress(static_cast<double>(++done) / static_cast<double>(all));
   };
   std::optional<EpisodeWorld> world;
   std::optional<RunSpec> built_for;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     EpisodeRun& run = runs[r];
-    if (options.only && run.spec.name != *options.only) continue;
     std::map<Slot, EpisodeScore> known;
     for (EpisodeScore& score : store.load(run.key))
       known.emplace(Slot{score.variant, score.start}, std::move(score));
@@ -253,32 +246,23 @@ std::vector<EpisodeRun> run_episodes(const Suite& given, const EpisodeOptions& o
         throw_changed(run.spec);
       const std::filesystem::path folder = options.out / run.spec.name;
       if (run.spec.system.is_outside()) make_output_folder(folder);
-      if (run.spec.system.is_library() && !options.arguments.empty()) {
-        const auto episodes = static_cast<double>(todo.size());
-        run.failure =
-            run_in_own_process(run.spec, options, [&](double share) { report(share * episodes); });
-        done += todo.size();
-      } else {
-        try {
-          MappedSystem mapped = map_tour(run.spec, *world,
-                                         {.folder = folder,
-                                          .maps = cache,
-                                          .key = keys[r].map,
-                                          .hidden = {options.out, cache.folder()},
-                                          .say = options.say,
-                                          .status = options.status});
-          options.say(fmt::format(
-              "{}: {} of {} frames mapped, {}; {}", run.spec.name, mapped.tracked, mapped.offered,
-              counted(mapped.map.objects.size(), "object"), counted(todo.size(), "kidnapping")));
-          const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
-          Kidnapper(suite, run, program.record(), store, one_done).work(*world, mapped, todo, jobs);
-          mapped.system->finish();
-        } catch (const OutsideError& error) {
-          run.failure = error.what();
-        }
+      try {
+        MappedSystem mapped = map_tour(run.spec, *world,
+                                       {.folder = folder,
+                                        .maps = cache,
+                                        .key = keys[r].map,
+                                        .hidden = {options.out, cache.folder()},
+                                        .say = options.say});
+        options.say(fmt::format("{}: {} of {} frames mapped, {}; {}", run.spec.name, mapped.tracked,
+                                mapped.offered, counted(mapped.map.objects.size(), "object"),
+                                counted(todo.size(), "kidnapping")));
+        const int jobs = run.spec.system.is_outside() ? 1 : options.jobs;
+        Kidnapper(suite, run, program.record(), store, one_done).work(*world, mapped, todo, jobs);
+        mapped.system->finish();
+      } catch (const OutsideError& error) {
+        run.failure = error.what();
       }
-      if (!run.failure.empty() && !options.only)
-        options.say(fmt::format("{}: {}", run.spec.name, run.failure));
+      if (!run.failure.empty()) options.say(fmt::format("{}: {}", run.spec.name, run.failure));
       for (EpisodeScore& score : store.load(run.key))
         known.insert_or_assign(Slot{score.variant, score.start}, std::move(score));
     }

@@ -26,18 +26,10 @@ struct EpisodeOptions {
   int jobs = 1;               ///< episodes at a time; never changes a result
   /// For light and finished maps; nullopt: nothing is kept.
   std::optional<std::filesystem::path> cache;
-  /// With these arguments this program runs the same episodes. Those of a library then get a
-  /// process of their own, by `--only-run NAME --parent PID` in addition. Empty: all run in this
-  /// one.
-  std::vector<std::string> arguments = {};
-  std::optional<std::string> only =
-      {};                             ///< name of the one run to work at; the others are as found
   std::optional<std::size_t> starts;  ///< fewer than the suite's: the first ones, for a quick look
   std::function<void(std::string_view)> say = [](std::string_view) {};
   /// Share of all episodes that are done, in [0, 1].
   std::function<void(double)> progress = [](double) {};
-  /// What a library is being asked for.
-  std::function<void(std::string_view)> status = [](std::string_view) {};
 };
 
 /// Runs of a suite with episodes, without their results: for each environment, level and system;

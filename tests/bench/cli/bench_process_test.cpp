@@ -565,20 +565,22 @@ TEST(BenchProcess, ACrashOfALibraryIsAFailureOfItsRunAlone) {
   const fs::path suite = write_suite("libraries", systems + "plain]");
   EXPECT_EQ(run(bench(suite, "libraries")), 3);
   const std::string reported = errors();
-  for (const char* line :
-       {"crash-exact-pepper-0: failed: ended by signal 6 (Aborted), last seen at 'track (call 3)', "
-        "with outside library 'crash' (libtiny.so) in its process\n",
-        "exit-exact-pepper-0: failed: ended without a result, last seen at 'track (call 3)', with "
-        "outside library 'exit' (libtiny.so) in its process\n",
-        "nan-boxes-pepper-0: failed: outside library 'nan' (libtiny.so) gave a pose of [nan, 0, 0, "
-        "0, 0, 0, 1]: a number is not finite, in track\n"})
+  for (
+      const char* line :
+      {"crash-exact-pepper-0: failed: outside library 'crash' (libtiny.so) was killed by signal 6 "
+       "during track (request 2)\n",
+       "exit-exact-pepper-0: failed: outside library 'exit' (libtiny.so) exited with code 0 during "
+       "track (request 2)\n",
+       "nan-boxes-pepper-0: failed: outside library 'nan' (libtiny.so) reported an error: \"gave a "
+       "pose of [nan, 0, 0, 0, 0, 0, 1]: a number is not finite\", replying to track (request "
+       "2)\n"})
     EXPECT_NE(reported.find(line), std::string::npos) << line << reported;
   EXPECT_EQ(reported.find("nonsense"), std::string::npos) << reported;
   EXPECT_EQ(runs_in(test_folder() / "libraries"), 9);
   // What it prints is neither shown nor mistaken for the bench's own output.
   const std::string said =
       content(test_folder() / "libraries" / "print-exact-pepper-0" / "outside.log");
-  EXPECT_TRUE(said.starts_with("0.5\n~nonsense\n0.5\n")) << said;
+  EXPECT_NE(said.find("0.5\n~nonsense\n0.5\n"), std::string::npos) << said;
   EXPECT_TRUE(said.ends_with("goodbye\n")) << said;
 
   // After a rebuild of the library, its runs are repeated.

@@ -169,7 +169,7 @@ TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideSystemButItsFolder) {
   free.insert("/system/outside/folder");
   EXPECT_EQ(free_places(theirs_, run_key_of), free);
   theirs_.system.outside = {.name = "vo",
-                            .mode = OutsideMode::kLibrary,
+                            .mode = OutsideMode::kConversation,
                             .folder = folder_,
                             .inputs = {file("weights").string()},
                             .library = file("libvo.so").string(),

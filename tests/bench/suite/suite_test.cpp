@@ -615,7 +615,7 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
   };
   const Suite read = suite("library: libvo.so, settings: vo.yaml, inputs: [weights]");
   const SystemSpec& vo = read.systems.front();
-  EXPECT_EQ(vo.outside.mode, OutsideMode::kLibrary);
+  EXPECT_EQ(vo.outside.mode, OutsideMode::kConversation);
   EXPECT_TRUE(vo.is_outside());
   EXPECT_FALSE(vo.takes_settings());
   EXPECT_NO_THROW(require_program(vo.outside));
@@ -649,15 +649,16 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
     EXPECT_NE(what.find(part), std::string::npos) << what;
   };
   expect_refused("library: libgone.so",
-                 "outside library 'vo': 'libgone.so' cannot be loaded: no "
-                 "such file; has it been built?");
+                 "outside library 'vo' (libgone.so) cannot be loaded: no such file; has it been "
+                 "built?");
   expect_refused("library: libvo.so, command: slam",
-                 "systems[0].command: is of a command: a library runs in the bench's own process");
+                 "systems[0].command: is of a command: this is a library");
   expect_refused("library: libvo.so, protocol: conversation",
                  "systems[0].protocol: is of a command");
   expect_refused("library: libvo.so, settings: gone.yaml",
                  "gone.yaml' cannot be read: no such file");
   expect_refused("library: ''", "library: is empty");
+  expect_refused("library: libvo.so, run_limit_s: 5", "applies only to protocol 'trajectory'");
   expect_refused("command: slam, protocol: library", "'library' is not one of");
 }
 

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Systems in shared libraries: a small one in C99 that does as its settings file says.
-#include <signal.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <clocale>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <limits>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bench/protocol/mapping.hpp"
 #include "bench/protocol/query.hpp"
-#include "bench/systems/library.hpp"
+#include "bench/systems/conversation.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "slam/core/labels.hpp"
 #include "slam/io/files.hpp"
@@ -39,12 +35,12 @@ class LibrarySystems : public testing::Test {
 
   OutsideProgram library(const std::string& name) const {
     return {.name = "theirs",
-            .mode = OutsideMode::kLibrary,
+            .mode = OutsideMode::kConversation,
             .folder = TINY_FOLDER,
             .library = "lib" + name + ".so"};
   }
   std::unique_ptr<System> make(const OutsideProgram& program) const {
-    return make_library_system(program, camera_, 0, folder_ / "log");
+    return make_conversation_system(program, camera_, 0, folder_ / "log");
   }
   std::unique_ptr<System> tiny(const std::string& words = "") const {
     OutsideProgram program = library("tiny");
@@ -117,7 +113,7 @@ TEST_F(LibrarySystems, AreAskedFrameByFrame) {
   EXPECT_EQ(report.status, TrackStatus::kLost) << "it has no function for that";
   report = second->feed(frame, RandomStream(3));
   EXPECT_EQ(report.status, TrackStatus::kRelocalized);
-  EXPECT_EQ(report.inliers, 2) << "sessions";
+  EXPECT_EQ(report.inliers, 1) << "a query begins with its first frame";
   EXPECT_EQ(report.relocalization, RelocalizationStage::kVerified);
   EXPECT_EQ(report.candidates.keyframes, 1);
   EXPECT_EQ(report.candidates.final, 1);
@@ -153,7 +149,8 @@ TEST_F(LibrarySystems, PosesInAMapThatWasGivenUpAreVoid) {
   for (const std::size_t i : {3, 5}) system->track(fake_frame(i, RandomStream(1)), RandomStream(2));
   ASSERT_EQ(system->trajectory().size(), 1U);
   EXPECT_EQ(system->trajectory()[0].stamp_ns, 5);
-  EXPECT_EQ(error("anew"), "gave up a map that must not change any more, in relocalize");
+  EXPECT_EQ(error("anew"),
+            "gave up a map that must not change any more, replying to relocalize (request 5)");
 }
 
 TEST_F(LibrarySystems, MayTellTheFinishedTrajectory) {
@@ -167,47 +164,55 @@ TEST_F(LibrarySystems, MayTellTheFinishedTrajectory) {
 }
 
 TEST_F(LibrarySystems, ThatCannotBeLoadedSayWhy) {
-  EXPECT_EQ(load_error("nothing"), "cannot be loaded: no such file, in loading");
+  const auto hello = [](const std::string& fault) {
+    return "reported an error: \"" + fault + "\", replying to hello (request 1)";
+  };
+  EXPECT_TRUE(load_error("nothing").starts_with("reported an error: \"cannot be loaded: "));
   EXPECT_EQ(load_error("tiny_nameless"),
-            "has no function mh_make_system: is it extern \"C\"?, in loading");
+            hello("has no function mh_make_system: is it extern \\\"C\\\"?"));
   EXPECT_EQ(load_error("tiny_of_tomorrow"),
-            "was built with version 99 of modelhouse/system.h, the bench has version 1, in "
-            "mh_make_system");
-  EXPECT_EQ(load_error("tiny_throwing"), "let an exception escape: no camera, in mh_make_system");
+            hello("was built with version 99 of modelhouse/system.h, the bench has version 1"));
+  EXPECT_EQ(load_error("tiny_throwing"), hello("let an exception escape: no camera"));
   std::ofstream(folder_ / "libtext.so") << "no library";
   OutsideProgram text = library("text");
   text.folder = folder_;
   const std::string what = error_of([&] { make(text); });
-  EXPECT_TRUE(what.starts_with("cannot be loaded: ")) << what;
+  EXPECT_TRUE(what.starts_with("reported an error: \"cannot be loaded: ")) << what;
   EXPECT_EQ(what.find(folder_.string()), std::string::npos) << "the same in any folder: " << what;
   EXPECT_EQ(error("null"),
-            fmt::format("made no system: no vocabulary for {} classes, in mh_make_system",
-                        classes().size()));
-  EXPECT_EQ(error("empty"), "left the function relocalize empty, in mh_make_system");
-  text.library.clear();
-  EXPECT_THROW(make(text), InputError);
+            hello(fmt::format("made no system: no vocabulary for {} classes", classes().size())));
+  EXPECT_EQ(error("empty"), hello("left the function relocalize empty"));
 }
 
 TEST_F(LibrarySystems, ThatMisbehaveFailWithOneLine) {
   EXPECT_EQ(error(""), "no error");
-  EXPECT_EQ(error("error"), "reported an error (7): no memory?left, in track");
-  EXPECT_EQ(error("speechless"), "reported an error (7), in track");
-  EXPECT_EQ(error("nan"),
-            "gave a pose of [nan, 0, 0, 0, 0, 0, 1]: a number is not finite, in track");
-  EXPECT_EQ(error("far"),
-            "gave a pose more than 1e+08 m away: [-1000000000, 0, 0, 0, 0, 0, 1], in track");
-  EXPECT_EQ(error("norm"), "gave a pose whose quaternion has norm 2, in track");
-  EXPECT_EQ(error("count"), "gave inliers of -2: expected a count, in track");
+  EXPECT_EQ(error("error"),
+            "reported an error: \"reported an error (7): no memory\\nleft\", replying to track "
+            "(request 2)");
+  EXPECT_EQ(error("speechless"),
+            "reported an error: \"reported an error (7)\", replying to track (request 2)");
+  EXPECT_EQ(
+      error("nan"),
+      "reported an error: \"gave a pose of [nan, 0, 0, 0, 0, 0, 1]: a number is not finite\", "
+      "replying to track (request 2)");
+  EXPECT_EQ(
+      error("far"),
+      "gave a pose more than 1e+08 m away: [-1000000000, 0, 0, 0, 0, 0, 1], replying to track "
+      "(request 2)");
+  EXPECT_EQ(error("norm"),
+            "gave a pose whose quaternion has norm 2, replying to track (request 2)");
+  EXPECT_EQ(error("count"), "gave inliers of -2: expected a count, replying to track (request 2)");
   EXPECT_EQ(error("stage"),
-            "gave a pose and the stage \"pnp\", which is one of failure, in relocalize");
+            "gave a pose and the stage \"pnp\", which is one of failure, replying to relocalize "
+            "(request 5)");
   EXPECT_EQ(error("candidates"),
-            "gave candidates of 2 after 1: a step cannot leave more than the one before it, in "
-            "relocalize");
+            "gave candidates of 2 after 1: a step cannot leave more than the one before it, "
+            "replying to relocalize (request 5)");
   EXPECT_EQ(error("trajectory twice"),
-            "gave two poses at 0.000000007 in its trajectory, in trajectory");
+            "gave two poses at 0.000000007 in its trajectory, replying to freeze (request 3)");
   EXPECT_EQ(error("trajectory unseen"),
-            "gave a pose at 0.000000099 in its trajectory, a frame that it never saw, in "
-            "trajectory");
+            "gave a pose at 0.000000099 in its trajectory, a frame that it never saw, replying to "
+            "freeze (request 3)");
 }
 
 TEST_F(LibrarySystems, PrintToTheLogAndNotToTheBench) {
@@ -215,30 +220,22 @@ TEST_F(LibrarySystems, PrintToTheLogAndNotToTheBench) {
   {
     const auto system = tiny("print");
     system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
+    system->finish();
   }
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(read_file(folder_ / "log"), "0.5\n~nonsense\ngoodbye\n");
+  EXPECT_TRUE(read_file(folder_ / "log").ends_with("0.5\n~nonsense\ngoodbye\n"));
 }
 
-TEST_F(LibrarySystems, LeaveTheProcessAsItWas) {
-  const auto before = std::filesystem::current_path();
-  const std::string locale = std::setlocale(LC_ALL, nullptr);
-  const mode_t mask = umask(022);
-  const auto system = tiny("wander");
-  system->track(fake_frame(7, RandomStream(1)), RandomStream(2));
-  EXPECT_EQ(std::filesystem::current_path(), before);
-  EXPECT_EQ(std::setlocale(LC_ALL, nullptr), locale);
-  EXPECT_EQ(umask(mask), 022U);
-}
-
-TEST_F(LibrarySystems, LeaveTheFloatingPointModeAsItWas) {
-  load_error("tiny_throwing");
-  const volatile double least = std::numeric_limits<double>::min();
-  EXPECT_GT(least / 2, 0) << "what is very small counts as zero";
-}
-
-TEST_F(LibrarySystems, AbortWithTheirProcess) {
-  EXPECT_EXIT(error("crash"), testing::KilledBySignal(SIGABRT), "");
+TEST_F(LibrarySystems, HaveAProcessAndLimitsOfTheirOwn) {
+  EXPECT_EQ(error("crash"), "was killed by signal 6 during track (request 2)");
+  EXPECT_EQ(error("exit"), "exited with code 0 during track (request 2)");
+  OutsideProgram program = library("tiny");
+  std::ofstream(folder_ / "settings") << "sleep";
+  program.settings = (folder_ / "settings").string();
+  program.reply_limit_s = 0.2;
+  EXPECT_EQ(
+      error_of([&] { make(program)->track(fake_frame(7, RandomStream(1)), RandomStream(2)); }),
+      "did not reply to track (request 2) within 0.2 s");
 }
 
 }  // namespace

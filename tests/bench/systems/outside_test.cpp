@@ -11,7 +11,6 @@
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/score.hpp"
 #include "bench/systems/conversation.hpp"
-#include "bench/systems/library.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "scenes/recordings/frame_files.hpp"
 #include "scenes/training/training.hpp"
@@ -72,8 +71,9 @@ class OutsideOdometry : public testing::Test {
         camera(), 0, folder_ / "log");
   }
   std::unique_ptr<System> load() const {
-    return make_library_system({.name = "vo", .mode = OutsideMode::kLibrary, .library = VO_LIBRARY},
-                               camera(), 0, folder_ / "log");
+    return make_conversation_system(
+        {.name = "vo", .mode = OutsideMode::kConversation, .library = VO_LIBRARY}, camera(), 0,
+        folder_ / "log");
   }
   static std::unique_ptr<System> mapped(std::unique_ptr<System> system) {
     map_sequence(*system, frames(), {}, RandomStream(1));

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A system in C99 that stands still: the least that a library must do. Its settings file holds the
  * words of what it is to do wrong; a word that is not known does nothing. */
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <modelhouse/system.h>
@@ -45,11 +43,7 @@ static int track(void* self, const mh_frame* frame, mh_reply* reply) {
   tiny* t = self;
   if (told(t, "crash")) abort();
   if (told(t, "exit")) exit(0);
-  if (told(t, "wander")) {
-    if (chdir("/") != 0) return 1;
-    umask(0777);
-    setlocale(LC_ALL, "C.UTF-8");
-  }
+  if (told(t, "sleep")) sleep(5);
   if (told(t, "print")) puts("0.5\n~nonsense");
   if (told(t, "error")) {
     snprintf(t->message, MH_MESSAGE_SIZE, "no memory\nleft");
