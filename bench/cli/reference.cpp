@@ -210,7 +210,7 @@ std::string suite() {
   SettingsTables top, rest;
   top.section("At the top");
   fields(suite, top);
-  rest.section("systems: limits of a command");
+  rest.section("systems: limits of an outside system");
   limits(program, [&](const char* key, double value, const SettingRange& range, const char* meaning,
                       std::optional<OutsideMode> only) {
     const std::string where = only ? fmt::format("protocol `{}`: ", name(*only)) : "";

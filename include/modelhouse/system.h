@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A SLAM system as a shared library that Modelhouse loads (docs/outside_systems.md, "In the same
- * process"). C99 and C++; this header is self-contained, so a copy of it is all you need.
+/* A SLAM system as a shared library (docs/outside_systems.md, "Library"), loaded by a process of its
+ * own beside the bench. C99 and C++; this header is self-contained, so a copy of it is all you need.
  *
  * The library defines mh_make_system(). A suite names the library:
  *   systems:
