@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes ${OUT}: a C++ source with the text of every file in scenes/categories and scenes/floors.
+# Writes ${OUT}: a C++ source with the text of every file in scenes/generate/categories and scenes/generate/floors.
 cmake_minimum_required(VERSION 3.25)
-file(GLOB files ${ROOT}/scenes/categories/*.yaml ${ROOT}/scenes/floors/*.yaml)
+file(GLOB files ${ROOT}/scenes/generate/categories/*.yaml ${ROOT}/scenes/generate/floors/*.yaml)
 list(SORT files)
 set(entries "")
 foreach(file IN LISTS files)

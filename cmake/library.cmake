@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# made/rooms.txt holds each target's sources and links: tests/rooms holds the includes to them.
-file(WRITE ${PROJECT_BINARY_DIR}/made/rooms.txt "")
-function(note_room name sources public private)
+# made/targets.txt holds each target's sources and links: tests/architecture holds the includes to them.
+file(WRITE ${PROJECT_BINARY_DIR}/made/targets.txt "")
+function(note_target name sources public private)
   set(named "")
   foreach(source IN LISTS sources)
     cmake_path(ABSOLUTE_PATH source)
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
     list(APPEND named ${source})
   endforeach()
-  file(APPEND ${PROJECT_BINARY_DIR}/made/rooms.txt "${name}|${named}|${public}|${private}\n")
+  file(APPEND ${PROJECT_BINARY_DIR}/made/targets.txt "${name}|${named}|${public}|${private}\n")
 endfunction()
 
 # decides(KEY PATTERN...): files that decide what stands under a key of results or of the cache
@@ -66,5 +66,5 @@ function(mh_library name)
       endif()
     endforeach()
   endforeach()
-  note_room(${name} "${sources}" "${ARG_PUBLIC}" "${ARG_PRIVATE}")
+  note_target(${name} "${sources}" "${ARG_PUBLIC}" "${ARG_PRIVATE}")
 endfunction()

@@ -12,7 +12,7 @@
 #include <opencv2/core.hpp>
 
 #include "scenes/image_file.hpp"
-#include "scenes/training/training.hpp"
+#include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/render/parallel.hpp"
 #include "sim/render/renderer.hpp"

@@ -21,7 +21,7 @@
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/io/error.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace {

@@ -18,7 +18,7 @@
 #include "slam/io/settings_io.hpp"
 #include "slam/io/suggest.hpp"
 #include "slam/io/text_file.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace {

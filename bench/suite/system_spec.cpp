@@ -6,7 +6,7 @@
 #include "bench/suite/names.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/io/error.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace {

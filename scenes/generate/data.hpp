@@ -14,8 +14,8 @@ inline constexpr std::array<std::string_view, 12> kCategoryNames = {
 /// Floors of many like rooms, besides the paper's categories.
 inline constexpr std::array<std::string_view, 2> kFloorNames = {"hotel", "office_floor"};
 
-/// The text of scenes/categories/NAME.yaml or scenes/floors/NAME.yaml, embedded in the program: a
-/// reference to a generated scene needs no file.
+/// The text of scenes/generate/categories/NAME.yaml or scenes/generate/floors/NAME.yaml, embedded
+/// in the program: a reference to a generated scene needs no file.
 std::string_view generator_data(std::string_view name);
 
 }  // namespace mh

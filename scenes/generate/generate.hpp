@@ -25,8 +25,8 @@ inline constexpr std::string_view kGeneratedPrefix = "generated:";
 GeneratedReference parse_generated(std::string_view source);
 std::string to_string(const GeneratedReference& reference);
 
-/// An environment drawn from a category's grammar (scenes/categories/), as a house plan for
-/// build_house. The same category and seed give the same text. Nothing overlaps, doors can be
+/// An environment drawn from a category's grammar (scenes/generate/categories/), as a house plan
+/// for build_house. The same category and seed give the same text. Nothing overlaps, doors can be
 /// opened, and a robot 0.52 m wide can get from every place where it fits to every other.
 struct GeneratedPlan {
   std::string name;  ///< "bathroom-3"

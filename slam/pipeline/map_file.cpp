@@ -17,7 +17,7 @@
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "slam/map/archive.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace archive {

@@ -293,7 +293,7 @@ INSTANTIATE_TEST_SUITE_P(EveryCategory, GeneratedScene, testing::ValuesIn(sample
                          });
 
 TEST(Generate, DrawsFromManyMaterialsOfWhichNoneTrainedTheVocabulary) {
-  // The kinds of scenes/training are not among those that a plan can name at all.
+  // The kinds of scenes/vocabulary_rooms are not among those that a plan can name at all.
   for (const auto& [name, list] : palettes().lists)
     for (const PaletteEntry& entry : list)
       EXPECT_NE(std::ranges::find(material_kinds(), entry.kind), material_kinds().end()) << name;

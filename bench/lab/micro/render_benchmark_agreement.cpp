@@ -11,7 +11,7 @@
 
 #include "bench/lab/micro/render_benchmark_room.hpp"
 #include "scenes/load.hpp"
-#include "scenes/training/training.hpp"
+#include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
 #include "sim/render/agreement.hpp"
 #include "sim/render/bake.hpp"
 #include "slam/io/error.hpp"

@@ -16,7 +16,7 @@
 #include "scenes/recordings/tum_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
 namespace mh {

@@ -32,7 +32,7 @@
 #include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

@@ -13,7 +13,7 @@
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "scenes/recordings/frame_files.hpp"
-#include "scenes/training/training.hpp"
+#include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/files.hpp"

@@ -9,7 +9,7 @@
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/label_images.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {

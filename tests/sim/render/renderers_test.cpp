@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "scenes/training/training.hpp"
+#include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
 #include "sim/render/agreement.hpp"
 #include "sim/render/color.hpp"
 #include "sim/render/renderer.hpp"

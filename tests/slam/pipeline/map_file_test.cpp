@@ -13,7 +13,7 @@
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "slam/pipeline/map_file.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
 namespace mh {

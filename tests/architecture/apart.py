@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""apart.py ROOMS ROOT: what drives a robot cannot reach the truth.
+"""apart.py TARGETS ROOT: what drives a robot cannot reach the truth.
 
 By the link lines: `robots` links, directly or through others, nothing but the core: no scene, no
 simulator, no bench. By its files: none includes a header of those.
@@ -9,25 +9,25 @@ import os
 import re
 import sys
 
-from rooms import read_rooms
+from links import read_targets
 
 MAY = {"robots", "core", "io"}
 TRUTH = ("scenes/", "sim/", "bench/")
 
 
-def linked(rooms, name, found):
+def linked(targets, name, found):
     """Every target that a link to `name` brings along."""
     if name not in found:
         found.add(name)
-        _, public, private = rooms[name]
+        _, public, private = targets[name]
         for link in public + private:
-            linked(rooms, link, found)
+            linked(targets, link, found)
     return found
 
 
-def faults(rooms, root):
+def faults(targets, root):
     """A line for each way from the navigation to the truth."""
-    found = [f"robots links {name}" for name in sorted(linked(rooms, "robots", set()) - MAY)]
+    found = [f"robots links {name}" for name in sorted(linked(targets, "robots", set()) - MAY)]
     folder = os.path.join(root, "robots/navigation")
     for file in sorted(os.listdir(folder)):
         with open(os.path.join(folder, file), encoding="utf-8") as text:
@@ -39,6 +39,6 @@ def faults(rooms, root):
 
 if __name__ == "__main__":
     with open(sys.argv[1], encoding="utf-8") as made:
-        lines = faults(read_rooms(made.read()), sys.argv[2])
+        lines = faults(read_targets(made.read()), sys.argv[2])
     print("\n".join(lines) or "the navigation cannot reach the truth")
     sys.exit(bool(lines))

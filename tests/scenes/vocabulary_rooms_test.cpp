@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/training/training.hpp"
+#include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "scenes/materials/materials.hpp"
-#include "scenes/training/patterns.hpp"
+#include "scenes/vocabulary_rooms/patterns.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/training/training.hpp"
+#include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "scenes/dice.hpp"
-#include "scenes/training/patterns.hpp"
+#include "scenes/vocabulary_rooms/patterns.hpp"
 #include "slam/core/random.hpp"
 #include "slam/io/error.hpp"
 

@@ -19,7 +19,7 @@ CHANGES = {  # a file, and the keys that it changes
     "slam/semantics/candidate_selection.hpp": {"RUN"},
     "slam/optimize/bundle.cpp": {"RUN"},
     "slam/detect/heads.cpp": {"DETECT", "RUN"},
-    "scenes/categories/office.yaml": {"LIGHT", "RUN"},
+    "scenes/generate/categories/office.yaml": {"LIGHT", "RUN"},
     "scenes/recordings/tum_folder.cpp": {"LIGHT", "RUN"},
     "robots/navigation/plan.cpp": {"RUN"},
     "sim/render/bake.cpp": {"LIGHT", "RUN"},

@@ -1,49 +1,49 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""rooms.py check ROOMS ROOT: files include only what their target links; no circle of targets, nor of
+"""links.py check TARGETS ROOT: files include only what their target links; no circle of targets, nor of
 the folders that share one (those of scenes/ apart: a scene is loaded by its formats, which make scenes).
 
-ROOMS is made/rooms.txt of the build folder, which CMake writes: NAME|SOURCES|PUBLIC|PRIVATE.
+TARGETS is made/targets.txt of the build folder, which CMake writes: NAME|SOURCES|PUBLIC|PRIVATE.
 """
 import os
 import re
 import sys
 
 
-def read_rooms(text):
+def read_targets(text):
     """{target: (sources, public links, private links)}; links to other projects are left out."""
-    rooms = {}
+    targets = {}
     for line in text.splitlines():
         name, sources, *links = line.split("|")
         ours = ([link[4:] for link in part.split(";") if link.startswith("mh::")] for part in links)
-        rooms[name] = (sources.split(";"), *ours)
-    return rooms
+        targets[name] = (sources.split(";"), *ours)
+    return targets
 
 
-def circle(rooms, name, path=()):
+def circle(targets, name, path=()):
     """The first circle of links that begins on the way from a target; empty if there is none."""
     if name in path:
         return [*path[path.index(name):], name]
-    _, public, private = rooms[name]
-    return next(filter(None, (circle(rooms, l, (*path, name)) for l in public + private)), [])
+    _, public, private = targets[name]
+    return next(filter(None, (circle(targets, l, (*path, name)) for l in public + private)), [])
 
 
-def reach(rooms, name):
+def reach(targets, name):
     """The targets whose headers come with a link to `name`."""
-    return {name}.union(*(reach(rooms, link) for link in rooms[name][1]))
+    return {name}.union(*(reach(targets, link) for link in targets[name][1]))
 
 
-def violations(rooms, root):
+def violations(targets, root):
     """A line for each include that goes against the link lines."""
-    for name in rooms:
-        if found := circle(rooms, name):
+    for name in targets:
+        if found := circle(targets, name):
             return ["circle: " + " -> ".join(found)]
-    owner = {source: name for name, (sources, *_) in rooms.items() for source in sources}
+    owner = {source: name for name, (sources, *_) in targets.items() for source in sources}
     folders = {}
     for source, name in owner.items():
         folders.setdefault(os.path.dirname(source), set()).add(name)
-    may = {name: {name}.union(*(reach(rooms, link) for link in public + private))
-           for name, (_, public, private) in rooms.items()}
+    may = {name: {name}.union(*(reach(targets, link) for link in public + private))
+           for name, (_, public, private) in targets.items()}
 
     def owners(file):  # a header's is that of the source of its name, else any of its folder's
         source = os.path.splitext(file)[0] + ".cpp"
@@ -92,7 +92,7 @@ def folder_circle(root, tops=("bench", "robots", "sim", "slam")):
 def main(task, made, root):
     assert task == "check"
     with open(made, encoding="utf-8") as text:
-        found = violations(read_rooms(text.read()), root)
+        found = violations(read_targets(text.read()), root)
     if circle_of := folder_circle(root):
         found.append("circle of folders: " + " -> ".join(circle_of))
     print("\n".join(found) or "every include follows a link line")

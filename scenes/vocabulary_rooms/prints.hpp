@@ -3,7 +3,7 @@
 
 // Drawn and printed sheets among the training patterns; call them through make_training_pattern().
 
-#include "scenes/training/ink.hpp"
+#include "scenes/vocabulary_rooms/ink.hpp"
 
 namespace mh::training {
 

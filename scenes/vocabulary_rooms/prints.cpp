@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/training/prints.hpp"
+#include "scenes/vocabulary_rooms/prints.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenes/training/patterns.hpp"
+#include "scenes/vocabulary_rooms/patterns.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 
 #include "scenes/materials/canvas.hpp"
-#include "scenes/training/ink.hpp"
-#include "scenes/training/prints.hpp"
+#include "scenes/vocabulary_rooms/ink.hpp"
+#include "scenes/vocabulary_rooms/prints.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh {

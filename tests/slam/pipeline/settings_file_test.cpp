@@ -10,7 +10,7 @@
 #include "slam/config/by_name.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/pipeline/settings.hpp"
+#include "slam/pipeline/settings_file.hpp"
 
 #include <algorithm>
 #include <array>
