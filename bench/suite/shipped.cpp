@@ -56,7 +56,8 @@ Files files_of(Shipped what) {
   Files files;
   switch (what) {
     case Shipped::kSuite:
-      collect(data / "bench/suites", ".yaml", files);
+      for (const char* folder : {"bench/suites", "bench/studies"})
+        collect(data / folder, ".yaml", files);
       break;
     case Shipped::kScene:
       return scenes_of(data);

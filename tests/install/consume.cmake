@@ -45,7 +45,7 @@ foreach(file doc/Modelhouse/README.md doc/Modelhouse/docs/tutorial.md
 endforeach()
 
 # What an installed suite names is installed, too.
-file(GLOB suites ${data}/bench/suites/*.yaml)
+file(GLOB suites ${data}/bench/suites/*.yaml ${data}/bench/studies/*.yaml)
 set(named_files 0)
 foreach(suite IN LISTS suites)
   file(STRINGS ${suite} lines REGEX "[.][.]/")

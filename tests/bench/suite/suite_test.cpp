@@ -851,19 +851,18 @@ TEST(ShippedSuites, AreWellFormed) {
                    {{"scannet:/scans/scene0000_00", "Bedroom / Hotel"},
                     {"scannet:/scans/scene0001_00", "Lobby"},
                     {"scannet:/scans/scene0002_00", "Gym"}}}}}}};
-  for (const auto& entry : fs::directory_iterator(fs::path(MH_SOURCE_DIR) / "bench/suites")) {
-    if (entry.path().extension() != ".yaml") continue;
-    const std::string name = entry.path().stem();
+  for (const std::string& name : shipped_names(Shipped::kSuite)) {
+    const fs::path file = shipped_file(name, Shipped::kSuite);
     const auto set = of_users.find(name);
-    const Suite suite = set == of_users.end() ? load_suite(entry.path())
-                                              : parse_suite(read_file(entry.path()), entry.path(),
-                                                            set->second, false);
+    const Suite suite = set == of_users.end()
+                            ? load_suite(file)
+                            : parse_suite(read_file(file), file, set->second, false);
     if (name == "table1_scannet") {
       EXPECT_EQ(suite.environments.size(), 3U);
       EXPECT_EQ(suite.environments.back().category, "misc");
       EXPECT_TRUE(suite.notes.empty());
     }
-    EXPECT_GE(suite.systems.size(), 1u) << entry.path();
+    EXPECT_GE(suite.systems.size(), 1u) << file;
     std::set<std::string> names;
     for (const RunSpec& run : expand(suite)) EXPECT_TRUE(names.insert(run.name).second) << run.name;
   }
