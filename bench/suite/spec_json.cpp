@@ -49,7 +49,7 @@ class ReadSettings {
   void operator()(const char* key, T& value, const SettingRange&, const char*) {
     if constexpr (std::is_enum_v<T>) {
       const std::string word = from_->at(key);
-      const auto named = value_of(word, setting_words(T{}));
+      const auto named = value_of(word, words(T{}));
       if (!named) throw InputError(fmt::format("'{}' is not a known word", word));
       value = *named;
     } else {
