@@ -6,7 +6,7 @@
 #include "bench/protocol/loop_audit.hpp"
 #include "bench/report/figures_json.hpp"
 #include "bench/suite/json_fields.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {
@@ -56,7 +56,7 @@ Json settings_json(const RunSpec& spec, Json settings) {
 Json points_json(const RunResult& run) {
   Json points = Json::array();
   for (std::size_t i = 0; i < run.points.size(); ++i) {
-    Json point = {{"settings", settings_json(run.spec, to_json(run.spec.points[i]))}};
+    Json point = {{"settings", settings_json(run.spec, json_of(run.spec.points[i]))}};
     for (const QuerySet set : kQuerySets) {
       Json list = Json::array();
       for (const QueryScore& q : queries(run.points[i], set)) list.push_back(query_json(q));
@@ -92,7 +92,7 @@ Json run_json(const RunResult& run) {
           {"place", place_json(run.place)},
           {"digests", digests_json(run)},
           {"mapping",
-           {{"settings", settings_json(run.spec, to_json(run.spec.slam))},
+           {{"settings", settings_json(run.spec, json_of(run.spec.slam))},
             {"track_calls", m.calls.size()},
             {"failures", m.failures},
             {"restarts", m.restarts},

@@ -56,7 +56,7 @@ std::map<std::string_view, fs::path> sources_of(const Environment& e) {
 
 OutsideProgram program_of(const RunSpec& spec, const World& world,
                           const std::vector<fs::path>& of_bench) {
-  OutsideProgram program = spec.system.outside;
+  OutsideProgram program = *spec.system.outside;
   program.hidden = of_bench;
   program.hidden.push_back(Cache::default_folder());
   std::set<fs::path> around = ancestors_of(program.folder);

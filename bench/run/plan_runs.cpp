@@ -133,8 +133,8 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
   std::set<std::string> outside;
   for (const RunSpec& spec : specs)
     if (spec.system.is_outside() && outside.insert(spec.system.name).second) {
-      require_program(spec.system.outside);
-      if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
+      require_program(*spec.system.outside);
+      if (const std::string warning = unseen_program(*spec.system.outside); !warning.empty())
         say(warning);
     }
   std::vector<Job> jobs;

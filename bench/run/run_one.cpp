@@ -291,9 +291,9 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
                                     std::function<void(std::string_view)> status,
                                     const std::vector<fs::path>& hidden) {
   if (spec.system.is_outside()) {
-    if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
+    if (spec.system.outside->mode == OutsideMode::kTrajectory) return nullptr;
     if (spec.system.is_library())
-      return make_library_system(spec.system.outside, world.mapping->camera(), spec.seed,
+      return make_library_system(*spec.system.outside, world.mapping->camera(), spec.seed,
                                  folder / kOutsideLog, std::move(status));
     return make_conversation_system(program_of(spec, world, hidden), world.mapping->camera(),
                                     spec.seed, folder / kOutsideLog);
@@ -344,7 +344,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   // From before the program starts: what it reads is not seen here.
   std::vector<fs::path> of_program;
   if (spec.system.is_outside())
-    for (const ProgramFile& file : files_of(spec.system.outside)) of_program.push_back(file.file);
+    for (const ProgramFile& file : files_of(*spec.system.outside)) of_program.push_back(file.file);
   PathWatch program_paths(of_program);
   require_unchanged(world.held);
 

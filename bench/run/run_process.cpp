@@ -65,7 +65,7 @@ std::string unreported_end(const ProcessEnd& end, const SystemSpec& system,
   std::string where = status.empty() ? "" : ", last seen at '" + status + "'";
   if (system.is_library())
     where += fmt::format(", with outside library '{}' ({}) in its process", system.name,
-                         system.outside.library);
+                         system.outside->library);
   const std::string last = end.message.empty() ? "" : ": " + end.message;
   if (end.signal != 0)
     return fmt::format("ended by signal {} ({}){}{}", end.signal, strsignal(end.signal), where,

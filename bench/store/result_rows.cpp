@@ -10,7 +10,6 @@
 #include "bench/store/columns.hpp"
 #include "bench/store/frame_row.hpp"
 #include "bench/suite/run_key.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/json_text.hpp"
 #include "slam/io/settings_io.hpp"

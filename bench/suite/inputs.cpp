@@ -63,7 +63,7 @@ InputDigest input_of(std::string name, const fs::path& source, const ReadRecord&
 std::vector<InputDigest> inputs_of_program(const SystemSpec& system) {
   std::vector<InputDigest> inputs;
   if (!system.is_outside()) return inputs;
-  for (const ProgramFile& file : files_of(system.outside)) {
+  for (const ProgramFile& file : files_of(*system.outside)) {
     const std::uint64_t content = digest_file(file.file);
     inputs.push_back({fmt::format("{}: {}", system.name, file.word), content, {}});
   }

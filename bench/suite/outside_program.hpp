@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "slam/io/setting.hpp"
+#include "slam/io/words.hpp"
 
 namespace mh {
 
@@ -18,6 +19,14 @@ enum class OutsideMode {
   kConversation,  ///< receives frame after frame over standard input and output
   kLibrary,       ///< is loaded into this process and called
 };
+constexpr Names<OutsideMode, 3> words(OutsideMode) {
+  return {{{"trajectory", OutsideMode::kTrajectory},
+           {"conversation", OutsideMode::kConversation},
+           {"library", OutsideMode::kLibrary}}};
+}
+constexpr std::string_view name(OutsideMode mode) {
+  return name_of(mode, words(mode));
+}
 
 /// A SLAM system that a suite names by its command line or its shared library
 /// (docs/outside_systems.md).
@@ -34,6 +43,7 @@ struct OutsideProgram {
   /// Files and folders that it must not see; not from the suite.
   std::vector<std::filesystem::path> hidden = {};
   std::string place = {};  ///< "suite.yaml:12", for messages; empty: not from a file
+  friend bool operator==(const OutsideProgram&, const OutsideProgram&) = default;
 };
 
 /// Lists the limits of a command: visit(key, value, range, meaning, the only mode that it applies
@@ -53,6 +63,21 @@ void limits(P& p, Visit&& visit) {
         "how much it may write: exact for each file; the growth of its folder is checked as often "
         "as memory; 0: no limit",
         both);
+}
+
+/// What describes it to another process: all but what only the process that starts it knows.
+template <MaybeConst<OutsideProgram> P, class Visit>
+void fields(P& program, Visit& v) {
+  auto& [name, command, mode, folder, run_limit_s, reply_limit_s, memory_limit_mb, disk_limit_mb,
+         inputs, library, settings, hidden, place] = program;
+  v("name", name);
+  v("command", command);
+  v("mode", mode);
+  v("folder", folder);
+  limits(program, [&](const char* key, auto& value, auto&&...) { v(key, value); });
+  v("inputs", inputs);
+  v("library", library);
+  v("settings", settings);
 }
 
 /// Refuses an empty command or library, limits out of range, an unknown placeholder and a

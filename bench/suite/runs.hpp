@@ -30,6 +30,25 @@ struct RunSpec {
   std::optional<std::size_t> max_frames;
 };
 
+template <MaybeConst<RunSpec> S, class Visit>
+void fields(S& spec, Visit& v) {
+  auto& [name, environment, level, vocabulary, system, labels, trial, seed, slam, points, protocol,
+         graded, max_frames] = spec;
+  v("name", name);
+  v("environment", environment);
+  v("level", level);
+  v("vocabulary", vocabulary);
+  v("system", system);
+  v("labels", labels);
+  v("trial", trial);
+  v("seed", seed);
+  v("slam", slam);
+  v("points", points);
+  v("protocol", protocol);
+  v("graded", graded);
+  v("max_frames", max_frames);
+}
+
 /// Settings as a system sees them: neutral semantics for the plain one, none for an outside
 /// program.
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings);

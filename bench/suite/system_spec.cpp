@@ -6,19 +6,21 @@
 #include "bench/suite/names.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/io/error.hpp"
+#include "slam/io/settings_io.hpp"
 #include "slam/pipeline/settings.hpp"
 
 namespace mh {
 namespace {
 
-constexpr Names<SystemKind, 2> kOurs{
-    {{"semantic", SystemKind::kSemantic}, {"plain", SystemKind::kPlain}}};
-constexpr Names<OutsideMode, 2> kModes{
-    {{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
+/// What a suite may call a system of ours, and the protocol of a command.
+constexpr Names<SystemKind, 2> kOurs{words(SystemKind{})[0], words(SystemKind{})[1]};
+constexpr Names<OutsideMode, 2> kProtocols{words(OutsideMode{})[0], words(OutsideMode{})[1]};
+static_assert(name_of(SystemKind::kOutside, kOurs) == "?");
+static_assert(name_of(OutsideMode::kLibrary, kProtocols) == "?");
 
 void read_command(YamlReader& node, OutsideProgram& program) {
   program.command = node.string("command");
-  program.mode = one_of(node.at("protocol"), kModes);
+  program.mode = one_of(node.at("protocol"), kProtocols);
   limits(program, [&](const char* key, double& value, const SettingRange& range, const char*,
                       std::optional<OutsideMode> only) {
     const auto limit = node.find(key);
@@ -51,7 +53,7 @@ std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
   for (const auto& [placeholder, list] : vary.entries()) {
     const std::vector<YamlReader> values = list.items();
     if (values.empty()) list.fail("has no value");
-    if (fill_in(spec.outside.command, placeholder, "") == spec.outside.command)
+    if (fill_in(spec.outside->command, placeholder, "") == spec.outside->command)
       list.fail(fmt::format("{{{}}} is not in the command", placeholder));
     std::vector<SystemSpec> more;
     for (const SystemSpec& one : all)
@@ -59,8 +61,8 @@ std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
         SystemSpec& with = more.emplace_back(one);
         with.name += fmt::format("_{}_{}", placeholder, value.as_string());
         check_folder_name(value, with.name);
-        with.outside.name = with.name;
-        with.outside.command = fill_in(one.outside.command, placeholder, value.as_string());
+        with.outside->name = with.name;
+        with.outside->command = fill_in(one.outside->command, placeholder, value.as_string());
       }
     all = std::move(more);
   }
@@ -86,13 +88,6 @@ void read_variant(YamlReader& node, SystemSpec& spec) {
 
 }  // namespace
 
-std::string_view name(SystemKind kind) {
-  return kind == SystemKind::kOutside ? "outside" : name_of(kind, kOurs);
-}
-std::string_view name(OutsideMode mode) {
-  return mode == OutsideMode::kLibrary ? "library" : name_of(mode, kModes);
-}
-
 std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
   SystemSpec spec;
   if (!node.is_map()) {
@@ -109,7 +104,7 @@ std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
     return {spec};
   }
   spec.kind = SystemKind::kOutside;
-  OutsideProgram& program = spec.outside;
+  OutsideProgram& program = spec.outside.emplace();
   program.name = spec.name;
   program.folder = paths.folder.empty() ? "." : paths.folder;
   const bool is_library = node.find("library").has_value();
@@ -132,7 +127,7 @@ std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
   }
   node.finish();
   try {
-    for (const SystemSpec& one : all) validate(one.outside);
+    for (const SystemSpec& one : all) validate(*one.outside);
   } catch (const InputError& error) {
     node.at(key).fail(error.what());
   }

@@ -100,6 +100,16 @@ struct DetectorSpec {
   friend bool operator==(const DetectorSpec&, const DetectorSpec&) = default;
 };
 
+template <MaybeConst<DetectorSpec> D, class Visit>
+void fields(D& spec, Visit& v) {
+  auto& [network, config, classes, boxes, settings] = spec;
+  v("network", network);
+  v("config", config);
+  v("classes", classes);
+  v("boxes", boxes);
+  v("settings", settings);
+}
+
 /// Returns a network or boxes, depending on a file's extension; weights have their .cfg next to
 /// them. @throws InputError if the extension is unknown.
 DetectorSpec detector_from_file(const std::filesystem::path& file);

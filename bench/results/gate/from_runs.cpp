@@ -10,7 +10,8 @@
 #include "bench/results/summary.hpp"
 #include "bench/suite/fingerprint.hpp"
 #include "bench/suite/inputs.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/digest.hpp"
 
 namespace mh {
@@ -75,8 +76,8 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs) {
 std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
   std::string text = fmt::format(
       "trials={};seed={};frames={};protocol={};", suite.trials, suite.seed,
-      suite.max_frames ? std::to_string(*suite.max_frames) : "all", to_json(suite.protocol).dump());
-  if (suite.graded) text += fmt::format("graded={};", to_json(*suite.graded).dump());
+      suite.max_frames ? std::to_string(*suite.max_frames) : "all", json_of(suite.protocol).dump());
+  if (suite.graded) text += fmt::format("graded={};", json_of(*suite.graded).dump());
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const Labels& labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels)
@@ -95,13 +96,13 @@ std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
                              *std::ranges::find(inputs, source.key, &InputDigest::name))
                    : fmt::format("{}=none;", source.key);
     });
-    if (e.frame != SceneFrame{}) text += fmt::format("frame={};", to_json(e.frame).dump());
+    if (e.frame != SceneFrame{}) text += fmt::format("frame={};", json_of(e.frame).dump());
   }
   return hex(digest_bytes(text.data(), text.size()));
 }
 
 nlohmann::ordered_json gate_settings(const Suite& suite, InputReader& reader) {
-  nlohmann::ordered_json settings = {{"slam", to_json(suite.slam)}};
+  nlohmann::ordered_json settings = {{"slam", json_of(suite.slam)}};
   if (!suite.vocabulary.empty())
     settings["vocabulary"] = hex(reader.vocabulary(suite.vocabulary).files.front().digest);
   for (const SystemSpec& system : suite.systems)

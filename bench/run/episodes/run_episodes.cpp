@@ -18,8 +18,8 @@
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/find_program.hpp"
 #include "bench/suite/inputs.hpp"
+#include "bench/suite/json_fields.hpp"
 #include "bench/suite/run_key.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "scenes/load.hpp"
 #include "sim/world/travel.hpp"
@@ -37,7 +37,7 @@ using Slot = std::pair<std::string, std::size_t>;  ///< variant, start
 
 /// Everything about the episodes that decides one of them, except how many there are.
 std::string text_of(const EpisodesSpec& spec, const std::vector<InputDigest>& inputs) {
-  nlohmann::ordered_json json = to_json(spec);
+  nlohmann::ordered_json json = json_of(spec);
   json.erase("starts");
   json["code"] = code_of_episodes();
   for (const EpisodeVariant& variant : spec.variants) json["variants"].push_back(variant.name);
@@ -164,8 +164,8 @@ std::vector<RunSpec> episode_runs(const Suite& suite) {
     refuse(fmt::format("trials: {}: episodes are repeated by their `starts`", suite.trials));
   for (const SystemSpec& system : suite.systems)
     if (system.is_outside()) {
-      require_program(system.outside);
-      if (system.outside.mode == OutsideMode::kTrajectory)
+      require_program(*system.outside);
+      if (system.outside->mode == OutsideMode::kTrajectory)
         refuse(fmt::format(
             "system '{}': a program that only returns a trajectory cannot be kidnapped: protocol: "
             "conversation or a library can",

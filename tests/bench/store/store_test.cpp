@@ -395,8 +395,7 @@ TEST_F(StoreFile, ACrashSaysWhereAndNamesTheLibraryThatRanThere) {
   RunSpec spec = some_run("a").spec;
   spec.system.kind = SystemKind::kOutside;
   spec.system.name = "mine";
-  spec.system.outside.mode = OutsideMode::kLibrary;
-  spec.system.outside.library = "libmine.so";
+  spec.system.outside = OutsideProgram{.mode = OutsideMode::kLibrary, .library = "libmine.so"};
   run_pending(store, {{spec, "k"}}, options);
   EXPECT_EQ(
       store.error("k"),
@@ -706,7 +705,7 @@ TEST_F(StoreFile, WhatAnOutsideProgramDoesNotTellIsNull) {
   Store store(folder_ / "r.sqlite");
   store.plan(suite(), {}, {{"x", "kx"}});
   RunResult run = some_run("x");
-  run.spec.system = {SystemKind::kOutside, "vo", {}};
+  run.spec.system = {SystemKind::kOutside, "vo", OutsideProgram()};
   QueryScore& query = run.points[0].held_out[0];
   query.answer.stage.reset();
   query.answer.matches.reset();
