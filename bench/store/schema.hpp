@@ -6,7 +6,7 @@
 namespace mh {
 
 /// `PRAGMA user_version` of a results file; a file with another one is refused.
-inline constexpr int kSchemaVersion = 11;
+inline constexpr int kSchemaVersion = 12;
 /// The same of a file of episodes (bench/run/episodes/episode_store.hpp), which counts from 1001.
 inline constexpr int kEpisodesVersion = 1001;
 
