@@ -219,7 +219,7 @@ std::string suite() {
   rest.section("graded");
   fields(graded, rest);
   rest.section("episodes");
-  fields(episodes, rest);
+  episode_settings(episodes, rest);
   return heading("Keys of a suite", "suite") +
          "Those that are one value or name one file; lists and mappings: "
          "[formats.md](../formats.md#suite-benchsuitesyaml).\n" +

@@ -81,30 +81,32 @@ Json run_json(const RunResult& run) {
   const MappingOutcome& m = run.mapping;
   std::size_t keyframes = 0;
   for (const MappedFrame& call : m.calls) keyframes += call.keyframe_added ? 1 : 0;
-  return {{"name", run.spec.name},
-          {"status", "done"},
-          {"environment", run.spec.environment.name},
-          {"system", run.spec.system.name},
-          {"labels", name(run.spec.labels)},
-          {"level", level_name(run.spec.level)},
-          {"trial", run.spec.trial},
-          {"seed", run.spec.seed},
-          {"place", place_json(run.place)},
-          {"digests", digests_json(run)},
-          {"mapping",
-           {{"settings", settings_json(run.spec, json_of(run.spec.slam))},
-            {"track_calls", m.calls.size()},
-            {"failures", m.failures},
-            {"restarts", m.restarts},
-            {"dropped", m.dropped},
-            {"before_map", m.before_map},
-            {"gave_up", m.gave_up},
-            {"skipped", json_of(m.skipped)},
-            {"keyframes_made", keyframes},
-            {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
-            {"matchers", matches_json(m.matches)}}},
-          {"trajectory", figures_json(figures_of(run.trajectory))},
-          {"points", points_json(run)}};
+  Json json = {{"name", run.spec.name},
+               {"status", "done"},
+               {"environment", run.spec.environment.name},
+               {"system", run.spec.system.name},
+               {"labels", name(run.spec.labels)},
+               {"level", level_name(run.spec.level)},
+               {"trial", run.spec.trial},
+               {"seed", run.spec.seed},
+               {"place", place_json(run.place)},
+               {"digests", digests_json(run)},
+               {"mapping",
+                {{"settings", settings_json(run.spec, json_of(run.spec.slam))},
+                 {"track_calls", m.calls.size()},
+                 {"failures", m.failures},
+                 {"restarts", m.restarts},
+                 {"dropped", m.dropped},
+                 {"before_map", m.before_map},
+                 {"gave_up", m.gave_up},
+                 {"skipped", json_of(m.skipped)},
+                 {"keyframes_made", keyframes},
+                 {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
+                 {"matchers", matches_json(m.matches)}}},
+               {"trajectory", figures_json(figures_of(run.trajectory))},
+               {"points", points_json(run)}};
+  if (run.spec.episodes) json["episodes"] = json_of(run.episodes);
+  return json;
 }
 
 Json run_json(const FailedRun& run) {

@@ -35,8 +35,9 @@ void for_each_path(T& value, const Visit& visit) {
 
 /// Returns everything that determines a result, by content rather than by names and paths.
 nlohmann::ordered_json determining(RunSpec spec, std::span<const InputDigest> inputs) {
-  for (std::string* name : {&spec.name, &spec.environment.name, &spec.environment.category,
-                            &spec.environment.sequence, &spec.labels.called})
+  for (std::string* name :
+       {&spec.name, &spec.environment.name, &spec.environment.category, &spec.environment.sequence,
+        &spec.labels.called, &spec.map_labels.called})
     name->clear();
   spec.environment.queries.reset();
   for_each_path(spec, [](fs::path& path) { path.clear(); });
@@ -79,11 +80,18 @@ std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
   mapping.system.name.clear();
   mapping.points.clear();
   mapping.graded.reset();
+  if (spec.episodes)
+    mapping.episodes = EpisodesSpec{.goals = {}, .ticks_per_frame = spec.episodes->ticks_per_frame};
   sources(mapping.environment, [](const WorldSource& source, auto& path) {
     if (source.of_queries) path = std::decay_t<decltype(path)>();
   });
   nlohmann::ordered_json json = determining(std::move(mapping), inputs);
   json["inputs"].erase("queries");
+  if (spec.episodes)
+    for (const EpisodeVariant& variant : spec.episodes->variants)
+      sources(variant, [&](const WorldSource& source, const auto&) {
+        json["inputs"].erase(input_name(variant, source));
+      });
   sources(spec.environment, [&](const WorldSource& source, const auto&) {
     if (source.of_queries) json["inputs"].erase(source.key);
   });

@@ -63,9 +63,8 @@ struct Suite {
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
-  std::optional<GradedSpec> graded;  ///< asked in every environment
-  /// Kidnappings of a robot that drives by its map; `bench` then runs these and no queries.
-  std::optional<EpisodesSpec> episodes;
+  std::optional<GradedSpec> graded;      ///< asked in every environment
+  std::optional<EpisodesSpec> episodes;  ///< the same, of a robot that drives by its map
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/report/episodes_report.hpp"
 #include "bench/report/pages/page_table.hpp"
 #include "bench/report/table2.hpp"
 #include "bench/report/wording.hpp"
@@ -133,6 +134,22 @@ Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
     for (const Table2Column& column : kTable2Columns)
       if (column.published != nullptr) table.number(page_column(column), row.*column.published);
   }
+  return table.json();
+}
+
+Json episodes_page_json(const Suite& suite, std::span<const RunResult> runs) {
+  if (!suite.episodes) return nullptr;
+  PageTable table("Episodes of a kidnapped robot",
+                  fmt::format("Over all environments of the suite. Success: it said that it has "
+                              "arrived, and is within {:g} m of such an object, no wall between.",
+                              suite.episodes->arrival_m));
+  for (const EpisodeVariant& variant : suite.episodes->variants)
+    for (const SystemSpec& system : suite.systems) {
+      table.begin_row();
+      table.text(kSystem, system.name);
+      table.text({"variant", "variant"}, variant.name);
+      table.figures(figures_of(summarize(episodes_of(runs, system.name, variant.name))));
+    }
   return table.json();
 }
 

@@ -26,6 +26,7 @@ std::string run_digest(const RunResult& run) {
   };
   for (const MappedFrame& call : run.mapping.calls) add(call);
   for_each_query(run, [&](const QueryScore& q) { add(q.answer); });
+  for (const EpisodeScore& episode : run.episodes) sum = chained(sum, episode.digest);
   return hex(sum);
 }
 
@@ -42,6 +43,25 @@ std::string content(std::string_view what, const std::filesystem::path& source,
     text += file.file == source.filename()
                 ? fmt::format("{}={};", what, hex(file.digest))
                 : fmt::format("{}/{}={};", what, file.file, hex(file.digest));
+  return text;
+}
+
+/// Settings of episodes, and what their variants are made of.
+std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
+  nlohmann::ordered_json json = json_of(episodes);
+  json.erase("variants");
+  std::string text = fmt::format("episodes={};", json.dump());
+  const std::vector<InputDigest> inputs = reader.inputs_of(episodes);
+  for (const EpisodeVariant& variant : episodes.variants) {
+    text += fmt::format("variant={};", variant.name);
+    sources(variant,
+            [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
+              if (path)
+                text += content(
+                    source.key, *path,
+                    *std::ranges::find(inputs, input_name(variant, source), &InputDigest::name));
+            });
+  }
   return text;
 }
 
@@ -78,6 +98,7 @@ std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
       "trials={};seed={};frames={};protocol={};", suite.trials, suite.seed,
       suite.max_frames ? std::to_string(*suite.max_frames) : "all", json_of(suite.protocol).dump());
   if (suite.graded) text += fmt::format("graded={};", json_of(*suite.graded).dump());
+  if (suite.episodes) text += episodes_text(*suite.episodes, reader);
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const Labels& labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels)
