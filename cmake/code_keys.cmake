@@ -2,7 +2,7 @@
 # Digests of the code, made anew by each build: the keys of results and of the cache hold them.
 get_property(bits GLOBAL PROPERTY MH_BITS)
 set(lines "BITS|${bits}\n")
-foreach(key LIGHT DETECT RUN AUDIT EPISODES)
+foreach(key LIGHT DETECT RUN AUDIT)
   get_property(patterns GLOBAL PROPERTY MH_DECIDES_${key})
   foreach(pattern IN LISTS patterns)
     string(APPEND lines "${key}|${pattern}\n")

@@ -5,20 +5,10 @@
 
 namespace mh {
 
-std::optional<UpAxis> up_axis(std::string_view name) {
-  if (name == "y") return UpAxis::kY;
-  if (name == "z") return UpAxis::kZ;
-  return std::nullopt;
-}
-
-std::string_view name(UpAxis up) {
-  return up == UpAxis::kY ? "y" : "z";
-}
-
 SceneFrame read_scene_frame(YamlReader& yaml) {
   SceneFrame frame;
   if (const auto up = yaml.find("up")) {
-    frame.up = up_axis(up->as_string());
+    frame.up = value_of(up->as_string(), words(UpAxis{}));
     if (!frame.up) up->fail(fmt::format("'{}' is neither y nor z", up->as_string()));
   }
   if (const auto z = yaml.find("floor_z_m"))

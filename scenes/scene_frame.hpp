@@ -3,13 +3,17 @@
 
 #include <compare>
 #include <optional>
-#include <string_view>
 
+#include "slam/io/fields.hpp"
+#include "slam/io/words.hpp"
 #include "slam/io/yaml.hpp"
 
 namespace mh {
 
 enum class UpAxis { kY, kZ };
+constexpr Names<UpAxis, 2> words(UpAxis) {
+  return {{{"y", UpAxis::kY}, {"z", UpAxis::kZ}}};
+}
 
 /// What a user states about the frame of a scene's files that the files do not.
 struct SceneFrame {
@@ -18,11 +22,14 @@ struct SceneFrame {
   friend auto operator<=>(const SceneFrame&, const SceneFrame&) = default;
 };
 
-inline constexpr double kFarthestFloor_m = 10000;
+template <MaybeConst<SceneFrame> F, class Visit>
+void fields(F& frame, Visit& v) {
+  auto& [up, floor_z_m] = frame;
+  v("up", up);
+  v("floor_z_m", floor_z_m);
+}
 
-/// "y" or "z".
-std::optional<UpAxis> up_axis(std::string_view name);
-std::string_view name(UpAxis up);
+inline constexpr double kFarthestFloor_m = 10000;
 
 /// Reads the keys `up` and `floor_z_m` of a mapping, both optional.
 /// @throws InputError naming line and value.

@@ -282,6 +282,9 @@ void require_auditable(const RunSpec& spec) {
         fmt::format("{}: '{}' gives no match traces: an audit takes `semantic`, `plain` and "
                     "their variants alone",
                     spec.name, spec.system.name));
+  if (spec.episodes)
+    throw InputError(
+        fmt::format("{}: an audit is of queries, and the suite has `episodes`", spec.name));
   if (spec.environment.is_recorded())
     throw InputError(
         fmt::format("{}: '{}' is a recording, of whose surfaces nothing exact is "

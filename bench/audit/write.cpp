@@ -106,7 +106,7 @@ std::string csv_row(const AuditedRun& run, const SemanticConfig& point, QuerySet
   visit.put("xi", point.xi);
   visit.put("alpha", point.alpha);
   visit.put("beta", point.beta);
-  visit.put("overlap", name_of(point.overlap, setting_words(point.overlap)));
+  visit.put("overlap", name_of(point.overlap, words(point.overlap)));
   visit.put("void_is_a_label", point.void_is_a_label);
   visit.put("query_set", name(set));
   fields(query, visit);

@@ -18,10 +18,7 @@
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/set_option.hpp"
 #include "bench/cli/write_audit.hpp"
-#include "bench/run/episodes/report.hpp"
 #include "bench/run/run.hpp"
-#include "bench/run/run_one.hpp"
-#include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/run/slurm.hpp"
 #include "bench/suite/cache.hpp"
@@ -50,8 +47,7 @@ struct BenchArguments {
   bool audit = false;
   std::optional<std::size_t> slurm;
   std::string sbatch;
-  // The arguments as given, for the process of a share of --slurm.
-  std::vector<std::string> arguments_of_part;
+  std::vector<std::string> arguments_of_part;  // as given, for the process of a share of --slurm
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
   double images_limit_gb = BenchOptions{}.images_limit_gb;
@@ -79,51 +75,6 @@ std::filesystem::path usual_folder(const Suite& suite, bool varied) {
   if (suite.max_frames) name += fmt::format("-first-{}", *suite.max_frames);
   if (varied) name += "-varied";
   return std::filesystem::path("out") / name;
-}
-
-/// Runs a suite of kidnappings, which has no queries.
-void run_kidnappings(const Suite& suite, const BenchArguments& options) {
-  if (options.audit) refuse_episodes(suite, "asks no queries for --audit");
-  if (options.frames) throw InputError("--frames: a suite with `episodes` maps its whole tour");
-  if (options.shard != "1/1")
-    throw InputError("--shard: a suite with `episodes` runs as a whole; it resumes");
-  if (options.slurm)
-    throw InputError("--slurm: a suite with `episodes` runs as a whole, on one machine");
-  const BenchArguments unset;
-  if (options.time_limit_s != unset.time_limit_s ||
-      options.memory_limit_mb != unset.memory_limit_mb)
-    throw InputError(
-        "--time-limit, --memory-limit: are for runs of queries: an episode ends by "
-        "its suite's episodes.limit_s");
-  if (options.retry_failed != unset.retry_failed)
-    throw InputError(
-        "--retry-failed: is for runs of queries: episodes of a system that failed "
-        "are always tried again");
-  if (options.images_limit_gb != unset.images_limit_gb)
-    throw InputError("--images-limit: is for runs of queries: episodes keep no images");
-  EpisodeOptions episodes;
-  episodes.out =
-      options.out.empty() ? usual_folder(suite, false) : std::filesystem::path(options.out);
-  episodes.jobs = options.jobs;
-  episodes.cache = cache_folder(options);
-  std::vector<std::string> names(std::begin(kEpisodeFiles), std::end(kEpisodeFiles));
-  for (const RunSpec& run : episode_runs(suite))
-    if (run.system.is_outside()) names.push_back(run.name + "/" + kOutsideLog);
-  const OutputFolder folder(episodes.out, "bench", names);
-  Progress progress("bench");
-  episodes.say = [&](std::string_view stage) { progress.say(stage); };
-  episodes.progress = [&](double share) { progress.share(share); };
-  const std::vector<EpisodeRun> runs = run_episodes(suite, episodes);
-  progress.end();
-  const std::string table = write_episodes(episodes.out, suite, runs);
-  if (options.json)
-    fmt::print("{}\n", episodes_json(suite, runs).dump(2));
-  else
-    fmt::print("{}\nresults in {}\n", table, episodes.out.string());
-  std::vector<FailedRun> failed;
-  for (const EpisodeRun& run : runs)
-    if (!run.failure.empty()) failed.push_back({run.spec, run.failure});
-  if (!failed.empty()) throw_failures(failed, failed.front().error, "");
 }
 
 /// The words of a text, as a shell splits and expands them.
@@ -174,7 +125,6 @@ void run(BenchArguments options) {
   if (options.scene) overrides.scene = *options.scene;
   overrides.frame = options.frame.frame();
   const Suite suite = load_suite(options.suite, overrides);
-  if (suite.episodes) return run_kidnappings(suite, options);
   BenchOptions bench;
   bench.shard = parse_shard(options.shard);
   bench.out = options.out.empty() ? usual_folder(suite, !overrides.vary.empty())
@@ -255,7 +205,9 @@ void add_bench(CLI::App& app) {
   command->add_flag("--audit", options->audit,
                     "Audits every query afterward, as `audit` does: maps come from the cache");
   command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
-  command->add_option("--time-limit", options->time_limit_s, "Seconds for one run; 0 = none")
+  command
+      ->add_option("--time-limit", options->time_limit_s,
+                   "Seconds for one run, besides limit_s of each of its episodes; 0 = none")
       ->check(number_between(0.0, 1e9));
   command->add_option("--memory-limit", options->memory_limit_mb, "MB for one run; 0 = none")
       ->check(number_between(0.0, 1e9));

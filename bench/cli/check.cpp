@@ -147,7 +147,6 @@ void run(CheckArguments options) {
   overrides.set = options.set.values();
   overrides.max_frames = options.frames;
   const Suite suite = load_suite(options.suite, overrides);
-  refuse_episodes(suite, "has no metrics to check: `bench` writes its episodes.json");
   if (suite.gate.tolerances.empty() && suite.gate.of_scenario.empty())
     throw InputError(
         fmt::format("{}: check: tolerances: missing: nothing would be judged", options.suite));

@@ -11,8 +11,8 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
-#include "bench/run/episodes/run_episodes.hpp"
-#include "bench/run/episodes/strip.hpp"
+#include "bench/report/episode_record.hpp"
+#include "bench/run/plan_runs.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/suite/cache.hpp"
 #include "bench/suite/json_fields.hpp"
@@ -39,9 +39,9 @@ std::optional<std::filesystem::path> episode_cache(const EpisodeArguments& optio
   return usual.empty() ? std::nullopt : std::optional(usual);
 }
 
-/// The run that the options name; by default the first.
+/// The run that the options name, by default the first, with the one variant and the starts up to
+/// the one that they name.
 RunSpec chosen_run(const Suite& suite, const EpisodeArguments& options) {
-  const std::vector<RunSpec> runs = episode_runs(suite);
   const auto check = [&](const char* option, const std::string& word,
                          const std::vector<std::string>& all) {
     if (!word.empty() && std::ranges::find(all, word) == all.end())
@@ -54,54 +54,66 @@ RunSpec chosen_run(const Suite& suite, const EpisodeArguments& options) {
         words_of(suite.environments, [](const Environment& e) { return e.name; }));
   check("--variant", options.variant,
         words_of(suite.episodes->variants, [](const EpisodeVariant& v) { return v.name; }));
-  for (const RunSpec& run : runs)
-    if ((options.system.empty() || run.system.name == options.system) &&
-        (options.environment.empty() || run.environment.name == options.environment))
-      return run;
-  throw InputError(fmt::format("{}: has no such run", suite.file.string()));
+  check_episodes(suite);
+  std::vector<RunSpec> runs = expand(suite);
+  RunSpec& run = *std::ranges::find_if(runs, [&](const RunSpec& r) {
+    return (options.system.empty() || r.system.name == options.system) &&
+           (options.environment.empty() || r.environment.name == options.environment);
+  });
+  std::vector<EpisodeVariant>& variants = run.episodes->variants;
+  if (!options.variant.empty())
+    std::erase_if(variants, [&](const EpisodeVariant& v) { return v.name != options.variant; });
+  variants.resize(1);
+  run.episodes->starts = options.start + 1;
+  return run;
 }
 
 void run(EpisodeArguments options) {
   resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.set = options.set.values();
-  Suite suite = load_suite(options.suite, overrides);
+  const Suite suite = load_suite(options.suite, overrides);
+  if (!suite.episodes)
+    throw InputError(fmt::format("{}: has no section `episodes`: nobody is kidnapped in it",
+                                 suite.file.string()));
   const RunSpec chosen = chosen_run(suite, options);
-  suite.episodes->starts = std::max(suite.episodes->starts, options.start + 1);
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path("out") / (suite.name + "-episode")
                                         : std::filesystem::path(options.out);
   const OutputFolder folder(out, "episode", {"log.txt", "strip.png", "episode.json", kOutsideLog});
 
   Progress progress("episode");
-  EpisodeOptions episodes;
-  episodes.out = out;
-  episodes.cache = episode_cache(options);
-  episodes.say = [&](std::string_view stage) { progress.say(stage); };
-  episodes.progress = [&](double share) { progress.share(share, "mapping"); };
-  const OneEpisode one = prepare_episode(suite, chosen, episodes);
-  progress.end();
-  const auto named = [&](const VariantPlace& place) {
-    return options.variant.empty() || place.variant.name == options.variant;
+  const Cache cache(episode_cache(options).value_or(std::filesystem::path()));
+  const World world =
+      build_world(chosen, 1, cache, [&](std::string_view stage) { progress.say(stage); });
+  std::optional<EpisodeRecord> record;
+  const auto observer = [&](const RobotMap& map, const EpisodeStart& start) {
+    record.emplace(map, start);
+    return [&](const EpisodeMoment& moment) { record->add(moment); };
   };
-  const VariantPlace& variant = *std::ranges::find_if(one.world.variants, named);
-  const EpisodeStart& start = variant.starts[options.start];
-  EpisodeRecord record(one.mapped.map, start);
   EpisodeScore score;
   try {
-    score = run_episode(episode_place(chosen, one.world, variant, one.mapped), *suite.episodes,
-                        start, [&](const EpisodeMoment& moment) { record.add(moment); });
+    const RunResult result =
+        run_one(chosen, world,
+                {.folder = out,
+                 .hidden = {out, cache.folder()},
+                 .progress = [&](double share) { progress.share(share, "mapping"); },
+                 .maps = cache,
+                 .episodes = {.only = WatchedEpisode{options.start, observer}}});
+    progress.end();
+    score = result.episodes.front();
   } catch (const OutsideError&) {  // the log up to there may show why
     for (const char* name : {"strip.png", "episode.json"}) std::filesystem::remove(out / name);
-    write_atomically(out / "log.txt", record.log_so_far());
+    write_atomically(out / "log.txt", record ? record->log_so_far() : "");
     throw;
   }
-  const std::string log = record.log(score);
+  const std::string log = record->log(score);
   write_atomically(out / "log.txt", log);
   write_atomically(out / "episode.json", json_of(score).dump(2) + "\n");
-  write_image(out / "strip.png", record.strip(fmt::format("{}, start {}, {}", chosen.system.name,
-                                                          options.start, variant.variant.name),
-                                              score));
+  write_image(out / "strip.png",
+              record->strip(fmt::format("{}, start {}, {}", chosen.system.name, options.start,
+                                        world.variants.front().name),
+                            score));
   if (options.json)
     fmt::print("{}\n", json_of(score).dump(2));
   else

@@ -74,11 +74,6 @@ std::vector<std::string> names_written(const std::filesystem::path& out, const S
   return names;
 }
 
-void refuse_episodes(const Suite& suite, const std::string& why) {
-  if (suite.episodes)
-    throw InputError(fmt::format("{}: a suite with `episodes` {}", suite.file.string(), why));
-}
-
 void show(Progress& progress, const PoolProgress& suite) {
   std::string figures = fmt::format("{} done, {} failed", suite.done, suite.failed);
   if (!suite.status.empty()) figures += ", " + suite.status;

@@ -19,9 +19,6 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
 /// file shows that they already wrote there.
 std::vector<std::string> names_written(const std::filesystem::path& out, const Suite& suite);
 
-/// @throws InputError for a suite with `episodes`. @param why  what it lacks: "asks no queries"
-void refuse_episodes(const Suite& suite, const std::string& why);
-
 /// Displays the progress of a suite.
 void show(Progress& progress, const PoolProgress& suite);
 

@@ -12,7 +12,7 @@
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
-#include "bench/run/episodes/robot_map.hpp"
+#include "bench/protocol/episodes/robot_map.hpp"
 #include "bench/run/maps/map_messages.hpp"
 #include "robots/navigation/grid.hpp"
 #include "robots/navigation/plan.hpp"

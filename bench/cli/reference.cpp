@@ -137,9 +137,9 @@ class SettingsTables {
     } else if constexpr (std::is_same_v<T, bool>) {
       return "true, false";
     } else if constexpr (std::is_enum_v<T>) {
-      std::vector<std::string_view> words;
-      for (const auto& [word, value] : setting_words(T{})) words.push_back(word);
-      return fmt::format("{}", fmt::join(words, ", "));
+      std::vector<std::string_view> list;
+      for (const auto& [word, value] : words(T{})) list.push_back(word);
+      return fmt::format("{}", fmt::join(list, ", "));
     } else {
       return interval(range) + (std::is_integral_v<T> ? ", whole" : "");
     }
@@ -219,7 +219,7 @@ std::string suite() {
   rest.section("graded");
   fields(graded, rest);
   rest.section("episodes");
-  fields(episodes, rest);
+  episode_settings(episodes, rest);
   return heading("Keys of a suite", "suite") +
          "Those that are one value or name one file; lists and mappings: "
          "[formats.md](../formats.md#suite-benchsuitesyaml).\n" +

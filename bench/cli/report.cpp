@@ -44,7 +44,8 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
     for (const RunResult& run : source.results.runs) {
       names.push_back(run.spec.name);
       const bool by_name = std::ranges::count(options.replay, run.spec.name) > 0;
-      const bool can = run.spec.system.takes_settings() && !run.spec.environment.is_recorded();
+      const bool can = run.spec.system.takes_settings() && !run.spec.environment.is_recorded() &&
+                       !run.spec.episodes;
       if (!is_asked(run)) continue;
       if (!can && !by_name) {
         ++without;
@@ -56,7 +57,8 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
     }
   if (without > 0)
     fmt::print(stderr,
-               "report: {} of recordings or of systems other than ours, which have no replay\n",
+               "report: {} of recordings, of episodes or of systems other than ours, which have no "
+               "replay\n",
                counted(without, "run is", "runs are"));
   for (const std::string& word : options.replay)
     if (std::ranges::count(names, word) == 0)

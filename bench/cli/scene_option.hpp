@@ -30,7 +30,7 @@ struct SceneFrameOption {
         ->check(number_between(-kFarthestFloor_m, kFarthestFloor_m));
   }
   SceneFrame frame() const {
-    return {.up = up ? up_axis(*up) : std::nullopt, .floor_z_m = floor_z_m};
+    return {.up = up ? value_of(*up, words(UpAxis{})) : std::nullopt, .floor_z_m = floor_z_m};
   }
 };
 

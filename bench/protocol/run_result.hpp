@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/protocol/call_times.hpp"
+#include "bench/protocol/episode_score.hpp"
 #include "bench/protocol/mapping.hpp"
 #include "bench/protocol/metrics/query_summary.hpp"
 #include "bench/protocol/metrics/trajectory_score.hpp"
@@ -42,11 +43,12 @@ struct RunResult {
   Trajectory estimate;
   TrajectoryScore trajectory;
   EstimateFrames frames;
-  std::vector<PointResult> points;         ///< as in spec.points
-  std::shared_ptr<const VoxelMap> volume;  ///< keyframe depth at its final poses, dock frame
-  OccupancyGrid grid;                      ///< the part of it that obstructs a robot
-  std::uint64_t map_digest = 0;            ///< of trajectory and grid
-  CallTimes times;                         ///< not deterministic: never part of results.json
+  std::vector<PointResult> points;          ///< as in spec.points
+  std::vector<EpisodeScore> episodes = {};  ///< by variant as in spec.episodes, then by start
+  std::shared_ptr<const VoxelMap> volume;   ///< keyframe depth at its final poses, dock frame
+  OccupancyGrid grid;                       ///< the part of it that obstructs a robot
+  std::uint64_t map_digest = 0;             ///< of trajectory and grid
+  CallTimes times;                          ///< not deterministic: never part of results.json
   // Not deterministic either. CPU time spent on making the frames, and on products that are neither
   // SLAM nor scored: octree, grid, images.
   double frames_s = 0, products_s = 0;

@@ -69,6 +69,26 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
   return s;
 }
 
+EpisodeSummary summarize(std::span<const EpisodeScore> episodes) {
+  EpisodeSummary s;
+  if (episodes.empty()) return s;
+  std::vector<double> times_s;
+  for (const EpisodeScore& e : episodes) {
+    s.success += e.success;
+    s.located += e.located_s.has_value();
+    s.spl += e.spl;
+    s.collided += e.collisions > 0;
+    s.wrong_arrivals += e.wrong_arrival;
+    s.worst_contact_m_per_s = std::max(s.worst_contact_m_per_s, e.worst_contact_m_per_s);
+    if (e.success) times_s.push_back(e.time_s);
+  }
+  s.count = static_cast<double>(episodes.size());
+  for (double* mean : {&s.success, &s.located, &s.spl, &s.collided, &s.wrong_arrivals})
+    *mean /= s.count;
+  if (!times_s.empty()) s.median_s = median(std::move(times_s));
+  return s;
+}
+
 MappingCounts count(const MappingOutcome& mapping) {
   MappingCounts counts;
   counts.failures = mapping.failures;
@@ -88,8 +108,11 @@ std::vector<Figure> figures_of(const RunResult& run, std::size_t point) {
     const QuerySummary summary = summarize(queries(run.points[point], set));
     if (summary.queries == 0) continue;
     for (Figure& figure : figures_of(summary))
-      figures.push_back({of_set(set, std::move(figure.metric)), figure.value});
+      figures.push_back({under(name(set), std::move(figure.metric)), figure.value});
   }
+  if (!run.episodes.empty())
+    for (Figure& figure : figures_of(summarize(run.episodes)))
+      figures.push_back({under("episodes", std::move(figure.metric)), figure.value});
   return figures;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "bench/protocol/metrics/episode_summary.hpp"
 #include "bench/protocol/metrics/mapping_counts.hpp"
 #include "bench/protocol/run_result.hpp"
 
@@ -12,11 +13,12 @@
 namespace mh {
 
 QuerySummary summarize(std::span<const QueryScore> queries);
+EpisodeSummary summarize(std::span<const EpisodeScore> episodes);
 
 MappingCounts count(const MappingOutcome& mapping);
 
 /// Every figure of a run under one of its parameter points, under its name in all_metrics(). A
-/// query set that was not used has none.
+/// query set that was not used has none, nor has a run without episodes of these.
 std::vector<Figure> figures_of(const RunResult& run, std::size_t point);
 
 }  // namespace mh

@@ -142,7 +142,8 @@ std::string export_csv(const Store& store) {
 
 std::string export_json(const Store& store) {
   nlohmann::ordered_json all;
-  for (const std::string table : {"runs", "points", "metrics", "calls", "frames", "queries"}) {
+  for (const std::string table :
+       {"runs", "points", "metrics", "calls", "frames", "queries", "episodes"}) {
     const auto rows = store.values(fmt::format(
         "SELECT t.* FROM {} t JOIN (SELECT DISTINCT key, min(position) AS at FROM plan GROUP BY "
         "key) p ON p.key = t.key ORDER BY p.at, 2, 3, 4",

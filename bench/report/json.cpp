@@ -3,6 +3,7 @@
 
 #include <opencv2/core/version.hpp>
 
+#include "bench/report/episodes_report.hpp"
 #include "bench/report/figures_json.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/run_json.hpp"
@@ -105,7 +106,7 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
         over_scenes.push_back(std::move(json));
       }
   }
-  return {
+  Json json = {
       {"format", kResultsFormat},
       {"versions", {{"modelhouse", MH_VERSION}, {"compiler", __VERSION__}, {"opencv", CV_VERSION}}},
       {"suite", suite_json(suite)},
@@ -116,6 +117,8 @@ Json results_json(const Suite& suite, std::span<const RunResult> runs,
       {"comparisons_over_scenes", over_scenes},
       {"runs", run_list},
       {"missing", missing}};
+  if (suite.episodes) json["episodes"] = episodes_json(suite, runs);
+  return json;
 }
 
 }  // namespace mh

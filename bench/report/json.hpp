@@ -12,7 +12,8 @@ namespace mh {
 inline constexpr const char* kResultsFormat = "modelhouse-results-4";
 
 /// All of a suite's results that are a function of suite, binary and seeds: the resolved settings,
-/// digests, one entry per run with its queries, the rows of the table, the comparisons.
+/// digests, one entry per run with its queries and episodes, the rows of the table, the
+/// comparisons.
 nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResult> runs,
                                     std::span<const FailedRun> failed = {},
                                     std::span<const std::string> missing = {});

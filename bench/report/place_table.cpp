@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bench/report/comparisons_text.hpp"
+#include "bench/report/table2.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
 #include "slam/io/counted.hpp"
@@ -42,13 +43,34 @@ std::string title(QuerySet set) {
                                         : "graded by distance and angle";
 }
 
+/// A row of the paper's Table 2: of each of its columns value(column).
+template <class Value>
+std::vector<std::string> paper_row(std::string_view title, const Value& value) {
+  std::vector<std::string> cells{fmt::format("  {}", title)};
+  for (const Table2Column& column : kTable2Columns) {
+    if (column.published == nullptr) continue;
+    const std::optional<double> number = value(column);
+    cells.push_back(
+        number ? fmt::format("{:.{}f}", (column.unit == "%" ? 100 : 1) * *number, column.decimals)
+               : "-");
+  }
+  return cells;
+}
+
+std::vector<std::string> paper_headings() {
+  std::vector<std::string> headings{""};
+  for (const Table2Column& column : kTable2Columns)
+    if (column.published != nullptr) headings.emplace_back(column.published_heading);
+  return headings;
+}
+
 /// Table in the form of the paper's Table 2. Empty if there were no queries, as in a suite of
 /// outside trajectories.
 std::string paper_table(const Block& block) {
-  const bool is_published = block.suite.published == Published::kTable2;
+  const std::span<const PublishedRow> published = published_rows(block.suite);
   const auto asked = [&](QuerySet set) { return most_queries(block, set) > 0; };
-  if (!is_published && std::ranges::none_of(kQuerySets, asked)) return "";
-  TextTable table({"", "Reloc. success (%)", "Average distance (m)"});
+  if (published.empty() && std::ranges::none_of(kQuerySets, asked)) return "";
+  TextTable table(paper_headings());
   for (const QuerySet set : kQuerySets) {
     if (!asked(set)) continue;
     table.add_line(fmt::format("{}, {}", title(set),
@@ -59,19 +81,22 @@ std::string paper_table(const Block& block) {
       std::string missing = incomplete(block.suite, *row);
       if (missing.empty() && block.system(row).is_asked() && s.queries < most_queries(block, set))
         missing = fmt::format("{:.0f} of them", s.queries);
-      table.add(
-          {"  " + block.system(row).name,
-           s.queries > 0 ? fmt::format("{:.2f}", 100 * s.success) : "-", meters(s.distance_mean_m)},
-          !missing.empty() ? missing
-          : saturated      ? "saturated"
-                           : "");
+      table.add(paper_row(block.system(row).name,
+                          [&](const Table2Column& column) {
+                            return s.queries > 0 ? column.measured(s) : std::nullopt;
+                          }),
+                !missing.empty() ? missing
+                : saturated      ? "saturated"
+                                 : "");
     }
   }
-  if (is_published) {
+  if (!published.empty()) {
     table.add_line(
         "published, other data (the paper's Table 2: a real house of 60 m2, YOLOv3 boxes)");
-    table.add({"  the paper's semantic system", "79.25", "0.0512"});
-    table.add({"  ORB-SLAM2", "71.43", "0.0945"});
+    for (const PublishedRow& row : published)
+      table.add(paper_row(row.system, [&](const Table2Column& column) {
+        return std::optional(row.*column.published);
+      }));
     table.add_line("  (as released, ORB-SLAM2's answers depend on the order of its queries)");
   }
   const std::string rule = std::string(90, '-') + "\n";

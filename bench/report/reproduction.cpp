@@ -6,7 +6,6 @@
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/fingerprint.hpp"
 #include "bench/suite/outside_program.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "slam/core/digest.hpp"
 
 namespace mh {
@@ -28,7 +27,7 @@ Json reproduction_json(const Suite& suite, std::span<const RunResult> runs) {
   }
   if (suite.environments.size() == 1) {
     const SceneFrame& frame = suite.environments.front().frame;
-    if (frame.up) command += fmt::format(" --up {}", name(*frame.up));
+    if (frame.up) command += fmt::format(" --up {}", name_of(*frame.up, words(*frame.up)));
     if (frame.floor_z_m) command += fmt::format(" --floor-z {}", *frame.floor_z_m);
   }
   command += fmt::format(" --trials {}", suite.trials);

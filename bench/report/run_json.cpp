@@ -6,7 +6,7 @@
 #include "bench/protocol/loop_audit.hpp"
 #include "bench/report/figures_json.hpp"
 #include "bench/suite/json_fields.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "slam/config/slam.hpp"
 
 namespace mh {
 namespace {
@@ -56,7 +56,7 @@ Json settings_json(const RunSpec& spec, Json settings) {
 Json points_json(const RunResult& run) {
   Json points = Json::array();
   for (std::size_t i = 0; i < run.points.size(); ++i) {
-    Json point = {{"settings", settings_json(run.spec, to_json(run.spec.points[i]))}};
+    Json point = {{"settings", settings_json(run.spec, json_of(run.spec.points[i]))}};
     for (const QuerySet set : kQuerySets) {
       Json list = Json::array();
       for (const QueryScore& q : queries(run.points[i], set)) list.push_back(query_json(q));
@@ -81,30 +81,32 @@ Json run_json(const RunResult& run) {
   const MappingOutcome& m = run.mapping;
   std::size_t keyframes = 0;
   for (const MappedFrame& call : m.calls) keyframes += call.keyframe_added ? 1 : 0;
-  return {{"name", run.spec.name},
-          {"status", "done"},
-          {"environment", run.spec.environment.name},
-          {"system", run.spec.system.name},
-          {"labels", name(run.spec.labels)},
-          {"level", level_name(run.spec.level)},
-          {"trial", run.spec.trial},
-          {"seed", run.spec.seed},
-          {"place", place_json(run.place)},
-          {"digests", digests_json(run)},
-          {"mapping",
-           {{"settings", settings_json(run.spec, to_json(run.spec.slam))},
-            {"track_calls", m.calls.size()},
-            {"failures", m.failures},
-            {"restarts", m.restarts},
-            {"dropped", m.dropped},
-            {"before_map", m.before_map},
-            {"gave_up", m.gave_up},
-            {"skipped", json_of(m.skipped)},
-            {"keyframes_made", keyframes},
-            {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
-            {"matchers", matches_json(m.matches)}}},
-          {"trajectory", figures_json(figures_of(run.trajectory))},
-          {"points", points_json(run)}};
+  Json json = {{"name", run.spec.name},
+               {"status", "done"},
+               {"environment", run.spec.environment.name},
+               {"system", run.spec.system.name},
+               {"labels", name(run.spec.labels)},
+               {"level", level_name(run.spec.level)},
+               {"trial", run.spec.trial},
+               {"seed", run.spec.seed},
+               {"place", place_json(run.place)},
+               {"digests", digests_json(run)},
+               {"mapping",
+                {{"settings", settings_json(run.spec, json_of(run.spec.slam))},
+                 {"track_calls", m.calls.size()},
+                 {"failures", m.failures},
+                 {"restarts", m.restarts},
+                 {"dropped", m.dropped},
+                 {"before_map", m.before_map},
+                 {"gave_up", m.gave_up},
+                 {"skipped", json_of(m.skipped)},
+                 {"keyframes_made", keyframes},
+                 {"loops", loops_json(audit_loops(m.loops, run.truth, run.spec.protocol))},
+                 {"matchers", matches_json(m.matches)}}},
+               {"trajectory", figures_json(figures_of(run.trajectory))},
+               {"points", points_json(run)}};
+  if (run.spec.episodes) json["episodes"] = json_of(run.episodes);
+  return json;
 }
 
 Json run_json(const FailedRun& run) {

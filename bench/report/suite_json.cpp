@@ -5,7 +5,6 @@
 
 #include "bench/suite/json_fields.hpp"
 #include "bench/suite/shipped.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/config/slam.hpp"
 
@@ -53,7 +52,7 @@ Json environment_json(const Suite& suite, const Environment& e) {
   sources(e, [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
     json[source.key] = path ? source_json(suite, *path) : Json();
   });
-  json.update(to_json(e.frame));
+  json.update(json_of(e.frame));
   return json;
 }
 
@@ -75,7 +74,7 @@ Json episodes_json(const Suite& suite) {
     });
     variants.push_back(std::move(json));
   }
-  Json json = to_json(spec);
+  Json json = json_of(spec);
   json["variants"] = variants;
   return json;
 }
@@ -87,7 +86,7 @@ Json system_json(const SystemSpec& system) {
     for (const auto& [setting, value] : system.settings) slam[setting] = value.as_string();
     return {{"name", system.name}, {"system", name(system.kind)}, {"slam", slam}};
   }
-  const OutsideProgram& p = system.outside;
+  const OutsideProgram& p = *system.outside;
   if (p.is_library())
     return {{"name", system.name},
             {"library", p.library},
@@ -104,7 +103,7 @@ Json sweep_json(const Sweep& sweep) {
   Json points = Json::array();
   for (const SlamConfig& point : sweep.points) {
     Json values;
-    const Json settings = to_json(point);
+    const Json settings = json_of(point);
     for (const std::string& name : sweep.varied) {
       const std::size_t dot = name.find('.');
       values[name] = settings.at(name.substr(0, dot)).at(name.substr(dot + 1));
@@ -135,14 +134,14 @@ Json suite_json(const Suite& suite) {
       {"trials", suite.trials},
       {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
       {"seed", suite.seed},
-      {"slam", to_json(suite.slam)},
+      {"slam", json_of(suite.slam)},
       {"parameters", sweep_json(suite.sweep)},
-      {"graded", suite.graded ? to_json(*suite.graded) : Json()},
+      {"graded", json_of(suite.graded)},
       {"episodes", episodes_json(suite)},
       {"compare", compare_json(suite)},
       {"measure", name(suite.measure)},
       {"non_inferiority_margin", json_of(suite.non_inferiority_margin)},
-      {"protocol", to_json(suite.protocol)}};
+      {"protocol", json_of(suite.protocol)}};
 }
 
 }  // namespace mh

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bench/report/episodes_report.hpp"
 #include "bench/report/graded_report.hpp"
 #include "bench/report/place_table.hpp"
 #include "bench/report/recordings_text.hpp"
@@ -95,17 +96,18 @@ std::string main_table(const Suite& suite, std::span<const Row> rows, Extent ext
 std::string results_table(const Suite& suite, std::span<const RunResult> runs,
                           std::span<const FailedRun> failed, std::span<const std::string> missing) {
   const std::vector<Row> rows = make_rows(suite, runs, failed);
-  return warning_of_cut(suite, runs) + main_table(suite, rows, Extent::kWhole) +
-         graded_table(suite, rows) + base_text(suite) + recordings_text(suite, runs) +
-         failures_text(failed) + missing_text(missing);
+  return warning_of_cut(suite, runs) + episodes_table(suite, runs) +
+         main_table(suite, rows, Extent::kWhole) + graded_table(suite, rows) + base_text(suite) +
+         recordings_text(suite, runs) + failures_text(failed) + missing_text(missing);
 }
 
 std::string results_screen(const Suite& suite, std::span<const RunResult> runs,
                            std::span<const FailedRun> failed,
                            std::span<const std::string> missing) {
-  return warning_of_cut(suite, runs) +
-         main_table(suite, make_rows(suite, runs, failed), Extent::kScreen) +
-         failures_text(failed) + missing_text(missing);
+  const std::string tables =
+      suite.episodes ? episodes_table(suite, runs)
+                     : main_table(suite, make_rows(suite, runs, failed), Extent::kScreen);
+  return warning_of_cut(suite, runs) + tables + failures_text(failed) + missing_text(missing);
 }
 
 }  // namespace mh

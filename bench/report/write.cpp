@@ -10,8 +10,8 @@
 #include "bench/report/table.hpp"
 #include "bench/report/topdown.hpp"
 #include "bench/suite/code_version.hpp"
+#include "bench/suite/json_fields.hpp"
 #include "bench/suite/run_key.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "scenes/recordings/images/png.hpp"
 #include "scenes/recordings/images/write_image.hpp"
 #include "slam/core/digest.hpp"
@@ -39,7 +39,7 @@ std::string mark_of(const fs::path& image) {
 
 /// Everything that determines a contact sheet. Levels, which may drop different frames, share one.
 std::string identity_of_views(const World& world, const RunSpec& spec) {
-  std::string text = fmt::format("{} {} {} ", code_of_run(), to_json(spec.environment.frame).dump(),
+  std::string text = fmt::format("{} {} {} ", code_of_run(), json_of(spec.environment.frame).dump(),
                                  spec.max_frames ? std::to_string(*spec.max_frames) : "all");
   for (const InputDigest& input : world.inputs)
     for (const char* seen : {"scene", "robot", "mapping_tour", "kidnapped_tour"})

@@ -5,7 +5,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "bench/suite/cache.hpp"
@@ -38,9 +37,10 @@ void add_written(const fs::path& folder, int depth, std::vector<fs::path>& writt
       add_written(it->path(), depth - 1, written);
 }
 
-/// Where the environment's inputs are stored, by their names; generated inputs are not stored.
-std::map<std::string_view, fs::path> sources_of(const Environment& e) {
-  std::map<std::string_view, fs::path> all;
+/// Where a run's inputs are stored, by their names; generated inputs are not stored.
+std::map<std::string, fs::path> sources_of(const RunSpec& spec) {
+  const Environment& e = spec.environment;
+  std::map<std::string, fs::path> all;
   if (e.is_recorded()) {
     all["sequence"] = split_sequence(e.sequence).second;
     if (e.queries) all["queries"] = split_sequence(*e.queries).second;
@@ -49,6 +49,11 @@ std::map<std::string_view, fs::path> sources_of(const Environment& e) {
   sources(e, [&](const WorldSource& source, const std::optional<fs::path>& path) {
     if (path && source.reveals_truth) all[source.key] = *path;
   });
+  if (!spec.episodes) return all;
+  for (const EpisodeVariant& variant : spec.episodes->variants)
+    sources(variant, [&](const WorldSource& source, const std::optional<fs::path>& path) {
+      if (path && source.reveals_truth) all[input_name(variant, source)] = *path;
+    });
   return all;
 }
 
@@ -56,13 +61,13 @@ std::map<std::string_view, fs::path> sources_of(const Environment& e) {
 
 OutsideProgram program_of(const RunSpec& spec, const World& world,
                           const std::vector<fs::path>& of_bench) {
-  OutsideProgram program = spec.system.outside;
+  OutsideProgram program = *spec.system.outside;
   program.hidden = of_bench;
   program.hidden.push_back(Cache::default_folder());
   std::set<fs::path> around = ancestors_of(program.folder);
   for (const fs::path& folder : of_bench) around.merge(ancestors_of(folder));
   for (const fs::path& folder : around) add_written(folder, 2, program.hidden);
-  const auto sources = sources_of(spec.environment);
+  const auto sources = sources_of(spec);
   for (const InputDigest& input : world.inputs) {
     const auto source = sources.find(input.name);
     if (source == sources.end() || source->second.empty() || is_generated(source->second)) continue;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bench/protocol/world/variant.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/run/shard.hpp"
 #include "bench/suite/check_labels.hpp"
@@ -20,7 +21,9 @@
 #include "sim/world/travel.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
+#include "slam/core/labels.hpp"
 #include "slam/io/error.hpp"
+#include "slam/occupancy/objects.hpp"
 #include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
@@ -125,16 +128,52 @@ class Places {
 
 }  // namespace
 
+void check_episodes(const Suite& suite) {
+  if (!suite.episodes) return;
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format("{}: {}", suite.file.string(), what));
+  };
+  for (const std::string& goal : suite.episodes->goals)
+    if (!is_thing(class_by_name(goal).value()))
+      refuse(fmt::format("episodes.goals: '{}' is never an object of a map", goal));
+  if (suite.labels.size() > 1)
+    refuse(fmt::format("labels: {}: one kind makes the robot's map in `episodes`",
+                       suite.labels.size()));
+  if (suite.labels.front() == Labels())
+    refuse("labels: 'none' leaves maps without objects: episodes have no goals then");
+  if (suite.levels.size() > 1)
+    refuse(fmt::format("levels: {}: a place is mapped at one; episodes at others are `variants`",
+                       suite.levels.size()));
+  if (suite.sweep.points.size() > 1)
+    refuse("parameters: a suite with `episodes` sweeps none: give systems settings of their own");
+  if (suite.trials != 1)
+    refuse(fmt::format("trials: {}: episodes are repeated by their `starts`", suite.trials));
+  if (suite.graded) refuse("graded: a suite asks either graded queries or `episodes`");
+  for (const Environment& environment : suite.environments)
+    if (!is_driven(environment.mapping_tour.string()))
+      refuse(
+          fmt::format("mapping_tour: '{}' is not driven by a robot: its lasers and the height "
+                      "of its camera are not known",
+                      environment.mapping_tour.string()));
+  for (const SystemSpec& system : suite.systems)
+    if (system.is_outside() && system.outside->mode == OutsideMode::kTrajectory)
+      refuse(fmt::format(
+          "system '{}': a program that only returns a trajectory cannot be kidnapped: protocol: "
+          "conversation or a library can",
+          system.name));
+}
+
 std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
                            const std::function<void(std::string_view)>& say) {
+  check_episodes(suite);
   const std::vector<RunSpec> specs = expand(suite);
   check_names(suite, specs);
   for (const std::string& line : suite.notes) say(line);
   std::set<std::string> outside;
   for (const RunSpec& spec : specs)
     if (spec.system.is_outside() && outside.insert(spec.system.name).second) {
-      require_program(spec.system.outside);
-      if (const std::string warning = unseen_program(spec.system.outside); !warning.empty())
+      require_program(*spec.system.outside);
+      if (const std::string warning = unseen_program(*spec.system.outside); !warning.empty())
         say(warning);
     }
   std::vector<Job> jobs;
@@ -172,6 +211,7 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
     std::set<LabelMode> labels;
   };
   std::map<std::pair<fs::path, SceneFrame>, Uses> uses_of;  // of each scene
+  std::set<std::string> with_goals;                         // environments
   for (const Job& job : jobs) {
     const RunSpec& spec = job.spec;
     const Environment& e = spec.environment;
@@ -186,12 +226,16 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                           const std::optional<fs::path>& pedestrian = {}) {
       if (is_generated(scene)) return;
       Uses& uses = uses_of[{scene, e.frame}];
-      uses.labels.insert(spec.labels.mode);
+      uses.labels.insert(labels_of_frames(spec).mode);
       if (tour && !is_generated(*tour)) uses.drives.insert({e.robot, *tour, pedestrian});
     };
     note(e.scene, e.mapping_tour, e.pedestrian);
     note(e.scene, e.kidnapped_tour);
     note(e.queried_scene(), e.query_tour);
+    if (spec.episodes && with_goals.insert(e.name).second) {
+      say(fmt::format("checking the goals in {}", e.name));
+      require_goals(spec);
+    }
   }
   for (const auto& [place, uses] : uses_of) {
     const auto& [file, frame] = place;

@@ -10,10 +10,14 @@
 
 namespace mh {
 
+/// Checks what a suite with episodes asks for; passes others.
+/// @throws InputError if it combines them with what has no meaning there.
+void check_episodes(const Suite& suite);
+
 /// Every run of a suite, in the order of expand(), with the key of its result and what it sees.
 /// @param say  receives which recordings are left out and which programs cannot be seen
-/// @throws InputError if two runs have one name or are equal in all but their names, or if an input
-/// cannot be read.
+/// @throws InputError if two runs have one name or are equal in all but their names, if an input
+/// cannot be read; as check_episodes().
 std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
                            const std::function<void(std::string_view)>& say);
 
@@ -21,7 +25,7 @@ std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
 PlannedKeys keys_by_name(const std::vector<Job>& jobs);
 
 /// Checks all inputs that the runs name, each once: outside programs can be started, scenes read,
-/// tours driven. Generated scenes and motions are valid by construction.
+/// tours driven, goals of episodes found. Generated scenes and motions are valid by construction.
 /// @throws InputError
 void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                      const std::function<void(std::string_view)>& say);

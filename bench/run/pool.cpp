@@ -191,10 +191,18 @@ class Pool {
     if (news) report();
   }
 
+  double time_limit_s(const RunSpec& spec) const {
+    double limit_s = options_.time_limit_s;
+    if (spec.episodes)
+      limit_s += static_cast<double>(spec.episodes->count()) * spec.episodes->limit_s;
+    return limit_s;
+  }
+
   void keep_within_limits(Running& r) const {
     if (!r.cut_off.empty()) return;
-    if (options_.time_limit_s > 0 && r.process->age_s() > options_.time_limit_s)
-      r.cut_off = fmt::format("took longer than the limit of {:g} s", options_.time_limit_s);
+    const double limit_s = time_limit_s(r.what.job.spec);
+    if (options_.time_limit_s > 0 && r.process->age_s() > limit_s)
+      r.cut_off = fmt::format("took longer than the limit of {:g} s", limit_s);
     else if (options_.memory_limit_mb > 0 && r.process->rss_mb() > options_.memory_limit_mb)
       r.cut_off =
           fmt::format("needed more memory than the limit of {:.0f} MB", options_.memory_limit_mb);

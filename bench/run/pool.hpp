@@ -33,9 +33,10 @@ struct PoolProgress {
 };
 
 struct PoolOptions {
-  int jobs = 1;                 ///< parallel processes; never changes a result
-  double time_limit_s = 14400;  ///< wall time of one run; 0 = none
-  double memory_limit_mb = 0;   ///< resident set size of one run; 0 = none
+  int jobs = 1;  ///< parallel processes; never changes a result
+  /// Wall time of one run, besides the simulated time that its episodes may take; 0 = none.
+  double time_limit_s = 14400;
+  double memory_limit_mb = 0;  ///< resident set size of one run; 0 = none
   std::filesystem::path executable;
   std::filesystem::path work_folder;  ///< for logs and descriptions of runs; exists
   /// The command line of a run's process. It finishes by putting the result into the store.

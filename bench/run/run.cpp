@@ -237,6 +237,7 @@ void execute_run(const SingleRunOptions& order) {
   }();
   require_key(spec, world.inputs, order.key);
   const fs::path folder = order.folder / spec.name;
+  const fs::path ended = folder / "episodes";
   make_output_folder(folder);
   if (!order.metrics_only) remove_run(folder);
   const RunResult run = run_one(spec, world,
@@ -247,7 +248,8 @@ void execute_run(const SingleRunOptions& order) {
                                  .system = {},
                                  .tamper = {},
                                  .occupancy = !order.metrics_only,
-                                 .maps = Cache(order.maps)});
+                                 .maps = Cache(order.maps),
+                                 .episodes = {.ended = Cache(ended), .key = order.key}});
   if (!order.metrics_only) {
     const ProcessorTimer timer(products_s);
     write_run(folder, world, run, order.key);
@@ -258,6 +260,8 @@ void execute_run(const SingleRunOptions& order) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Store(order.store)
       .put(order.key, run, cost_of_this_process(run, wall_s, world_s, products_s, order));
+  std::error_code no_matter;
+  fs::remove_all(ended, no_matter);
 }
 
 }  // namespace mh

@@ -26,7 +26,7 @@ struct BenchOptions {
   Shard shard;
   /// nullopt: light is baked for this command alone (once), and each run redoes its mapping.
   std::optional<std::filesystem::path> cache;
-  double time_limit_s = 14400;  ///< of one run; 0 = none
+  double time_limit_s = 14400;  ///< as in PoolOptions
   double memory_limit_mb = 0;   ///< of one run; 0 = none
   /// Disk space, in options.out, for images that runs share; 0: each renders its own. Never changes
   /// a result.

@@ -31,7 +31,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum StreamName : std::uint64_t { kMapping = 1, kHeldOut = 2, kSecondTour = 3, kGraded = 4 };
+enum StreamName : std::uint64_t {
+  kMapping = 1,
+  kHeldOut = 2,
+  kSecondTour = 3,
+  kGraded = 4,
+  kTourOfEpisodes = 0x746f7572
+};
+
+constexpr std::size_t kFramesOfEpisode = 80;  // that are mapped in the time that it takes
 
 /// Counts units of work and reports their share.
 class WorkDone {
@@ -43,7 +51,7 @@ class WorkDone {
     furthest_ = position;
     report_(static_cast<double>(furthest_) / static_cast<double>(all_));
   }
-  void one_more() { reached(furthest_ + 1); }
+  void more(std::size_t count) { reached(furthest_ + count); }
 
  private:
   std::size_t all_, furthest_ = 0;
@@ -98,16 +106,19 @@ class WatchedFrames : public SequenceView {
  public:
   /// @param recording  where they come from; empty: they are simulated
   /// @param spent_s  grows by the time spent
-  WatchedFrames(const Sequence& inner, std::string recording, const FilesAsKeyed& files,
-                const RunTamper& tamper, double& spent_s)
+  /// @param labeled  false: they are shown without labels
+  WatchedFrames(const Sequence& inner, std::string recording, bool labeled,
+                const FilesAsKeyed& files, const RunTamper& tamper, double& spent_s)
       : SequenceView(inner),
         recording_(std::move(recording)),
+        labeled_(labeled),
         files_(files),
         tamper_(tamper),
         spent_s_(spent_s) {}
   RgbdFrame frame(std::size_t i, RandomStream noise) const override try {
     const ProcessorTimer timer(spent_s_);
     RgbdFrame frame = checked(i, noise);
+    if (!labeled_) frame.semantics = {};
     if (tamper_.frame) tamper_.frame(i, frame);
     return frame;
   } catch (const InputChanged&) {
@@ -130,10 +141,16 @@ class WatchedFrames : public SequenceView {
   }
 
   const std::string recording_;
+  const bool labeled_;
   const FilesAsKeyed& files_;
   const RunTamper& tamper_;
   double& spent_s_;
 };
+
+/// Whether the system is shown the labels that the frames have.
+bool shows_labels(const RunSpec& spec) {
+  return !spec.episodes || spec.labels != Labels();
+}
 
 /// The recording that answers a set of queries; empty: they are simulated.
 std::string recording_of(const Environment& environment, QuerySet set) {
@@ -171,8 +188,8 @@ class QueryRound {
       : spec_(spec),
         set_(set),
         world_(world),
-        frames_(*sequence_of(world, set), recording_of(spec.environment, set), files, tamper,
-                run.frames_s),
+        frames_(*sequence_of(world, set), recording_of(spec.environment, set), shows_labels(spec),
+                files, tamper, run.frames_s),
         has_stamp_(increasing_stamps(frames_)),
         run_(run),
         stream_(query_stream(spec, set)) {}
@@ -209,7 +226,7 @@ class QueryRound {
         } catch (const UnusableFrame& error) {
           if (p == 0) run_.mapping.skipped.add(error.what());
         }
-        work.one_more();
+        work.more(1);
       }
     }
   }
@@ -255,7 +272,8 @@ std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
   for (const QuerySet set : kQuerySets)
     if (const Sequence* sequence = sequence_of(world, set))
       queries += asked_frames(set, *sequence, spec.protocol).size();
-  return world.mapping->size() + spec.points.size() * queries;
+  const std::size_t episodes = spec.episodes ? spec.episodes->count() : 0;
+  return world.mapping->size() + spec.points.size() * queries + kFramesOfEpisode * episodes;
 }
 
 /// Writes the mapping frames as a folder and returns an outside program's trajectory for them.
@@ -289,7 +307,7 @@ Trajectory run_recorded(const RunSpec& spec, const World& world, const Sequence&
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, const fs::path& folder,
                                     const std::vector<fs::path>& hidden) {
   if (spec.system.is_outside()) {
-    if (spec.system.outside.mode == OutsideMode::kTrajectory) return nullptr;
+    if (spec.system.outside->mode == OutsideMode::kTrajectory) return nullptr;
     return make_conversation_system(program_of(spec, world, hidden), world.mapping->camera(),
                                     spec.seed, folder / kOutsideLog);
   }
@@ -299,7 +317,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
 }
 
 RandomStream mapping_stream(const RunSpec& spec) {
-  return RandomStream(spec.seed).fork(kMapping);
+  return RandomStream(spec.seed).fork(spec.episodes ? kTourOfEpisodes : kMapping);
 }
 
 std::vector<RandomStream> shared_noises(const RunSpec& spec) {
@@ -327,7 +345,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   if (mapping.truth() != nullptr) run.truth = *mapping.truth();
   OccupancyMapper mapper(camera);
   const FilesAsKeyed files(world.held);
-  const WatchedFrames frames(mapping, spec.environment.sequence, files, tamper, run.frames_s);
+  const WatchedFrames frames(mapping, spec.environment.sequence, shows_labels(spec), files, tamper,
+                             run.frames_s);
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
     if (!tools.occupancy) return;
@@ -339,7 +358,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   // From before the program starts: what it reads is not seen here.
   std::vector<fs::path> of_program;
   if (spec.system.is_outside())
-    for (const ProgramFile& file : files_of(spec.system.outside)) of_program.push_back(file.file);
+    for (const ProgramFile& file : files_of(*spec.system.outside)) of_program.push_back(file.file);
   PathWatch program_paths(of_program);
   require_unchanged(world.held);
 
@@ -408,6 +427,17 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       system.use_point(p);
       for (const QueryRound& round : rounds)
         round.put(system, p, end, lists(run, round.set()), work);
+    }
+    if (spec.episodes) {
+      EpisodeTools episodes = tools.episodes;
+      episodes.require_unchanged = [&] {
+        require_unchanged(world.held);
+        program_paths.require_unmoved();
+      };
+      episodes.status = tools.status;
+      episodes.done = [&] { work.more(kFramesOfEpisode); };
+      run.episodes = ask_episodes(spec, world, system, run.estimate, run.frames.truth_from_estimate,
+                                  mapping_noise(mapping_stream(spec), 0), episodes);
     }
     system.finish();
     run.times = system.times();

@@ -10,6 +10,7 @@
 #include "bench/protocol/run_result.hpp"
 #include "bench/protocol/system.hpp"
 #include "bench/protocol/world/world.hpp"
+#include "bench/run/ask_episodes.hpp"
 
 namespace mh {
 
@@ -43,8 +44,8 @@ std::vector<RandomStream> shared_noises(const RunSpec& spec);
 /// The stream that the queries of a set draw from (bench/protocol/query.hpp).
 RandomStream query_stream(const RunSpec& spec, QuerySet set);
 
-/// What a run receives in addition to its spec and world; only `system`, `tamper` and
-/// `occupancy` can change a result.
+/// What a run receives in addition to its spec and world; only `system`, `tamper`, `occupancy` and
+/// `episodes.only` can change a result.
 struct RunTools {
   std::filesystem::path folder = ".";  ///< exists; an outside program's files go there
   std::vector<std::filesystem::path> hidden =
@@ -60,10 +61,12 @@ struct RunTools {
   RunTamper tamper = {};
   bool occupancy = true;  ///< false: RunResult::volume stays null and its grid empty
   Cache maps = Cache();   ///< finished maps of the same mapping are loaded from and stored here
+  EpisodeTools episodes = {};  ///< what they are kept by, and which; the rest is set by the run
 };
 
 /// Executes one run from the first frame to the last query: maps the tour, freezes, scores the
-/// trajectory, makes the queries under each parameter point, builds the occupancy map.
+/// trajectory, makes the queries under each parameter point, runs the episodes, builds the
+/// occupancy map.
 /// @throws InputChanged if a file that it reads on demand was changed since the world was built;
 /// neither a map nor a result of it is kept.
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools);

@@ -21,6 +21,7 @@ namespace {
 // Measured: docs/measurements/cost_of_the_bench.md, "Shares of an array".
 constexpr double kImage_s = 0.066;      // an image with blur and rolling shutter, 640x480
 constexpr double kFrame_s = 0.017;      // noise, SLAM and files of a run, per frame with an image
+constexpr double kEpisode_s = 6;        // 0.3 s per simulated second
 constexpr double kAssumedFrames = 600;  // generated rooms have 300 to 1,500
 
 double frames_of(const std::optional<std::filesystem::path>& tour, const RunSpec& run) {
@@ -119,17 +120,19 @@ std::string images_of(const RunSpec& run) {
 
 PredictedCost predicted_cost(const RunSpec& run) {
   const Environment& e = run.environment;
-  const double mapped = e.is_recorded()
+  const double toured = e.is_recorded()
                             ? frames_of(e.sequence, run)
                             : frames_of(e.mapping_tour, run) + frames_of(e.kidnapped_tour, run);
+  const double mapped = run.episodes ? toured / run.episodes->ticks_per_frame : toured;
   const double second = e.is_recorded() ? frames_of(e.queries, run) : frames_of(e.query_tour, run);
   const double share = run.protocol.test_interval > 0 ? 1.0 / run.protocol.test_interval : 0;
+  const double episodes = run.episodes ? static_cast<double>(run.episodes->count()) : 0;
   const double graded = graded_queries(run);
   const double asked =
       static_cast<double>(run.points.size()) * (share * (mapped + second) + graded);
   return {.images = images_of(run),
           .images_s = e.is_recorded() ? 0 : kImage_s * (mapped + share * second + graded),
-          .own_s = kFrame_s * (mapped + asked)};
+          .own_s = kFrame_s * (mapped + asked) + kEpisode_s * episodes};
 }
 
 std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts) {

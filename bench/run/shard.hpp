@@ -26,7 +26,7 @@ std::string images_of(const RunSpec& run);
 struct PredictedCost {
   std::string images;   ///< as images_of()
   double images_s = 0;  ///< making these images; spent once by all runs that see them
-  double own_s = 0;     ///< tracking, queries, noise
+  double own_s = 0;     ///< tracking, queries, noise, episodes
 };
 
 /// Predicts from the lengths of the tours: `handheld:SEED:FRAMES` states one, others count as 600

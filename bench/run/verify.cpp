@@ -53,7 +53,7 @@ std::optional<Difference> difference_of_queries(const RunResult& a, const RunRes
 std::string describe(const Difference& d) {
   std::string text = d.run.empty() ? "" : d.run + ": ";
   text += d.phase + ": ";
-  if (d.phase == "world") return text + d.stage + " differs";
+  if (d.phase == "world" || d.phase == "episodes") return text + d.stage + " differs";
   text += fmt::format("frame {}", d.frame);
   if (d.restart > 0) text += fmt::format(" (after {})", counted(d.restart, "restart"));
   return text + ": " + d.stage + " differs";
@@ -77,6 +77,12 @@ std::optional<Difference> first_difference(const RunResult& a, const RunResult& 
   for (std::size_t p = 0; p < std::min(a.points.size(), b.points.size()); ++p)
     for (const QuerySet set : kQuerySets)
       if (const auto difference = difference_of_queries(a, b, p, set)) return difference;
+  if (a.episodes.size() != b.episodes.size())
+    return Difference{a.spec.name, "episodes", 0, 0, "number"};
+  for (std::size_t i = 0; i < a.episodes.size(); ++i)
+    if (a.episodes[i].digest != b.episodes[i].digest)
+      return Difference{a.spec.name, "episodes", 0, 0,
+                        fmt::format("{}, start {}", a.episodes[i].variant, a.episodes[i].start)};
   if (a.map_digest != b.map_digest) return Difference{a.spec.name, "result", 0, 0, "map"};
   return std::nullopt;
 }
@@ -102,6 +108,7 @@ ExecutionDigests digests(const Suite& suite, std::span<const RunResult> runs) {
     for (const PointResult& point : run.points)
       for (const QuerySet set : kQuerySets)
         for (const QueryScore& q : queries(point, set)) take(q.answer);
+    for (const EpisodeScore& episode : run.episodes) d.poses = chained(d.poses, episode.digest);
     d.maps = chained(d.maps, run.map_digest);
   }
   const std::string text = results_json(suite, runs).dump();

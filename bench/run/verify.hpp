@@ -12,10 +12,11 @@ namespace mh {
 /// Where two executions of one suite first differ.
 struct Difference {
   std::string run;    ///< empty: before any run
-  std::string phase;  ///< "world", "mapping", "held_out", "second_tour" or "result"
+  std::string phase;  ///< "world", "mapping", "held_out", "second_tour", "episodes" or "result"
   std::size_t frame = 0;
   int restart = 0;    ///< of the mapping, when the frame was shown
-  std::string stage;  ///< "scene", "path", "order", "image", "matching", "pose", "map", "scores"
+  std::string stage;  ///< "scene", "path", "order", "image", "matching", "pose", "map", "scores";
+                      ///< of episodes which
   friend bool operator==(const Difference&, const Difference&) = default;
 };
 

@@ -69,10 +69,6 @@ void require_version(SQLite::Database& db, const fs::path& file) {
   if (version == kSchemaVersion) return;
   if (version == 0)
     throw InputError(fmt::format("{}: is a database, but no results file", file.string()));
-  if (version >= kEpisodesVersion)
-    throw InputError(fmt::format(
-        "{}: holds episodes of a kidnapped robot, not queries: episodes.json beside it has them",
-        file.string()));
   throw InputError(
       version > kSchemaVersion
           ? fmt::format("{}: has schema {}, this version of modelhouse reads {}: use a newer one",

@@ -10,7 +10,6 @@
 #include "bench/store/columns.hpp"
 #include "bench/store/frame_row.hpp"
 #include "bench/suite/run_key.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/json_text.hpp"
 #include "slam/io/settings_io.hpp"
@@ -108,6 +107,14 @@ void put_queries(SQLite::Database& db, const std::string& key, const RunResult& 
       }
 }
 
+void put_episodes(SQLite::Database& db, const std::string& key, const RunResult& run) {
+  RowWriter rows(db, "episodes");
+  for (std::size_t i = 0; i < run.episodes.size(); ++i) {
+    rows << key << i << run.episodes[i];
+    rows.end_row();
+  }
+}
+
 void load_calls(SQLite::Database& db, const std::string& key, RunResult& run) {
   SQLite::Statement s(db, "SELECT * FROM calls WHERE key = ? ORDER BY call");
   s.bind(1, key);
@@ -145,6 +152,15 @@ void load_queries(SQLite::Database& db, const std::string& key, RunResult& run) 
       }
       s.reset();
     }
+}
+
+void load_episodes(SQLite::Database& db, const std::string& key, RunResult& run) {
+  SQLite::Statement s(db, "SELECT * FROM episodes WHERE key = ? ORDER BY episode");
+  s.bind(1, key);
+  while (s.executeStep()) {
+    RowReader reader(s, 2);  // after key and episode
+    fields(run.episodes.emplace_back(), reader);
+  }
 }
 
 void load_times(SQLite::Database& db, const std::string& key, RunResult& run) {
@@ -193,6 +209,7 @@ void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run
   put_calls(db, key, run);
   put_frames(db, key, run);
   put_queries(db, key, run);
+  put_episodes(db, key, run);
   put_run(db, key, run.spec, "", result_json(run).dump());
 }
 
@@ -225,6 +242,7 @@ RunResult load_rows(SQLite::Database& db, const std::filesystem::path& file, con
     load_calls(db, key, run);
     load_frames(db, key, run);
     load_queries(db, key, run);
+    load_episodes(db, key, run);
     load_times(db, key, run);
   } catch (const Json::exception& error) {
     refuse(json_fault(error));

@@ -15,12 +15,13 @@ namespace mh {
 // `plan` has, because a lost row leaves no digest to check.
 
 /// The tables whose rows have one, in the order of the schema.
-inline constexpr const char* kDigestedTables[] = {"suite", "plan",   "runs",    "points", "metrics",
-                                                  "calls", "frames", "queries", "times"};
+inline constexpr const char* kDigestedTables[] = {"suite",    "plan",  "runs",   "points",
+                                                  "metrics",  "calls", "frames", "queries",
+                                                  "episodes", "times"};
 
 /// The tables whose rows `runs.row_count` counts.
-inline constexpr const char* kTablesOfRuns[] = {"points", "metrics", "calls",
-                                                "frames", "queries", "times"};
+inline constexpr const char* kTablesOfRuns[] = {"points",  "metrics",  "calls", "frames",
+                                                "queries", "episodes", "times"};
 
 /// Registers the SQL function row_digest(table, value, ...) with a connection; it returns a 64-bit
 /// integer. A number's digest is that of its value: 3 and 3.0 have the same.

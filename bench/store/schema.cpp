@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/protocol/episode_score.hpp"
 #include "bench/protocol/mapping.hpp"
 #include "bench/protocol/score.hpp"
 #include "bench/store/columns.hpp"
@@ -40,6 +41,9 @@ CREATE TABLE frames (
 CREATE TABLE queries (
   key TEXT NOT NULL, point INTEGER NOT NULL, query_set TEXT NOT NULL,
 {}  digest INTEGER, PRIMARY KEY (key, point, query_set, frame)) WITHOUT ROWID;
+CREATE TABLE episodes (
+  key TEXT NOT NULL, episode INTEGER NOT NULL,
+{}  digest_of_row INTEGER, PRIMARY KEY (key, episode)) WITHOUT ROWID;
 CREATE TABLE times (
   key TEXT PRIMARY KEY, wall_s REAL, cpu_s REAL, slam_s REAL, frames_s REAL, max_rss_mb REAL,
   host TEXT, finished TEXT, fingerprint TEXT, calls TEXT,
@@ -49,7 +53,7 @@ CREATE TABLE claims (
   beat INTEGER NOT NULL) WITHOUT ROWID;
 )sql",
       columns_of<SemanticConfig>(), columns_of<MappedFrame>(), columns_of<FrameRow>(),
-      columns_of<QueryScore>());
+      columns_of<QueryScore>(), columns_of<EpisodeScore>());
 }
 
 }  // namespace mh

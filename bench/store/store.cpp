@@ -16,8 +16,8 @@
 #include "bench/store/result_rows.hpp"
 #include "bench/store/row_digest.hpp"
 #include "bench/suite/fingerprint.hpp"
+#include "bench/suite/json_fields.hpp"
 #include "bench/suite/runs.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/json_number.hpp"
@@ -87,7 +87,7 @@ nlohmann::ordered_json to_json(const SuiteOverrides& o) {
                         : nlohmann::ordered_json()},
       {"trials", o.trials ? nlohmann::ordered_json(*o.trials) : nlohmann::ordered_json()},
       {"frames", o.max_frames ? nlohmann::ordered_json(*o.max_frames) : nlohmann::ordered_json()}};
-  if (o.frame != SceneFrame{}) json["scene_frame"] = to_json(o.frame);
+  if (o.frame != SceneFrame{}) json["scene_frame"] = json_of(o.frame);
   if (!o.set.empty()) json["set"] = o.set;
   if (!o.vary.empty()) json["vary"] = o.vary;
   for (const auto& [pattern, found] : o.found)
@@ -101,7 +101,7 @@ SuiteOverrides overrides_from_json(const nlohmann::json& json) {
   if (!json.at("scene").is_null()) o.scene = json.at("scene").get<std::string>();
   if (!json.at("trials").is_null()) o.trials = whole_number<int>(json.at("trials"));
   if (!json.at("frames").is_null()) o.max_frames = whole_number<std::size_t>(json.at("frames"));
-  if (json.contains("scene_frame")) o.frame = scene_frame_from_json(json.at("scene_frame"));
+  if (json.contains("scene_frame")) read_json(json.at("scene_frame"), o.frame);
   if (json.contains("set")) o.set = json.at("set");
   if (json.contains("vary")) o.vary = json.at("vary");
   if (json.contains("found"))

@@ -17,9 +17,6 @@ std::string_view code_of_run() {
 std::string_view code_of_audit() {
   return MH_CODE_AUDIT;
 }
-std::string_view code_of_episodes() {
-  return MH_CODE_EPISODES;
-}
 std::string_view built_commit() {
   return MH_COMMIT;
 }

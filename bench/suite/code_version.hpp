@@ -13,8 +13,6 @@ std::string_view code_of_detections();
 std::string_view code_of_run();
 /// Digest of the sources that determine an audit of it, in addition.
 std::string_view code_of_audit();
-/// Digest of the sources that determine an episode, in addition to those of a run.
-std::string_view code_of_episodes();
 /// `git describe` of what was built; empty outside a repository.
 std::string_view built_commit();
 

@@ -106,6 +106,23 @@ void sources(E& e, Visit&& visit) {
         e.pedestrian);
 }
 
+template <MaybeConst<Environment> E, class Visit>
+void fields(E& e, Visit& v) {
+  auto& [name, category, scene, robot, mapping_tour, frame, query_tour, query_scene, kidnapped_tour,
+         sensors, pedestrian, sequence, queries, settings, classes, topics, suite_states_readout] =
+      e;
+  v("name", name);
+  v("category", category);
+  sources(e, [&](const WorldSource& source, auto& path) { v(source.key, path); });
+  v("frame", frame);
+  v("sequence", sequence);
+  v("queries", queries);
+  v("settings", settings);
+  v("classes", classes);
+  v("topics", topics);
+  v("suite_states_readout", suite_states_readout);
+}
+
 /// A recording that a pattern of a suite found.
 struct FoundRecording {
   std::string sequence;

@@ -39,7 +39,7 @@ EpisodeVariant read_variant(YamlReader node, const SuitePaths& paths) {
 EpisodesSpec read_episodes(YamlReader node, const SuitePaths& paths) {
   EpisodesSpec spec;
   MappingReader reader(node);
-  fields(spec, reader);
+  episode_settings(spec, reader);
   for (const YamlReader& goal : node.at("goals").items()) check_goal(goal);
   require_distinct(node.at("goals"), spec.goals);
   if (spec.dark_s >= spec.limit_s)

@@ -24,9 +24,21 @@ struct EpisodeVariant {
 template <MaybeConst<EpisodeVariant> V, class Visit>
 void sources(V& variant, Visit&& visit) {
   using enum SourceKind;
-  visit(WorldSource{"scene", kScene, "furniture moved, evening light"}, variant.scene);
-  visit(WorldSource{"pedestrian", kPedestrian, "present during the episodes"}, variant.pedestrian);
+  visit(WorldSource{"scene", kScene, "furniture moved, evening light", false, true}, variant.scene);
+  visit(WorldSource{"pedestrian", kPedestrian, "present during the episodes", false, true},
+        variant.pedestrian);
   visit(WorldSource{"level", kLevel, "of the robot's camera"}, variant.level);
+}
+
+template <MaybeConst<EpisodeVariant> V, class Visit>
+void fields(V& variant, Visit& v) {
+  v("name", variant.name);
+  sources(variant, [&](const WorldSource& source, auto& path) { v(source.key, path); });
+}
+
+/// Name of a variant's source among the inputs of a run: "variant moved: scene".
+inline std::string input_name(const EpisodeVariant& variant, const WorldSource& source) {
+  return "variant " + variant.name + ": " + source.key;
 }
 
 /// Kidnappings of a robot, as data: the same starts for every system (docs/navigation.md).
@@ -39,12 +51,13 @@ struct EpisodesSpec {
   int ticks_per_frame = 3;
   double dark_s = 1.0;
   std::vector<EpisodeVariant> variants = {{}};
+  std::size_t count() const { return variants.size() * starts; }
   friend bool operator==(const EpisodesSpec&, const EpisodesSpec&) = default;
 };
 
-/// All but the variants, which are lists of sources().
+/// All but the variants: the section's single values.
 template <MaybeConst<EpisodesSpec> E, class Visit>
-void fields(E& episodes, Visit& v) {
+void episode_settings(E& episodes, Visit& v) {
   auto& [goals, starts, seed, limit_s, arrival_m, ticks_per_frame, dark_s, variants] = episodes;
   v("goals", goals, setting::required({}), "classes; each start draws one that the scene has");
   v("starts", starts, {1, 100000}, "of each variant in each environment");
@@ -54,6 +67,12 @@ void fields(E& episodes, Visit& v) {
     "success: the robot's center is at most this far from the object");
   v("ticks_per_frame", ticks_per_frame, {1, 60}, "of the camera's 30 Hz: 3 are 10 Hz");
   v("dark_s", dark_s, {0, 60}, "blank frames at the start; less than limit_s");
+}
+
+template <MaybeConst<EpisodesSpec> E, class Visit>
+void fields(E& episodes, Visit& v) {
+  episode_settings(episodes, v);
+  v("variants", episodes.variants);
 }
 
 /// Reads the section `episodes` of a suite.

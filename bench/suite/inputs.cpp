@@ -63,7 +63,7 @@ InputDigest input_of(std::string name, const fs::path& source, const ReadRecord&
 std::vector<InputDigest> inputs_of_program(const SystemSpec& system) {
   std::vector<InputDigest> inputs;
   if (!system.is_outside()) return inputs;
-  for (const ProgramFile& file : files_of(system.outside)) {
+  for (const ProgramFile& file : files_of(*system.outside)) {
     const std::uint64_t content = digest_file(file.file);
     inputs.push_back({fmt::format("{}: {}", system.name, file.word), content, {}});
   }
@@ -91,39 +91,20 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
     if (e.queries) add("queries", *e.queries);
     return inputs;
   }
-  const auto load_place = [&](const fs::path& file) {
-    if (is_generated(file)) {  // depends only on its name; expensive to create
-      parse_generated(file.string());
-      return;
-    }
-    forget_scene();  // only what is read is noted
-    scene(file, e.frame);
-  };
-  const auto load = [&](SourceKind kind, const fs::path& file) {
-    switch (kind) {
-      case SourceKind::kScene:
-        return load_place(file);
-      case SourceKind::kMotion:
-        return check_motion(file);
-      case SourceKind::kTour:
-        return static_cast<void>(load_tour(file));
-      case SourceKind::kLevel:
-        return static_cast<void>(load_sensor_config(file));
-      case SourceKind::kPedestrian:
-        return static_cast<void>(load_pedestrian(file));
-      case SourceKind::kRobot:
-        break;
-    }
-    std::vector<std::string> warnings;
-    load_robot(file, &warnings);
-    for (const std::string& warning : warnings) warn(warning);
-  };
   for (const bool of_scenes :
        {false, true})  // they take the longest: what else is wrong is said first
     sources(e, [&](const WorldSource& source, const std::optional<fs::path>& path) {
       if (path && (source.kind == SourceKind::kScene) == of_scenes)
-        inputs.push_back(read(source.key, std::string(name_of(source.kind, kKinds)), *path,
-                              [&](const fs::path& file) { load(source.kind, file); }));
+        inputs.push_back(this->source(source.key, source.kind, *path, e.frame));
+    });
+  return inputs;
+}
+
+std::vector<InputDigest> InputReader::inputs_of(const EpisodesSpec& episodes) {
+  std::vector<InputDigest> inputs;
+  for (const EpisodeVariant& variant : episodes.variants)
+    sources(variant, [&](const WorldSource& source, const std::optional<fs::path>& path) {
+      if (path) inputs.push_back(this->source(input_name(variant, source), source.kind, *path, {}));
     });
   return inputs;
 }
@@ -131,12 +112,13 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
 std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of(spec.environment);
   if (!spec.environment.is_recorded()) inputs.push_back(level(spec.level));
-  if (const auto& detector = spec.labels.detector)
+  if (const auto& detector = labels_of_frames(spec).detector)
     inputs.push_back(
         read("detector",
              fmt::format("detector {} {}", detector->config.string(), detector->classes.string()),
              source_of(*detector), [&](const fs::path&) { open_detector(*detector); }));
   if (!spec.vocabulary.empty()) inputs.push_back(vocabulary(spec.vocabulary));
+  if (spec.episodes) std::ranges::move(inputs_of(*spec.episodes), std::back_inserter(inputs));
   std::ranges::copy(program(spec.system), std::back_inserter(inputs));
   std::ranges::sort(inputs, {}, &InputDigest::name);
   return inputs;
@@ -179,7 +161,35 @@ void InputReader::warn(const std::string& warning) {
   if (warned_.insert(warning).second) say_("warning: " + warning);
 }
 
-InputDigest InputReader::read(const char* name, const std::string& kind, const fs::path& source,
+InputDigest InputReader::source(std::string name, SourceKind kind, const fs::path& path,
+                                const SceneFrame& frame) {
+  return read(std::move(name), std::string(name_of(kind, kKinds)), path,
+              [&](const fs::path& file) { load(kind, file, frame); });
+}
+
+void InputReader::load(SourceKind kind, const fs::path& file, const SceneFrame& frame) {
+  std::vector<std::string> warnings;
+  switch (kind) {
+    case SourceKind::kScene:
+      if (is_generated(file))  // depends only on its name; expensive to create
+        return static_cast<void>(parse_generated(file.string()));
+      forget_scene();  // only what is read is noted
+      return static_cast<void>(scene(file, frame));
+    case SourceKind::kMotion:
+      return check_motion(file);
+    case SourceKind::kTour:
+      return static_cast<void>(load_tour(file));
+    case SourceKind::kLevel:
+      return static_cast<void>(load_sensor_config(file));
+    case SourceKind::kPedestrian:
+      return static_cast<void>(load_pedestrian(file));
+    case SourceKind::kRobot:
+      load_robot(file, &warnings);
+      for (const std::string& warning : warnings) warn(warning);
+  }
+}
+
+InputDigest InputReader::read(std::string name, const std::string& kind, const fs::path& source,
                               const std::function<void(const fs::path&)>& load) {
   const std::pair key(kind, source);
   auto known = known_.find(key);
@@ -189,7 +199,7 @@ InputDigest InputReader::read(const char* name, const std::string& kind, const f
     known = known_.emplace(key, input_of(kind, source, scope.record())).first;
   }
   InputDigest input = known->second;
-  input.name = name;
+  input.name = std::move(name);
   return input;
 }
 

@@ -50,6 +50,9 @@ class InputReader {
   /// Only those of the environment: no level, vocabulary or program.
   std::vector<InputDigest> inputs_of(const Environment& environment);
 
+  /// Only those of the variants of episodes.
+  std::vector<InputDigest> inputs_of(const EpisodesSpec& episodes);
+
   /// One of them alone.
   InputDigest level(const std::filesystem::path& file);
   InputDigest vocabulary(const std::filesystem::path& file);
@@ -66,7 +69,10 @@ class InputReader {
 
  private:
   void warn(const std::string& warning);  ///< once
-  InputDigest read(const char* name, const std::string& kind, const std::filesystem::path& source,
+  InputDigest source(std::string name, SourceKind kind, const std::filesystem::path& path,
+                     const SceneFrame& frame);
+  void load(SourceKind kind, const std::filesystem::path& file, const SceneFrame& frame);
+  InputDigest read(std::string name, const std::string& kind, const std::filesystem::path& source,
                    const std::function<void(const std::filesystem::path&)>& load);
 
   std::map<std::pair<std::string, std::filesystem::path>, InputDigest> known_;  // by kind, source

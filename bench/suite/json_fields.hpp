@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,10 +18,12 @@
 #include "slam/core/se3.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/fields.hpp"
+#include "slam/io/setting.hpp"
 #include "slam/io/words.hpp"
 
 // Records as JSON, by their lists of fields (slam/io/fields.hpp). Values that are unknown or not
-// finite become null, a digest 16 hexadecimal digits, a pose [x, y, z, qx, qy, qz, qw].
+// finite become null, a digest 16 hexadecimal digits, a pose [x, y, z, qx, qy, qz, qw], a word that
+// of words(value).
 
 namespace mh {
 
@@ -46,8 +49,12 @@ nlohmann::ordered_json json_of(const T& value) {
     return std::isfinite(value) ? Node(value) : Node();
   } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
     return value;
+  } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
+    return value.string();
   } else if constexpr (kIsOptional<T>) {
     return value ? json_of(*value) : Node();
+  } else if constexpr (kIsShared<T>) {
+    return json_of(*value);
   } else if constexpr (kIsVector<T> || kIsArray<T>) {
     Node list = Node::array();
     for (const auto& element : value) list.push_back(json_of(element));
@@ -62,15 +69,12 @@ nlohmann::ordered_json json_of(const T& value) {
     return Node::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
   } else if constexpr (kAsList<T>) {
     Node list = Node::array();
-    const auto add = [&](const char*, const auto& field) { list.push_back(json_of(field)); };
-    fields(value, add);
+    for_each_field(value, [&](const char*, const auto& field) { list.push_back(json_of(field)); });
     return list;
   } else {
     Node object = Node::object();
-    const auto add = [&](const auto& name, const auto& field) {
-      object[key_of(name)] = json_of(field);
-    };
-    fields(value, add);
+    for_each_field(
+        value, [&](const auto& name, const auto& field) { object[key_of(name)] = json_of(field); });
     return object;
   }
 }
@@ -84,9 +88,15 @@ void read_json(const nlohmann::ordered_json& json, T&& value) {
     value = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
   } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
     value = json.get<Value>();
+  } else if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+    value = json.get<std::string>();
   } else if constexpr (kIsOptional<Value>) {
     value.reset();
     if (!json.is_null()) read_json(json, value.emplace());
+  } else if constexpr (kIsShared<Value>) {
+    auto whole = *value;
+    read_json(json, whole);
+    value = whole;
   } else if constexpr (kIsVector<Value>) {
     value.clear();
     for (const auto& element : json) read_json(element, value.emplace_back());
@@ -104,13 +114,10 @@ void read_json(const nlohmann::ordered_json& json, T&& value) {
     value = SE3(Eigen::Quaterniond(v(6), v(3), v(4), v(5)), Eigen::Vector3d(v(0), v(1), v(2)));
   } else if constexpr (kAsList<Value>) {
     std::size_t i = 0;
-    const auto take = [&](const char*, auto& field) { read_json(json.at(i++), field); };
-    fields(value, take);
+    for_each_field(value, [&](const char*, auto& field) { read_json(json.at(i++), field); });
   } else {
-    const auto take = [&](const auto& name, auto&& field) {
-      read_json(json.at(key_of(name)), field);
-    };
-    fields(value, take);
+    for_each_field(
+        value, [&](const auto& name, auto&& field) { read_json(json.at(key_of(name)), field); });
   }
 }
 

@@ -7,21 +7,6 @@
 #include "slam/io/settings_io.hpp"
 
 namespace mh {
-namespace {
-
-constexpr Names<LabelMode, 6> kLabels{{{"exact", LabelMode::kExact},
-                                       {"annotated", LabelMode::kAnnotated},
-                                       {"boxes", LabelMode::kBoxes},
-                                       {"detector", LabelMode::kDetector},
-                                       {"none", LabelMode::kNone},
-                                       {"recorded", LabelMode::kRecorded}}};
-
-}  // namespace
-
-std::string_view name(LabelMode labels) {
-  return name_of(labels, kLabels);
-}
-
 std::string name(const Labels& labels) {
   return labels.called.empty() ? std::string(name(labels.mode)) : labels.called;
 }
@@ -51,7 +36,7 @@ namespace {
 /// A name that is no kind of labels.
 std::string own_name(const YamlReader& node, const std::string& called) {
   check_folder_name(node, called);
-  if (value_of(called, kLabels))
+  if (value_of(called, words(LabelMode{})))
     node.fail(fmt::format("'{}' is a kind of labels: use another name", called));
   return called;
 }
@@ -59,7 +44,7 @@ std::string own_name(const YamlReader& node, const std::string& called) {
 /// `{of: exact, name: confused_25, confusion: 0.25}`
 Labels read_dose(YamlReader node) {
   const YamlReader of = node.at("of");
-  const LabelMode kind = one_of(of, kLabels);
+  const LabelMode kind = one_of(of, words(LabelMode{}));
   if (kind == LabelMode::kNone || kind == LabelMode::kRecorded)
     of.fail(fmt::format("'{}' labels have no dials", name(kind)));
   const std::string called = own_name(node, node.string("name"));
@@ -73,7 +58,7 @@ Labels read_dose(YamlReader node) {
 }  // namespace
 
 Labels read_label_source(YamlReader node, const std::filesystem::path& folder) {
-  if (!node.is_map()) return one_of(node, kLabels);
+  if (!node.is_map()) return one_of(node, words(LabelMode{}));
   if (node.find("of")) return read_dose(node);
   DetectorSpec spec;
   read_detector(node, folder, spec);

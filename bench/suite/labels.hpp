@@ -9,9 +9,22 @@
 #include "sim/sensors/config.hpp"
 #include "sim/sensors/labels.hpp"
 #include "slam/detect/settings.hpp"
+#include "slam/io/words.hpp"
 #include "slam/io/yaml.hpp"
 
 namespace mh {
+
+constexpr Names<LabelMode, 6> words(LabelMode) {
+  return {{{"exact", LabelMode::kExact},
+           {"annotated", LabelMode::kAnnotated},
+           {"boxes", LabelMode::kBoxes},
+           {"detector", LabelMode::kDetector},
+           {"none", LabelMode::kNone},
+           {"recorded", LabelMode::kRecorded}}};
+}
+constexpr std::string_view name(LabelMode labels) {
+  return name_of(labels, words(labels));
+}
 
 /// The origin of a run's labels: a kind that is drawn of a scene or recorded, or a real detector,
 /// whose labels replace those of the frames (then the kind is kNone). A kind that is drawn may have
@@ -31,9 +44,17 @@ struct Labels {
   friend bool operator==(const Labels&, const Labels&) = default;
 };
 
+template <MaybeConst<Labels> L, class Visit>
+void fields(L& labels, Visit& v) {
+  auto& [mode, detector, dials, called] = labels;
+  v("mode", mode);
+  v("detector", detector);
+  v("dials", dials);
+  v("called", called);
+}
+
 /// "exact", "none"; the own name of a detector or a dose.
 std::string name(const Labels& labels);
-std::string_view name(LabelMode labels);
 /// "exact labels", "labels from boxes", "no labels", "labels from yolox_nano", "exact labels,
 /// confused_25"
 std::string with_labels(const Labels& labels);

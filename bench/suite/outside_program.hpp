@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "slam/io/setting.hpp"
+#include "slam/io/words.hpp"
 
 namespace mh {
 
@@ -17,6 +18,12 @@ enum class OutsideMode {
   kTrajectory,    ///< receives a recorded folder, writes a trajectory
   kConversation,  ///< receives frame after frame over standard input and output
 };
+constexpr Names<OutsideMode, 2> words(OutsideMode) {
+  return {{{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
+}
+constexpr std::string_view name(OutsideMode mode) {
+  return name_of(mode, words(mode));
+}
 
 /// A SLAM system that a suite names by its command line or its shared library
 /// (docs/outside_systems.md).
@@ -36,6 +43,7 @@ struct OutsideProgram {
   std::vector<std::filesystem::path> hidden = {};
   std::string place = {};  ///< "suite.yaml:12", for messages; empty: not from a file
   bool is_library() const { return !library.empty(); }
+  friend bool operator==(const OutsideProgram&, const OutsideProgram&) = default;
 };
 
 /// "outside program 'orb' (./orb {settings})", "outside library 'mine' (libmine.so)": for messages.
@@ -58,6 +66,21 @@ void limits(P& p, Visit&& visit) {
         "how much it may write: exact for each file; the growth of its folder is checked as often "
         "as memory; 0: no limit",
         both);
+}
+
+/// What describes it to another process: all but what only the process that starts it knows.
+template <MaybeConst<OutsideProgram> P, class Visit>
+void fields(P& program, Visit& v) {
+  auto& [name, command, mode, folder, run_limit_s, reply_limit_s, memory_limit_mb, disk_limit_mb,
+         inputs, library, settings, hidden, place] = program;
+  v("name", name);
+  v("command", command);
+  v("mode", mode);
+  v("folder", folder);
+  limits(program, [&](const char* key, auto& value, auto&&...) { v(key, value); });
+  v("inputs", inputs);
+  v("library", library);
+  v("settings", settings);
 }
 
 /// Refuses an empty command, limits out of range, an unknown placeholder and a

@@ -15,7 +15,7 @@ enum class DropReset {
   kMap,      ///< the system discards its map, too
 };
 
-constexpr std::array<std::pair<std::string_view, DropReset>, 2> setting_words(DropReset) {
+constexpr std::array<std::pair<std::string_view, DropReset>, 2> words(DropReset) {
   return {{{"counter", DropReset::kCounter}, {"map", DropReset::kMap}}};
 }
 
@@ -25,7 +25,7 @@ enum class OnFailure {
   kContinue,  ///< continues with the next frame, as a camera does
 };
 
-constexpr std::array<std::pair<std::string_view, OnFailure>, 2> setting_words(OnFailure) {
+constexpr std::array<std::pair<std::string_view, OnFailure>, 2> words(OnFailure) {
   return {{{"rewind", OnFailure::kRewind}, {"continue", OnFailure::kContinue}}};
 }
 
@@ -38,7 +38,7 @@ enum class QueryTruth {
   kInterpolated,
 };
 
-constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> setting_words(QueryTruth) {
+constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> words(QueryTruth) {
   return {{{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
 }
 
@@ -48,7 +48,7 @@ enum class Attempts {
   kNewNoise,   ///< the same moment rendered with independent noise in every attempt
 };
 
-constexpr std::array<std::pair<std::string_view, Attempts>, 2> setting_words(Attempts) {
+constexpr std::array<std::pair<std::string_view, Attempts>, 2> words(Attempts) {
   return {{{"same_frame", Attempts::kSameFrame}, {"new_noise", Attempts::kNewNoise}}};
 }
 

@@ -1,31 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/suite/run_key.hpp"
 
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/fingerprint.hpp"
 #include "bench/suite/spec_json.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/core/digest.hpp"
+#include "slam/io/read_record.hpp"
+#include "slam/io/setting.hpp"
 
 namespace mh {
 namespace {
 
 namespace fs = std::filesystem;
 
+/// Calls visit(path) for each path of a record, however deep.
+template <class T, class Visit>
+void for_each_path(T& value, const Visit& visit) {
+  if constexpr (std::is_same_v<T, fs::path>) {
+    visit(value);
+  } else if constexpr (kIsOptional<T>) {
+    if (value) for_each_path(*value, visit);
+  } else if constexpr (kIsVector<T>) {
+    for (auto& element : value) for_each_path(element, visit);
+  } else if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string> && !kIsShared<T>) {
+    for_each_field(value, [&](const auto&, auto& field) { for_each_path(field, visit); });
+  }
+}
+
 /// Returns everything that determines a result, by content rather than by names and paths.
-nlohmann::ordered_json determining(const RunSpec& spec, std::span<const InputDigest> inputs) {
+nlohmann::ordered_json determining(RunSpec spec, std::span<const InputDigest> inputs) {
+  for (std::string* name :
+       {&spec.name, &spec.environment.name, &spec.environment.category, &spec.environment.sequence,
+        &spec.labels.called, &spec.map_labels.called})
+    name->clear();
+  spec.environment.queries.reset();
+  for_each_path(spec, [](fs::path& path) { path.clear(); });
   nlohmann::ordered_json json = to_json(spec);
-  if (spec.environment.suite_states_readout) json["suite_states_readout"] = true;
-  if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
-  for (const char* named : {"name", "environment", "level", "vocabulary"}) json.erase(named);
-  if (json["labels"].is_object())
-    for (const char* named : {"name", "network", "config", "classes", "boxes"})
-      json["labels"].erase(named);
+  json["inputs"] = nlohmann::ordered_json::object();
   for (const InputDigest& input : inputs) json["inputs"][input.name] = hex(input.digest);
-  if (spec.environment.frame != SceneFrame{}) json["scene_frame"] = to_json(spec.environment.frame);
   json["code"] = code_of_run();
   json["build"] = build_json();
   return json;
+}
+
+/// The last part of a path: what it names, wherever it is.
+fs::path name_of(const fs::path& source) {
+  return is_generated(source) ? source : source.filename();
+}
+
+std::string name_of_recording(const std::string& sequence) {
+  const auto [layout, path] = split_sequence(sequence);
+  return join_sequence(layout, name_of(path));
 }
 
 }  // namespace
@@ -44,12 +75,23 @@ void throw_changed(const RunSpec& spec) {
 }
 
 std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
-  nlohmann::ordered_json json = determining(spec, inputs);
-  json.erase("points");
-  json.erase("trial");  // implied by the seed
-  json["system"].erase("name");
-  json.erase("graded");
+  RunSpec mapping = spec;
+  mapping.trial = 0;  // implied by the seed
+  mapping.system.name.clear();
+  mapping.points.clear();
+  mapping.graded.reset();
+  if (spec.episodes)
+    mapping.episodes = EpisodesSpec{.goals = {}, .ticks_per_frame = spec.episodes->ticks_per_frame};
+  sources(mapping.environment, [](const WorldSource& source, auto& path) {
+    if (source.of_queries) path = std::decay_t<decltype(path)>();
+  });
+  nlohmann::ordered_json json = determining(std::move(mapping), inputs);
   json["inputs"].erase("queries");
+  if (spec.episodes)
+    for (const EpisodeVariant& variant : spec.episodes->variants)
+      sources(variant, [&](const WorldSource& source, const auto&) {
+        json["inputs"].erase(input_name(variant, source));
+      });
   sources(spec.environment, [&](const WorldSource& source, const auto&) {
     if (source.of_queries) json["inputs"].erase(source.key);
   });
@@ -60,35 +102,14 @@ std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
 }
 
 std::string stored_spec(const RunSpec& spec) {
-  nlohmann::ordered_json json = to_json(spec);
-  const auto name_of = [](const fs::path& source) {
-    return is_generated(source) ? source.string() : source.filename().string();
-  };
-  nlohmann::ordered_json& e = json["environment"];
-  if (spec.environment.is_recorded()) {
-    const auto shorten_sequence = [&](const char* key, const std::string& source) {
-      const auto [layout, path] = split_sequence(source);
-      e["recording"][key] = join_sequence(layout, name_of(path));
-    };
-    shorten_sequence("sequence", spec.environment.sequence);
-    if (spec.environment.queries) shorten_sequence("queries", *spec.environment.queries);
-    for (const auto& [key, file] :
-         {std::pair("settings", spec.environment.settings), {"classes", spec.environment.classes}})
-      if (file) e["recording"][key] = name_of(*file);
-  }
-  sources(spec.environment, [&](const WorldSource& source, const std::optional<fs::path>& path) {
-    if (path) e[source.key] = name_of(*path);
-  });
-  json["level"] = level_name(spec.level);
-  if (const auto& detector = spec.labels.detector)
-    for (const auto& [key, file] : {std::pair("network", detector->network),
-                                    {"config", detector->config},
-                                    {"classes", detector->classes},
-                                    {"boxes", detector->boxes}})
-      json["labels"][key] = file.filename().string();
-  json["vocabulary"] = name_of(spec.vocabulary);
-  if (spec.system.is_outside()) json["system"]["outside"].erase("folder");
-  return json.dump();
+  RunSpec stored = spec;
+  for_each_path(stored, [](fs::path& path) { path = name_of(path); });
+  stored.level = level_name(spec.level);
+  Environment& e = stored.environment;
+  if (e.is_recorded()) e.sequence = name_of_recording(e.sequence);
+  if (e.queries) e.queries = name_of_recording(*e.queries);
+  if (stored.system.outside) stored.system.outside->folder.clear();
+  return to_json(stored).dump();
 }
 
 }  // namespace mh

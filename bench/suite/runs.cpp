@@ -84,6 +84,8 @@ std::vector<RunSpec> expand(const Suite& suite) {
                               .points = studies[s].points,
                               .protocol = suite.protocol,
                               .graded = suite.graded,
+                              .episodes = suite.episodes,
+                              .map_labels = suite.episodes ? suite.labels.front() : Labels(),
                               .max_frames = suite.max_frames});
             }
         }

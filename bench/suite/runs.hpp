@@ -27,8 +27,39 @@ struct RunSpec {
   std::vector<SemanticConfig> points;
   ProtocolConfig protocol;
   std::optional<GradedSpec> graded = {};
+  std::optional<EpisodesSpec> episodes = {};  ///< asked after the queries
+  /// Of the frames of a run with episodes: they make the objects of the robot's map, even if the
+  /// system sees none.
+  Labels map_labels = {};
   std::optional<std::size_t> max_frames;
 };
+
+template <MaybeConst<RunSpec> S, class Visit>
+void fields(S& spec, Visit& v) {
+  auto& [name, environment, level, vocabulary, system, labels, trial, seed, slam, points, protocol,
+         graded, episodes, map_labels, max_frames] = spec;
+  v("name", name);
+  v("environment", environment);
+  v("level", level);
+  v("vocabulary", vocabulary);
+  v("system", system);
+  v("labels", labels);
+  v("trial", trial);
+  v("seed", seed);
+  v("slam", slam);
+  v("points", points);
+  v("protocol", protocol);
+  v("graded", graded);
+  v("episodes", episodes);
+  v("map_labels", map_labels);
+  v("max_frames", max_frames);
+}
+
+/// The labels that the frames of a run are made with. A system without labels is shown none of
+/// them.
+inline const Labels& labels_of_frames(const RunSpec& run) {
+  return run.episodes ? run.map_labels : run.labels;
+}
 
 /// Settings as a system sees them: neutral semantics for the plain one, none for an outside
 /// program.

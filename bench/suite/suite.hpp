@@ -26,13 +26,13 @@ namespace mh {
 
 /// A table of the paper that a suite reproduces.
 enum class Published { kTable2 };
-constexpr Names<Published, 1> setting_words(Published) {
+constexpr Names<Published, 1> words(Published) {
   return {{{"table2", Published::kTable2}}};
 }
 
 /// By which share of a system's answers it is judged.
 enum class Measure { kCorrect, kSuccess };
-constexpr Names<Measure, 2> setting_words(Measure) {
+constexpr Names<Measure, 2> words(Measure) {
   return {{{"correct", Measure::kCorrect}, {"success", Measure::kSuccess}}};
 }
 
@@ -44,7 +44,7 @@ struct SystemPair {
 
 /// "correct", "success"
 constexpr std::string_view name(Measure measure) {
-  return name_of(measure, setting_words(measure));
+  return name_of(measure, words(measure));
 }
 
 /// A benchmark as data: the grid environments x systems x labels x levels x parameters x trials.
@@ -63,9 +63,8 @@ struct Suite {
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
-  std::optional<GradedSpec> graded;  ///< asked in every environment
-  /// Kidnappings of a robot that drives by its map; `bench` then runs these and no queries.
-  std::optional<EpisodesSpec> episodes;
+  std::optional<GradedSpec> graded;      ///< asked in every environment
+  std::optional<EpisodesSpec> episodes;  ///< the same, of a robot that drives by its map
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;

@@ -6,15 +6,15 @@
 #include "bench/suite/names.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/io/error.hpp"
+#include "slam/io/settings_io.hpp"
 #include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace {
 
-constexpr Names<SystemKind, 2> kOurs{
-    {{"semantic", SystemKind::kSemantic}, {"plain", SystemKind::kPlain}}};
-constexpr Names<OutsideMode, 2> kModes{
-    {{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
+/// What a suite may call a system of ours.
+constexpr Names<SystemKind, 2> kOurs{words(SystemKind{})[0], words(SystemKind{})[1]};
+static_assert(name_of(SystemKind::kOutside, kOurs) == "?");
 
 void read_limits(YamlReader& node, OutsideProgram& program) {
   limits(program, [&](const char* key, double& value, const SettingRange& range, const char*,
@@ -45,7 +45,7 @@ std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
   for (const auto& [placeholder, list] : vary.entries()) {
     const std::vector<YamlReader> values = list.items();
     if (values.empty()) list.fail("has no value");
-    if (fill_in(spec.outside.command, placeholder, "") == spec.outside.command)
+    if (fill_in(spec.outside->command, placeholder, "") == spec.outside->command)
       list.fail(fmt::format("{{{}}} is not in the command", placeholder));
     std::vector<SystemSpec> more;
     for (const SystemSpec& one : all)
@@ -53,8 +53,8 @@ std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
         SystemSpec& with = more.emplace_back(one);
         with.name += fmt::format("_{}_{}", placeholder, value.as_string());
         check_folder_name(value, with.name);
-        with.outside.name = with.name;
-        with.outside.command = fill_in(one.outside.command, placeholder, value.as_string());
+        with.outside->name = with.name;
+        with.outside->command = fill_in(one.outside->command, placeholder, value.as_string());
       }
     all = std::move(more);
   }
@@ -80,13 +80,6 @@ void read_variant(YamlReader& node, SystemSpec& spec) {
 
 }  // namespace
 
-std::string_view name(SystemKind kind) {
-  return kind == SystemKind::kOutside ? "outside" : name_of(kind, kOurs);
-}
-std::string_view name(OutsideMode mode) {
-  return name_of(mode, kModes);
-}
-
 std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
   SystemSpec spec;
   if (!node.is_map()) {
@@ -103,7 +96,7 @@ std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
     return {spec};
   }
   spec.kind = SystemKind::kOutside;
-  OutsideProgram& program = spec.outside;
+  OutsideProgram& program = spec.outside.emplace();
   program.name = spec.name;
   program.folder = paths.folder.empty() ? "." : paths.folder;
   const bool is_library = node.find("library").has_value();
@@ -113,7 +106,7 @@ std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
     read_library(node, program, paths);
   } else {
     program.command = node.string("command");
-    program.mode = one_of(node.at("protocol"), kModes);
+    program.mode = one_of(node.at("protocol"), words(OutsideMode{}));
   }
   read_limits(node, program);
   if (const auto inputs = node.find("inputs"))
@@ -129,7 +122,7 @@ std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
   }
   node.finish();
   try {
-    for (const SystemSpec& one : all) validate(one.outside);
+    for (const SystemSpec& one : all) validate(*one.outside);
   } catch (const InputError& error) {
     node.at(key).fail(error.what());
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,16 +15,20 @@
 namespace mh {
 
 enum class SystemKind { kSemantic, kPlain, kOutside };
-std::string_view name(SystemKind kind);
-
-/// The mode of an outside system, as written in suites.
-std::string_view name(OutsideMode mode);
+constexpr Names<SystemKind, 3> words(SystemKind) {
+  return {{{"semantic", SystemKind::kSemantic},
+           {"plain", SystemKind::kPlain},
+           {"outside", SystemKind::kOutside}}};
+}
+constexpr std::string_view name(SystemKind kind) {
+  return name_of(kind, words(kind));
+}
 
 /// A system under test, as a suite names it.
 struct SystemSpec {
   SystemKind kind = SystemKind::kSemantic;
   std::string name = "semantic";
-  OutsideProgram outside;  ///< only for an outside system
+  std::optional<OutsideProgram> outside = {};  ///< of an outside system, and only of one
   /// Settings of its own, by full name (slam/config/by_name.hpp), in place of the suite's: only of
   /// ours under another name.
   std::vector<std::pair<std::string, YamlReader>> settings = {};
@@ -40,12 +45,22 @@ struct SystemSpec {
     return kind == SystemKind::kSemantic || kind == SystemKind::kPlain;
   }
   /// Answers queries: all but programs that return a trajectory.
-  bool is_asked() const { return !is_outside() || outside.mode != OutsideMode::kTrajectory; }
+  bool is_asked() const { return !is_outside() || outside->mode != OutsideMode::kTrajectory; }
   /// Its finished map is kept for later runs: it implements System::save() and restore().
   bool saves_map() const { return takes_settings(); }
   /// Labels affect its matching: equation 2.
   bool weighs_labels() const { return takes_settings() && sees_labels(); }
 };
+
+/// What a run is described by: its own settings are already among the run's, and whether it is
+/// repeatable matters only to the gate.
+template <MaybeConst<SystemSpec> S, class Visit>
+void fields(S& system, Visit& v) {
+  auto& [kind, name, outside, settings, repeatable] = system;
+  v("kind", kind);
+  v("name", name);
+  v("outside", outside);
+}
 
 /// Reads `semantic`, `plain`, one of these under another name with settings of its own, {name,
 /// system: plain, slam: {...}}, or a mapping {name, command, protocol: trajectory | conversation}

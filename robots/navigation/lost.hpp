@@ -16,7 +16,7 @@ struct LostConfig {
 /// What a lost robot does, the same with any SLAM system: it turns once in place, then drives to
 /// the place that its sensors show free and that is farthest from all places where it has looked
 /// around before, and turns again.
-/// @param grid    what was seen around it (LocalMap::grid)
+/// @param grid    what was seen around it (NearMap::grid)
 /// @param looked  places where it has turned, in the same frame; the last is where it stands
 /// @returns the path there; nullopt if no place is free
 std::optional<std::vector<Eigen::Vector2d>> way_to_look_around(

@@ -12,8 +12,8 @@
 #include "robots/navigation/belief.hpp"
 #include "robots/navigation/follow.hpp"
 #include "robots/navigation/grid.hpp"
-#include "robots/navigation/local_map.hpp"
 #include "robots/navigation/lost.hpp"
+#include "robots/navigation/near_map.hpp"
 
 namespace mh {
 
@@ -140,7 +140,7 @@ class Navigator {
   std::string name_;
   Grid2d<float> away_m_;
   Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();
-  LocalMap local_;
+  NearMap local_;
   PlaceBelief belief_;
   NavigatorState state_ = NavigatorState::kLooking;
   std::vector<std::string> said_;

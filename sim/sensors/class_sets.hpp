@@ -14,7 +14,7 @@ namespace mh {
 /// included) and things.
 enum class ClassSet { kAll, kThirteen, kFive, kTwo };
 
-constexpr std::array<std::pair<std::string_view, ClassSet>, 4> setting_words(ClassSet) {
+constexpr std::array<std::pair<std::string_view, ClassSet>, 4> words(ClassSet) {
   return {{{"all", ClassSet::kAll},
            {"thirteen", ClassSet::kThirteen},
            {"five", ClassSet::kFive},

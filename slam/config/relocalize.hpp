@@ -15,7 +15,7 @@ enum class Acceptance {
   kOurs,     ///< any consensus of ransac.min_inliers; guided searches follow, whatever its size
   kOrbSlam2  ///< by ORB-SLAM2's rules (Mur-Artal and Tardos 2017): see candidate_trial.hpp
 };
-constexpr std::array<std::pair<std::string_view, Acceptance>, 2> setting_words(Acceptance) {
+constexpr std::array<std::pair<std::string_view, Acceptance>, 2> words(Acceptance) {
   return {{{"ours", Acceptance::kOurs}, {"orb_slam2", Acceptance::kOrbSlam2}}};
 }
 
@@ -27,7 +27,7 @@ enum class NeighborScores {
   kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Answers
                ///< then depend on the order of the queries.
 };
-constexpr std::array<std::pair<std::string_view, NeighborScores>, 3> setting_words(NeighborScores) {
+constexpr std::array<std::pair<std::string_view, NeighborScores>, 3> words(NeighborScores) {
   return {{{"fresh", NeighborScores::kFresh},
            {"cleared", NeighborScores::kCleared},
            {"as_released", NeighborScores::kAsReleased}}};

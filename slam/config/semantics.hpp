@@ -16,7 +16,7 @@ enum class Overlap {
   kWords       ///< visual words alone
 };
 
-constexpr std::array<std::pair<std::string_view, Overlap>, 3> setting_words(Overlap) {
+constexpr std::array<std::pair<std::string_view, Overlap>, 3> words(Overlap) {
   return {{{"labels", Overlap::kLabels},
            {"augmented", Overlap::kAugmented},
            {"words", Overlap::kWords}}};
@@ -28,7 +28,7 @@ enum class CandidateLists {
   kSideBySide  ///< interleaved with those of Algorithm 1 over words alone
 };
 
-constexpr std::array<std::pair<std::string_view, CandidateLists>, 2> setting_words(CandidateLists) {
+constexpr std::array<std::pair<std::string_view, CandidateLists>, 2> words(CandidateLists) {
   return {{{"one", CandidateLists::kOne}, {"side_by_side", CandidateLists::kSideBySide}}};
 }
 
@@ -39,7 +39,7 @@ enum class WiderSearch {
   kAll         ///< among all keypoints; uses no label, so the plain system has it, too
 };
 
-constexpr std::array<std::pair<std::string_view, WiderSearch>, 3> setting_words(WiderSearch) {
+constexpr std::array<std::pair<std::string_view, WiderSearch>, 3> words(WiderSearch) {
   return {{{"none", WiderSearch::kNone},
            {"same_label", WiderSearch::kSameLabel},
            {"all", WiderSearch::kAll}}};

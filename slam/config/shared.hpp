@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "slam/io/fields.hpp"
+
 namespace mh {
 
 struct SlamConfig;
@@ -21,5 +23,7 @@ class SharedSlamConfig {
  private:
   std::shared_ptr<const SlamConfig> config_;  // never null
 };
+template <>
+inline constexpr bool kIsShared<SharedSlamConfig> = true;
 
 }  // namespace mh

@@ -28,24 +28,30 @@ struct SlamConfig {
   friend bool operator==(const SlamConfig&, const SlamConfig&) = default;
 };
 
+/// Its sections.
+template <MaybeConst<SlamConfig> C, class Visit>
+void fields(C& config, Visit& v) {
+  auto& [features, semantics, match, pose, bundle, keyframe, track, relocalize, loop] = config;
+  v("features", features);
+  v("semantics", semantics);
+  v("match", match);
+  v("pose", pose);
+  v("bundle", bundle);
+  v("keyframe", keyframe);
+  v("track", track);
+  v("relocalize", relocalize);
+  v("loop", loop);
+}
+
 /// Calls visit.section(name) before each section and visit(name, value, range, note) for each
 /// field.
 template <MaybeConst<SlamConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
-  auto& [features, semantics, match, pose, bundle, keyframe, track, relocalize, loop] = config;
-  const auto part = [&](const char* name, auto& c) {
+  const auto part = [&](const char* name, auto& section) {
     visit.section(name);
-    fields(c, visit);
+    fields(section, visit);
   };
-  part("features", features);
-  part("semantics", semantics);
-  part("match", match);
-  part("pose", pose);
-  part("bundle", bundle);
-  part("keyframe", keyframe);
-  part("track", track);
-  part("relocalize", relocalize);
-  part("loop", loop);
+  fields(config, part);
 }
 
 /// @throws InputError naming the field and its value.

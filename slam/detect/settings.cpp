@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/detect/settings.hpp"
 
-#include <utility>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -30,12 +30,11 @@ DetectorSpec detector_from_file(const fs::path& file) {
 }
 
 void read_detector(YamlReader& mapping, const fs::path& folder, DetectorSpec& spec) {
-  for (const auto& [key, path] : {std::pair("network", &spec.network),
-                                  {"config", &spec.config},
-                                  {"classes", &spec.classes},
-                                  {"boxes", &spec.boxes}})
-    if (const auto node = mapping.find(key))
-      *path = (folder / node->as_string()).lexically_normal();
+  for_each_field(spec, [&](const char* key, auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, fs::path>)
+      if (const auto node = mapping.find(key))
+        value = (folder / node->as_string()).lexically_normal();
+  });
   MappingReader read(mapping);
   fields(spec.settings, read);
   if (spec.network.empty() == spec.boxes.empty())

@@ -12,7 +12,7 @@ namespace mh {
 
 /// What a network's output means.
 enum class Head { kAuto, kYolox, kYoloxDecoded, kYolov5, kYolov8, kDarknet, kSegmentation };
-constexpr Names<Head, 7> setting_words(Head) {
+constexpr Names<Head, 7> words(Head) {
   return {{{"auto", Head::kAuto},
            {"yolox", Head::kYolox},
            {"yolox_decoded", Head::kYoloxDecoded},
@@ -24,7 +24,7 @@ constexpr Names<Head, 7> setting_words(Head) {
 
 /// How an image is fitted to the network's input size.
 enum class Letterbox { kAuto, kCorner, kCenter, kStretch };
-constexpr Names<Letterbox, 4> setting_words(Letterbox) {
+constexpr Names<Letterbox, 4> words(Letterbox) {
   return {{{"auto", Letterbox::kAuto},
            {"corner", Letterbox::kCorner},
            {"center", Letterbox::kCenter},
@@ -33,7 +33,7 @@ constexpr Names<Letterbox, 4> setting_words(Letterbox) {
 
 /// How a channel of 0 to 255 is normalized.
 enum class Normalize { kAuto, kNone, kUnit, kImagenet };
-constexpr Names<Normalize, 4> setting_words(Normalize) {
+constexpr Names<Normalize, 4> words(Normalize) {
   return {{{"auto", Normalize::kAuto},
            {"none", Normalize::kNone},
            {"unit", Normalize::kUnit},
@@ -41,13 +41,13 @@ constexpr Names<Normalize, 4> setting_words(Normalize) {
 }
 
 enum class Channels { kAuto, kBgr, kRgb };
-constexpr Names<Channels, 3> setting_words(Channels) {
+constexpr Names<Channels, 3> words(Channels) {
   return {{{"auto", Channels::kAuto}, {"bgr", Channels::kBgr}, {"rgb", Channels::kRgb}}};
 }
 
 /// Which pixels of a box get its label: all of them, or those of its foreground surface.
 enum class BoxFill { kBox, kForeground };
-constexpr Names<BoxFill, 2> setting_words(BoxFill) {
+constexpr Names<BoxFill, 2> words(BoxFill) {
   return {{{"box", BoxFill::kBox}, {"foreground", BoxFill::kForeground}}};
 }
 
@@ -99,6 +99,16 @@ struct DetectorSpec {
   DetectorSettings settings;
   friend bool operator==(const DetectorSpec&, const DetectorSpec&) = default;
 };
+
+template <MaybeConst<DetectorSpec> D, class Visit>
+void fields(D& spec, Visit& v) {
+  auto& [network, config, classes, boxes, settings] = spec;
+  v("network", network);
+  v("config", config);
+  v("classes", classes);
+  v("boxes", boxes);
+  v("settings", settings);
+}
 
 /// Returns a network or boxes, depending on a file's extension; weights have their .cfg next to
 /// them. @throws InputError if the extension is unknown.

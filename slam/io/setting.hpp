@@ -33,4 +33,29 @@ constexpr SettingRange required(SettingRange range) {
 }
 }  // namespace setting
 
+/// Turns a visitor of (name, value) into one of lists that also state ranges and meanings.
+template <class Visit>
+class EachField {
+ public:
+  explicit EachField(Visit& visit) : visit_(visit) {}
+  template <class Name, class T>
+  void operator()(const Name& name, T&& value) const {
+    visit_(name, value);
+  }
+  template <class T>
+  void operator()(const char* name, T& value, const SettingRange&, const char*) const {
+    visit_(name, value);
+  }
+
+ private:
+  Visit& visit_;
+};
+
+/// Calls visit(name, value) for each field of a record or of settings.
+template <class Record, class Visit>
+void for_each_field(Record& record, Visit&& visit) {
+  const EachField each(visit);
+  fields(record, each);
+}
+
 }  // namespace mh

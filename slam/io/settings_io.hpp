@@ -17,7 +17,7 @@
 namespace mh {
 
 // Visitors of settings' field lists. A setting is an int, a double, a bool, a text, an enumeration
-// E, whose Names setting_words(E) returns, or an optional or a vector of one of these.
+// E, whose Names words(E) returns, or an optional or a vector of one of these.
 
 /// "[0, 1)"
 inline std::string interval(const SettingRange& range) {
@@ -57,7 +57,7 @@ class MappingReader {
     } else if constexpr (std::is_same_v<T, std::string>) {
       value = node.as_string();
     } else if constexpr (std::is_enum_v<T>) {
-      value = one_of(node, setting_words(T{}));
+      value = one_of(node, words(T{}));
     } else if constexpr (std::is_integral_v<T>) {
       value = static_cast<T>(
           node.as_int(static_cast<std::int64_t>(range.min), static_cast<std::int64_t>(range.max)));
@@ -124,7 +124,7 @@ class SettingsWriter {
   template <class T>
   static std::string word_of(const T& value) {
     if constexpr (std::is_enum_v<T>) {
-      return std::string(name_of(value, setting_words(T{})));
+      return std::string(name_of(value, words(T{})));
     } else if constexpr (kIsOptional<T>) {
       return value ? word_of(*value) : "none";
     } else if constexpr (kIsVector<T>) {

@@ -8,7 +8,8 @@
 
 namespace mh {
 
-/// The words of an enumeration, for reading and writing files.
+/// The words of an enumeration E, for reading and writing files. Next to E is a function
+/// `constexpr Names<E, N> words(E)` that returns them: whatever reads or writes an E uses it.
 template <class T, std::size_t N>
 using Names = std::array<std::pair<std::string_view, T>, N>;
 

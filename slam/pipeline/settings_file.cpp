@@ -295,7 +295,7 @@ std::string format_slam_config(const SlamConfig& config, bool notes) {
 
 SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
   if (const auto base = yaml.find("base"))
-    config.relocalize.acceptance = one_of(*base, setting_words(Acceptance{}));
+    config.relocalize.acceptance = one_of(*base, words(Acceptance{}));
   SettingsReader reader(yaml);
   for_each_setting(config, reader);
   reader.finish();

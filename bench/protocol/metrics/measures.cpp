@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/protocol/metrics/episode_summary.hpp"
 #include "bench/protocol/metrics/mapping_counts.hpp"
 #include "bench/protocol/metrics/trajectory_score.hpp"
 
@@ -16,15 +17,18 @@ std::span<const Metric> all_metrics() {
     for (const Figure& f : figures_of(TrajectoryScore())) metrics.push_back(f.metric);
     for (const Figure& f : figures_of(MappingCounts())) metrics.push_back(f.metric);
     for (const QuerySet set : kQuerySets)
-      for (const Figure& f : figures_of(QuerySummary())) metrics.push_back(of_set(set, f.metric));
+      for (const Figure& f : figures_of(QuerySummary()))
+        metrics.push_back(under(name(set), f.metric));
+    for (const Figure& f : figures_of(EpisodeSummary()))
+      metrics.push_back(under("episodes", f.metric));
     return metrics;
   }();
   return all;
 }
 
-Metric of_set(QuerySet set, Metric metric) {
-  metric.name = fmt::format("{}.{}", name(set), metric.name);
-  if (!metric.count.empty()) metric.count = fmt::format("{}.{}", name(set), metric.count);
+Metric under(std::string_view questions, Metric metric) {
+  metric.name = fmt::format("{}.{}", questions, metric.name);
+  if (!metric.count.empty()) metric.count = fmt::format("{}.{}", questions, metric.count);
   return metric;
 }
 

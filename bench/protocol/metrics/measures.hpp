@@ -9,12 +9,12 @@
 
 namespace mh {
 
-/// Every metric of one run: those of its mapping by name, those of its queries as
-/// "held_out.success".
+/// Every metric of one run: those of its mapping by name, those of its queries and
+/// episodes as "held_out.success", "episodes.success".
 std::span<const Metric> all_metrics();
 
-/// Returns the metric of a query set under its name among those of a run.
-Metric of_set(QuerySet set, Metric metric);
+/// Returns the metric of a set of questions under its name among those of a run.
+Metric under(std::string_view questions, Metric metric);
 
 /// Finds a metric that the gate may judge; nullptr if there is none of that name.
 const Metric* find_measure(std::string_view name);

@@ -9,6 +9,7 @@
 #include "bench/protocol/mapping.hpp"
 #include "bench/protocol/world/cached_detections.hpp"
 #include "bench/protocol/world/cached_light.hpp"
+#include "bench/protocol/world/every_nth.hpp"
 #include "bench/protocol/world/first_frames.hpp"
 #include "bench/suite/inputs.hpp"
 #include "bench/suite/recorded_camera.hpp"
@@ -192,7 +193,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   if (environment.sensors)
     world.sensors = input("sensors", *environment.sensors,
                           [&] { return load_sensor_config(*environment.sensors); });
-  world.sensors = with_dials(world.sensors, spec.labels);
+  world.sensors = with_dials(world.sensors, labels_of_frames(spec));
   world.robot.camera = with_lens(world.robot.camera, world.sensors);
   if (environment.kidnapped_tour)
     input("kidnapped_tour", *environment.kidnapped_tour,
@@ -281,8 +282,16 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   } else {
     world = build(spec, threads, cache, say, baked);
   }
-  if (world.simulated) simulate(world, spec.labels.mode, images);
-  if (spec.labels.detector) add_detector(world, *spec.labels.detector, cache, say);
+  const Labels& labels = labels_of_frames(spec);
+  if (world.simulated) simulate(world, labels.mode, images);
+  if (labels.detector) add_detector(world, *labels.detector, cache, say);
+  if (spec.episodes) {
+    world.variants = make_variants(spec, *world.simulated, world.inputs, [&](Scene& scene) {
+      light_from_cache(scene, threads, cache, say, baked);
+    });
+    world.mapping =
+        every_nth(world.mapping, static_cast<std::size_t>(spec.episodes->ticks_per_frame));
+  }
   const ReadScope scope;
   std::ranges::move(inputs_of_program(spec.system), std::back_inserter(world.inputs));
   world.held.append(scope.record());

@@ -9,6 +9,7 @@
 #include "bench/protocol/metrics/query_summary.hpp"
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/protocol/world/graded.hpp"
+#include "bench/protocol/world/variant.hpp"
 #include "bench/suite/cache.hpp"
 #include "bench/suite/place_facts.hpp"
 #include "bench/suite/runs.hpp"
@@ -48,6 +49,7 @@ struct World {
   std::shared_ptr<const Sequence> second;       ///< what is queried in addition; or null
   std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
   std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
+  std::vector<VariantPlace> variants = {};      ///< of the episodes; empty: none
   std::shared_ptr<const Vocabulary> vocabulary;
   /// The rolling shutter's readout by the recordings' calibration, instead of the run's
   /// `track.readout_s`; absent: the run's applies.
@@ -72,8 +74,9 @@ void simulate(World& world, LabelMode labels, const SharedImages& images = {});
 /// What results record about it.
 PlaceFacts facts(const World& world, const RunSpec& spec);
 
-/// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours; or opens
-/// its recordings. Reports baking through `say`, since it takes long.
+/// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours, draws the
+/// starts of episodes; or opens its recordings. With episodes, what is mapped has their frame rate.
+/// Reports baking through `say`, since it takes long.
 /// @param images  of all runs in this environment at this level, and of no other
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bench/suite/json_fields.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
@@ -109,7 +109,7 @@ Json run_page_json(const PagesSource& source, const RunResult& run, std::size_t 
           {"inputs", inputs},
           {"trajectory_digest", hex(digest(run.estimate))},
           {"seed", run.spec.seed},
-          {"settings", has_settings ? to_json(run.spec.slam) : Json()}};
+          {"settings", has_settings ? json_of(run.spec.slam) : Json()}};
 }
 
 }  // namespace mh

@@ -30,9 +30,11 @@ void identify(PageTable& table, const RunSpec& spec, const std::string& status) 
   table.number({"trial", "trial"}, spec.trial);
 }
 
-/// Titles of a run's metrics: those of queries with the short name of their set.
+/// Titles of a run's metrics: those of queries with the short name of their set, those of episodes
+/// with that word.
 std::string metric_title(const Metric& metric) {
   std::string title = metric.heading.empty() ? metric.name : std::string(metric.heading);
+  if (metric.name.starts_with("episodes.")) return "episodes: " + title;
   for (const QuerySet set : kQuerySets) {
     const std::string prefix = fmt::format("{}.", name(set));
     if (!metric.name.starts_with(prefix)) continue;

@@ -73,11 +73,8 @@ PagesSource read_source(const fs::path& path) {
   const fs::path file = is_folder(path) ? path / "results.sqlite" : path;
   if (!is_file(file)) {
     if (source.audit.is_null())
-      throw InputError(fmt::format("{}: holds {}", source.folder.string(),
-                                   is_file(source.folder / "episodes.sqlite")
-                                       ? "episodes of a kidnapped robot, not queries: table.txt "
-                                         "and episodes.json there have them"
-                                       : "neither results.sqlite nor audit.json"));
+      throw InputError(
+          fmt::format("{}: holds neither results.sqlite nor audit.json", source.folder.string()));
     source.problem = "This folder holds an audit and no results.";
     return source;
   }

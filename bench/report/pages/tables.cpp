@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/report/episodes_report.hpp"
 #include "bench/report/pages/page_table.hpp"
+#include "bench/report/table2.hpp"
 #include "bench/report/wording.hpp"
 
 namespace mh {
@@ -13,15 +15,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const PageColumn kSystem{"system", "system"}, kLevel{"level", "level"}, kLabels{"labels", "labels"};
+const PageColumn kSystem{"system", "system"}, kLevel{"level", "level"}, kLabels{"labels", "labels"},
+    kQueries{"query_set", "queries"};
 
-/// What Table 2 of the paper states: success (share) and mean distance (m).
-struct PublishedRow {
-  const char* system;
-  double success, distance_m;
-};
-constexpr PublishedRow kTable2[] = {{"the paper's semantic system", 0.7925, 0.0512},
-                                    {"ORB-SLAM2", 0.7143, 0.0945}};
+PageColumn page_column(const Table2Column& column) {
+  return {.key = std::string(column.key),
+          .title = std::string(column.title),
+          .unit = std::string(column.unit),
+          .decimals = column.decimals};
+}
+
+/// Begins a row of the paper's own figures.
+void begin_published(PageTable& table, std::string_view system) {
+  table.begin_row();
+  table.text(kSystem, system);
+  table.text(kQueries, "published, other data");
+}
 
 void begin(PageTable& table, const Suite& suite, const CategoryRow& row) {
   table.begin_row();
@@ -103,38 +112,43 @@ Json table1_json(const Suite& suite, std::span<const CategoryRow> rows) {
 }
 
 Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
+  const std::span<const PublishedRow> published = published_rows(suite);
   PageTable table("Table 2: relocalization",
                   "Means over all environments of the suite. " + definitions_text(suite) +
-                      (suite.published ? " Published, other data: a real house of 60 m², labels "
-                                         "from YOLOv3's boxes."
-                                       : ""));
-  const PageColumn queries{"query_set", "queries"},
-      count{"queries", "queries per environment", "", 1}, success{"success", "success", "%", 2},
-      correct{"correct", "correct", "%", 2}, false_positive{"false_positive", "false pos.", "%", 2},
-      mean_m{"distance_mean_m", "mean distance", "m", 4},
-      median_m{"distance_median_m", "median distance", "m", 4}, remark{"remark", "remark"};
+                      (published.empty() ? ""
+                                         : " Published, other data: a real house of 60 m², labels "
+                                           "from YOLOv3's boxes."));
   for (const QuerySet set : kQuerySets)
     for (const CategoryRow& row : rows) {
       const QuerySummary& s = summary(row, set);
       if (!is_whole_suite(suite, row) || s.queries == 0) continue;
       begin(table, suite, row);
-      table.text(queries, name(set));
-      table.number(count, s.queries);
-      table.number(success, s.success);
-      table.number(correct, s.correct);
-      table.number(false_positive, s.false_positive);
-      table.number(mean_m, s.distance_mean_m);
-      table.number(median_m, s.distance_median_m);
-      table.text(remark, remark_on(suite, row, s));
+      table.text(kQueries, name(set));
+      for (const Table2Column& column : kTable2Columns)
+        table.number(page_column(column), column.measured(s));
+      table.text({"remark", "remark"}, remark_on(suite, row, s));
     }
   if (table.rows() == 0) return nullptr;  // no queries were asked
-  if (suite.published)
-    for (const PublishedRow& row : kTable2) {
+  for (const PublishedRow& row : published) {
+    begin_published(table, row.system);
+    for (const Table2Column& column : kTable2Columns)
+      if (column.published != nullptr) table.number(page_column(column), row.*column.published);
+  }
+  return table.json();
+}
+
+Json episodes_page_json(const Suite& suite, std::span<const RunResult> runs) {
+  if (!suite.episodes) return nullptr;
+  PageTable table("Episodes of a kidnapped robot",
+                  fmt::format("Over all environments of the suite. Success: it said that it has "
+                              "arrived, and is within {:g} m of such an object, no wall between.",
+                              suite.episodes->arrival_m));
+  for (const EpisodeVariant& variant : suite.episodes->variants)
+    for (const SystemSpec& system : suite.systems) {
       table.begin_row();
-      table.text(kSystem, row.system);
-      table.text(queries, "published, other data");
-      table.number(success, row.success);
-      table.number(mean_m, row.distance_m);
+      table.text(kSystem, system.name);
+      table.text({"variant", "variant"}, variant.name);
+      table.figures(figures_of(summarize(episodes_of(runs, system.name, variant.name))));
     }
   return table.json();
 }
@@ -142,10 +156,10 @@ Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
 Json candidates_json(const Suite& suite, std::span<const CategoryRow> rows) {
   PageTable table("Section 3.3.3: candidates left after each step of Algorithm 1",
                   "Shares of the map's keyframes: ratios of means over queries.");
-  const PageColumn queries{"query_set", "queries"}, keyframes{"keyframes", "keyframes", "", 1},
-      c1{"c1", "sharing (eq. 3)", "%", 2}, c2{"c2", "sharing enough (eq. 4)", "%", 2},
-      c3{"c3", "neighborhoods (eq. 5)", "%", 2}, left{"final", "candidates (eq. 6)", "", 2},
-      single{"single", "exactly one left", "%", 2}, mass{"label_mass", "label mass", "%", 1};
+  const PageColumn keyframes{"keyframes", "keyframes", "", 1}, c1{"c1", "sharing (eq. 3)", "%", 2},
+      c2{"c2", "sharing enough (eq. 4)", "%", 2}, c3{"c3", "neighborhoods (eq. 5)", "%", 2},
+      left{"final", "candidates (eq. 6)", "", 2}, single{"single", "exactly one left", "%", 2},
+      mass{"label_mass", "label mass", "%", 1};
   for (const QuerySet set : kQuerySets)
     for (const CategoryRow& row : rows) {
       const QuerySummary& s = summary(row, set);
@@ -155,7 +169,7 @@ Json candidates_json(const Suite& suite, std::span<const CategoryRow> rows) {
         return count ? std::optional(*count / *s.keyframes) : std::nullopt;
       };
       begin(table, suite, row);
-      table.text(queries, name(set));
+      table.text(kQueries, name(set));
       table.number(keyframes, s.keyframes);
       table.number(c1, share(s.c1));
       table.number(c2, share(s.c2));
@@ -165,15 +179,14 @@ Json candidates_json(const Suite& suite, std::span<const CategoryRow> rows) {
       table.number(mass, s.label_mass);
     }
   if (table.rows() == 0) return nullptr;
-  if (!suite.published) return table.json();
-  table.begin_row();
-  table.text(kSystem, "the paper's semantic system");
-  table.text(queries, "published, other data");
-  table.number(c1, 0.9936);
-  table.number(c2, 0.0218);
-  table.number(c3, 0.0093);
-  table.number(left, 1.89);
-  table.number(single, 0.6618);
+  for (const PublishedCandidates& row : published_candidates(suite)) {
+    begin_published(table, row.system);
+    table.number(c1, row.c1);
+    table.number(c2, row.c2);
+    table.number(c3, row.c3);
+    table.number(left, row.final);
+    table.number(single, row.single);
+  }
   return table.json();
 }
 

@@ -36,6 +36,9 @@ nlohmann::ordered_json table1_json(const Suite& suite, std::span<const CategoryR
 /// the suite names them (`published`).
 nlohmann::ordered_json table2_json(const Suite& suite, std::span<const CategoryRow> rows);
 
+/// A row per variant and system: success of the kidnapped robots; null without episodes.
+nlohmann::ordered_json episodes_page_json(const Suite& suite, std::span<const RunResult> runs);
+
 /// Section 3.3.3: keyframes left after each step of Algorithm 1, as shares; the published ones
 /// where the suite names them.
 nlohmann::ordered_json candidates_json(const Suite& suite, std::span<const CategoryRow> rows);

@@ -152,6 +152,8 @@ void write_source(Pieces& pieces, const std::string& place, const PagesSource& s
     overview["tiles"] = tiles_json(suite, rows, categories);
     overview["table1"] = table1_json(suite, categories);
     overview["table2"] = table2_json(suite, categories);
+    if (overview["table2"].is_null())
+      overview["table2"] = episodes_page_json(suite, source.results.runs);
     figures = {{"candidates", candidates_json(suite, categories)},
                {"density", density_json(suite, rows)},
                {"by_frame", error_by_frame_json(suite, rows)},

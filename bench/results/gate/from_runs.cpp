@@ -10,7 +10,8 @@
 #include "bench/results/summary.hpp"
 #include "bench/suite/fingerprint.hpp"
 #include "bench/suite/inputs.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/core/digest.hpp"
 
 namespace mh {
@@ -25,6 +26,7 @@ std::string run_digest(const RunResult& run) {
   };
   for (const MappedFrame& call : run.mapping.calls) add(call);
   for_each_query(run, [&](const QueryScore& q) { add(q.answer); });
+  for (const EpisodeScore& episode : run.episodes) sum = chained(sum, episode.digest);
   return hex(sum);
 }
 
@@ -41,6 +43,25 @@ std::string content(std::string_view what, const std::filesystem::path& source,
     text += file.file == source.filename()
                 ? fmt::format("{}={};", what, hex(file.digest))
                 : fmt::format("{}/{}={};", what, file.file, hex(file.digest));
+  return text;
+}
+
+/// Settings of episodes, and what their variants are made of.
+std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
+  nlohmann::ordered_json json = json_of(episodes);
+  json.erase("variants");
+  std::string text = fmt::format("episodes={};", json.dump());
+  const std::vector<InputDigest> inputs = reader.inputs_of(episodes);
+  for (const EpisodeVariant& variant : episodes.variants) {
+    text += fmt::format("variant={};", variant.name);
+    sources(variant,
+            [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
+              if (path)
+                text += content(
+                    source.key, *path,
+                    *std::ranges::find(inputs, input_name(variant, source), &InputDigest::name));
+            });
+  }
   return text;
 }
 
@@ -75,8 +96,9 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs) {
 std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
   std::string text = fmt::format(
       "trials={};seed={};frames={};protocol={};", suite.trials, suite.seed,
-      suite.max_frames ? std::to_string(*suite.max_frames) : "all", to_json(suite.protocol).dump());
-  if (suite.graded) text += fmt::format("graded={};", to_json(*suite.graded).dump());
+      suite.max_frames ? std::to_string(*suite.max_frames) : "all", json_of(suite.protocol).dump());
+  if (suite.graded) text += fmt::format("graded={};", json_of(*suite.graded).dump());
+  if (suite.episodes) text += episodes_text(*suite.episodes, reader);
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
   for (const Labels& labels : suite.labels) text += fmt::format("labels={};", name(labels));
   for (const auto& level : suite.levels)
@@ -95,13 +117,13 @@ std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
                              *std::ranges::find(inputs, source.key, &InputDigest::name))
                    : fmt::format("{}=none;", source.key);
     });
-    if (e.frame != SceneFrame{}) text += fmt::format("frame={};", to_json(e.frame).dump());
+    if (e.frame != SceneFrame{}) text += fmt::format("frame={};", json_of(e.frame).dump());
   }
   return hex(digest_bytes(text.data(), text.size()));
 }
 
 nlohmann::ordered_json gate_settings(const Suite& suite, InputReader& reader) {
-  nlohmann::ordered_json settings = {{"slam", to_json(suite.slam)}};
+  nlohmann::ordered_json settings = {{"slam", json_of(suite.slam)}};
   if (!suite.vocabulary.empty())
     settings["vocabulary"] = hex(reader.vocabulary(suite.vocabulary).files.front().digest);
   for (const SystemSpec& system : suite.systems)

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/protocol/episodes/robot_map.hpp"
 #include "bench/run/maps/map_study.hpp"
 #include "scenes/floor.hpp"
 #include "sim/motion/sensing.hpp"
@@ -12,19 +13,6 @@
 #include "slam/io/error.hpp"
 
 namespace mh {
-
-void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
-               std::span<const std::vector<float>> lasers_m) {
-  for (std::size_t l = 0; l < equipment.lasers.size(); ++l) {
-    const LaserScanner& laser = equipment.lasers[l];
-    scans.add_scan(map_from_base * laser.base_from_laser,
-                   {.first_angle_rad = -0.5 * laser.field_of_view_rad,
-                    .angle_increment_rad = laser.field_of_view_rad / (laser.rays - 1),
-                    .min_range_m = laser.min_range_m,
-                    .max_range_m = laser.max_range_m,
-                    .ranges_m = lasers_m[l]});
-  }
-}
 
 struct SceneLasers::Impl {
   Impl(const Scene& scene, Robot r)

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
-#include <vector>
 
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
@@ -11,12 +9,6 @@
 #include "slam/occupancy/obstacle_grid.hpp"
 
 namespace mh {
-
-/// Adds what a robot's lasers read at one moment.
-/// @param map_from_base assumed pose of the robot
-/// @param lasers_m       by laser, as RobotReading's
-void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
-               std::span<const std::vector<float>> lasers_m);
 
 /// The lasers of a robot on its path through a scene: a second source for a map besides depth.
 class SceneLasers {

@@ -162,7 +162,7 @@ std::string why_refused(const RunSpec& of) {
 TEST(RequireAuditable, RefusesOutsideSystemsAndRecordings) {
   EXPECT_EQ(why_refused(spec()), "");
   RunSpec outside = spec();
-  outside.system = {SystemKind::kOutside, "theirs", {}};
+  outside.system = {SystemKind::kOutside, "theirs", OutsideProgram()};
   EXPECT_NE(why_refused(outside).find("'theirs' gives no match traces"), std::string::npos);
   RunSpec recorded = spec();
   recorded.environment.sequence = "tum:desk";

@@ -196,8 +196,8 @@ TEST_F(ChangedInputs, ASceneThatChangesBetweenEpisodesHasNone) {
                        "{starts: 1, limit_s: 2, goals: [sofa]}\n");
   code_ = run("bench " + path("suite.yaml") + " --out " + path("out") + " --cache " MH_TEST_CACHE);
   expect_refused(said_, "second-p-exact-ideal-0: a file that it reads was changed");
-  EXPECT_EQ(stored("out/episodes.sqlite", "episodes"), 0);
-  EXPECT_FALSE(fs::exists(path("out/episodes.json")));
+  EXPECT_EQ(stored("out/results.sqlite", "episodes"), 0);
+  EXPECT_FALSE(fs::exists(path("out/results.json")));
 }
 
 TEST_F(ChangedInputs, ASceneThatChangesDuringAnAuditHasNone) {

@@ -333,8 +333,6 @@ TEST(SlurmProcess, WhatCannotBeSubmittedIsTold) {
   EXPECT_NE(errors().find("--slurm: makes the shards itself"), std::string::npos) << errors();
   EXPECT_EQ(run(bench("no", "--slurm 2 --audit")), 2);
   EXPECT_NE(errors().find("--slurm: audits nothing"), std::string::npos) << errors();
-  EXPECT_EQ(run("bench kidnapped --slurm 2"), 2);
-  EXPECT_NE(errors().find("--slurm: a suite with `episodes`"), std::string::npos) << errors();
   EXPECT_EQ(run(bench("no", "--slurm 2 --sbatch '--mem=1G | rm'")), 2);
   EXPECT_NE(errors().find("--sbatch '--mem=1G | rm'"), std::string::npos) << errors();
   EXPECT_EQ(run(bench("no", "--sbatch=--mem=1G")), 2);

@@ -248,10 +248,10 @@ TEST(RunOne, AnOutsideProgramsTrajectoryIsScoredByWhatItWasOffered) {
   place.suite.compare.clear();
   place.suite.labels = {LabelMode::kExact};
   place.suite.systems = {
-      {SystemKind::kOutside,
-       "theirs",
-       {.name = "theirs",
-        .command = "cp " + (folder.path() / "answer.tum").string() + " {trajectory}"}}};
+      {SystemKind::kOutside, "theirs",
+       OutsideProgram{
+           .name = "theirs",
+           .command = "cp " + (folder.path() / "answer.tum").string() + " {trajectory}"}}};
   const RunResult run =
       run_one(expand(place.suite)[0], place.world, {.folder = folder.path(), .occupancy = false});
   EXPECT_EQ(run.mapping.offered, 145u);
@@ -793,7 +793,7 @@ TEST(Results, WhatAnOutsideProgramDoesNotTellIsUnknown) {
   place.suite.labels = {LabelMode::kExact};
   place.suite.compare.clear();
   place.suite.systems = {{SystemKind::kPlain, "plain", {}},
-                         {SystemKind::kOutside, "odometry_of_theirs", {.name = "x"}}};
+                         {SystemKind::kOutside, "odometry_of_theirs", OutsideProgram{.name = "x"}}};
   std::vector<RunResult> runs = place.run();
   ASSERT_EQ(runs[1].spec.system.kind, SystemKind::kOutside);
   for (QueryScore& q : runs[1].points[0].held_out) {

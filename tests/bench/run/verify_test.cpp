@@ -41,6 +41,7 @@ RunResult some_run() {
   first.answer.index = 29;
   second.answer.index = 59;
   run.points.assign(2, {{first, second}, {first, second}});
+  run.episodes = {{.variant = "moved", .start = 7}};
   return run;
 }
 
@@ -55,6 +56,9 @@ TEST(FirstDifference, NamesWhateverDiffers) {
   EXPECT_EQ(reported([](RunResult&) {}), "none");
   EXPECT_EQ(reported([](RunResult& r) { r.place.scene_digest = 1; }), "run: world: scene differs");
   EXPECT_EQ(reported([](RunResult& r) { r.place.path_digest = 1; }), "run: world: path differs");
+  EXPECT_EQ(reported([](RunResult& r) { r.episodes[0].digest = 1; }),
+            "run: episodes: moved, start 7 differs");
+  EXPECT_EQ(reported([](RunResult& r) { r.episodes.clear(); }), "run: episodes: number differs");
   const auto call = [](auto field, auto value) {
     return reported([=](RunResult& r) { r.mapping.calls[1].*field = value; });
   };

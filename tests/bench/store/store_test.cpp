@@ -24,6 +24,7 @@
 #include "bench/run/pool.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/run_process.hpp"
+#include "bench/suite/json_fields.hpp"
 #include "bench/suite/runs.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/files.hpp"
@@ -92,6 +93,16 @@ RunResult some_run(const std::string& name, double shift_m = 0.0) {
   unanswered.answer.index = 59;
   unanswered.answer.stage = RelocalizationStage::kPnp;
   run.points = {{.held_out = {answered, unanswered}, .second_tour = {unanswered}}};
+  run.episodes = {{.variant = "moved",
+                   .start = 4,
+                   .goal = "bed",
+                   .reason = "stuck",
+                   .time_s = 12.5,
+                   .located_s = 1.0 / 3.0,
+                   .length_m = 7,
+                   .collisions = 1,
+                   .digest = 0xfedcba9876543210},
+                  {.variant = "as_mapped", .start = 2, .success = true, .spl = 0.1}};
   run.map_digest = 77;
   run.times.track_ms = {1.25};
   return run;
@@ -343,6 +354,7 @@ TEST_F(StoreFile, ARunComesBackAsItWas) {
   EXPECT_EQ(once.mapping.dropped, run.mapping.dropped);
   ASSERT_TRUE(once.mapping.matches);
   EXPECT_EQ((*once.mapping.matches)[0].compared, 9);
+  EXPECT_EQ(json_of(once.episodes).dump(), json_of(run.episodes).dump());
   EXPECT_EQ(once.trajectory.completeness, 1.0 / 3.0);
   EXPECT_FALSE(once.trajectory.ate_rmse_m);
   EXPECT_EQ(once.estimate.size(), 1u);
@@ -699,7 +711,7 @@ TEST_F(StoreFile, WhatAnOutsideProgramDoesNotTellIsNull) {
   Store store(folder_ / "r.sqlite");
   store.plan(suite(), {}, {{"x", "kx"}});
   RunResult run = some_run("x");
-  run.spec.system = {SystemKind::kOutside, "vo", {}};
+  run.spec.system = {SystemKind::kOutside, "vo", OutsideProgram()};
   QueryScore& query = run.points[0].held_out[0];
   query.answer.stage.reset();
   query.answer.matches.reset();

@@ -388,9 +388,10 @@ class RunInputs : public TemporaryFolder {
                          .pedestrian = folder_ / "pedestrian.yaml"};
     spec_.level = folder_ / "level.yaml";
     spec_.vocabulary = folder_ / "words.mhvoc";
-    spec_.system = {.kind = SystemKind::kOutside,
-                    .name = "vo",
-                    .outside = {.name = "vo", .command = "./program", .folder = folder_}};
+    spec_.system = {
+        .kind = SystemKind::kOutside,
+        .name = "vo",
+        .outside = OutsideProgram{.name = "vo", .command = "./program", .folder = folder_}};
     spec_.points.emplace_back();
   }
 

@@ -16,7 +16,9 @@
 #include <gtest/gtest.h>
 
 #include "bench/suite/inputs.hpp"
+#include "bench/suite/json_fields.hpp"
 #include "bench/suite/spec_json.hpp"
+#include "slam/config/slam.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "source_dir.hpp"
@@ -33,18 +35,24 @@ namespace fs = std::filesystem;
 std::vector<InputDigest> inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of_program(spec.system);
   const auto add = [&](const char* name, const std::optional<fs::path>& source) {
-    if (source) noted(inputs, name, *source, [&] { return read_file(*source); });
+    if (source && !source->empty())
+      noted(inputs, name, *source, [&] { return read_file(*source); });
   };
   const Environment& e = spec.environment;
-  add("scene", e.scene);
-  add("robot", e.robot);
-  add("mapping_tour", e.mapping_tour);
-  add("query_tour", e.query_tour);
-  add("query_scene", e.query_scene);
-  add("kidnapped_tour", e.kidnapped_tour);
-  add("sensors", e.sensors);
-  add("pedestrian", e.pedestrian);
-  add("level", spec.level);
+  sources(e, [&](const WorldSource& source, const std::optional<fs::path>& path) {
+    add(source.key, path);
+  });
+  add("sequence", fs::path(e.sequence));
+  add("queries", e.queries);
+  add("settings", e.settings);
+  add("classes", e.classes);
+  if (const auto& detector = spec.labels.detector)
+    for (const auto& [name, file] : {std::pair("network", detector->network),
+                                     {"config", detector->config},
+                                     {"classes of the network", detector->classes},
+                                     {"boxes", detector->boxes}})
+      add(name, file);
+  if (!e.is_recorded()) add("level", spec.level);
   add("vocabulary", spec.vocabulary);
   return inputs;
 }
@@ -85,13 +93,39 @@ class RunKey : public testing::Test {
              .protocol = {},
              .graded = GradedSpec{.distance_m = {0, 0.5, 2}, .angle_deg = {0, 60}},
              .max_frames = 100};
-    theirs_ = ours_;
-    theirs_.system = {SystemKind::kOutside,
-                      "vo",
-                      {.name = "vo",
-                       .command = file("slam").string() + " {trajectory}",
-                       .folder = folder_,
-                       .inputs = {file("weights").string()}}};
+    theirs_ = library_ = recorded_ = dosed_ = detected_ = ours_;
+    theirs_.system = {SystemKind::kOutside, "vo",
+                      OutsideProgram{.name = "vo",
+                                     .command = file("slam").string() + " {trajectory}",
+                                     .folder = folder_,
+                                     .inputs = {file("weights").string()}}};
+    library_.system = {SystemKind::kOutside, "vo",
+                       OutsideProgram{.name = "vo",
+                                      .mode = OutsideMode::kConversation,
+                                      .folder = folder_,
+                                      .inputs = {file("weights").string()},
+                                      .library = file("libvo.so").string(),
+                                      .settings = file("vo.yaml").string()}};
+    recorded_.environment = {.name = "desk",
+                             .category = "desks",
+                             .scene = {},
+                             .robot = {},
+                             .mapping_tour = {},
+                             .sequence = file("desk.bag"),
+                             .queries = file("again.bag"),
+                             .settings = file("camera.yaml"),
+                             .classes = file("classes.yaml"),
+                             .topics = "color=/a,depth=/b",
+                             .suite_states_readout = true};
+    recorded_.level = kRecordedLevel;
+    recorded_.labels = LabelMode::kRecorded;
+    dosed_.labels = {LabelMode::kBoxes, {.enabled = true, .class_set = ClassSet::kFive}, "coarse"};
+    detected_.labels = {{.network = file("yolo.weights"),
+                         .config = file("yolo.cfg"),
+                         .classes = file("yolo.names"),
+                         .boxes = {},
+                         .settings = {}},
+                        "yolo"};
     other_ = file("other.yaml").string();
     other_build = {};
   }
@@ -148,16 +182,105 @@ class RunKey : public testing::Test {
     const std::string before = key(spec);
     const Json places = to_json(spec).flatten();
     for (const auto& [place, value] : places.items())
-      if (key(with_another(spec, Pointer(place))) == before) free.insert(place);
+      if (!value.is_null() && key(with_another(spec, Pointer(place))) == before) free.insert(place);
     return free;
   }
 
   fs::path folder_ = fs::temp_directory_path() / ("mh_run_key_" + std::to_string(getpid()));
   std::string other_;
-  RunSpec ours_, theirs_;
+  RunSpec ours_, theirs_, library_, recorded_, dosed_, detected_;
 };
 
-const std::set<std::string> kNames = {"/name", "/environment/name", "/environment/category"};
+const std::set<std::string> kNames = {"/name", "/environment/name", "/environment/category",
+                                      "/labels/called"};
+
+/// Gives every value another one, however deep, and optional ones and lists one that they lacked.
+template <class T>
+void change(T& value) {
+  if constexpr (std::is_same_v<T, bool>) {
+    value = !value;
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    value = static_cast<T>(value + 1);
+  } else if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, fs::path>) {
+    value += "other";
+  } else if constexpr (std::is_enum_v<T>) {
+    const auto all = words(value);
+    value = all[all[0].second == value ? 1 : 0].second;
+  } else if constexpr (kIsOptional<T>) {
+    change(value.emplace());
+  } else if constexpr (kIsVector<T>) {
+    change(value.emplace_back());
+  } else if constexpr (kIsShared<T>) {
+    auto whole = *value;
+    change(whole);
+    value = whole;
+  } else {
+    for_each_field(value, [](const auto&, auto& field) { change(field); });
+  }
+}
+
+TEST(RunDescription, KeepsEveryField) {
+  RunSpec spec;
+  const Json before = to_json(spec).flatten();
+  change(spec);
+  const Json json = to_json(spec);
+  const Json after = json.flatten();
+  for (const auto& [place, value] : before.items())
+    EXPECT_FALSE(after.contains(place) && after[place] == value) << place << " was not changed";
+  const RunSpec back = run_spec_from_json(json);
+  EXPECT_EQ(to_json(back), json);
+  EXPECT_EQ(run_key(back, {}), run_key(spec, {}));
+  EXPECT_NE(run_key(back, {}), run_key(RunSpec(), {}));
+  EXPECT_EQ(back.environment, spec.environment);
+  EXPECT_EQ(back.system.outside, spec.system.outside);
+  EXPECT_EQ(back.labels, spec.labels);
+  EXPECT_EQ(back.slam, spec.slam);
+  EXPECT_EQ(back.points, spec.points);
+  EXPECT_EQ(back.protocol, spec.protocol);
+  EXPECT_EQ(back.graded, spec.graded);
+}
+
+TEST(RunDescription, RefusesOneWithoutAFieldOrWithAWordOfNone) {
+  const auto refusal = [](const Json& json) {
+    try {
+      run_spec_from_json(json);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Json json = to_json(RunSpec());
+  EXPECT_EQ(refusal(json), "");
+  for (const auto& [key, value] : json.items()) {
+    Json less = json;
+    less.erase(key);
+    EXPECT_NE(refusal(less).find("'" + key + "'"), std::string::npos) << refusal(less);
+  }
+  Json other = json;
+  other["labels"]["mode"] = "exactly";
+  EXPECT_EQ(refusal(other), "'exactly' is not a known word");
+}
+
+TEST_F(RunKey, IsThatOfTheDescriptionReadBack) {
+  for (const RunSpec& spec : {ours_, theirs_, library_, recorded_, dosed_, detected_}) {
+    const RunSpec back = run_spec_from_json(to_json(spec));
+    EXPECT_EQ(to_json(back), to_json(spec));
+    EXPECT_EQ(run_key_of(back), run_key_of(spec));
+    EXPECT_EQ(map_key_of(back), map_key_of(spec));
+    EXPECT_EQ(stored_spec(back), stored_spec(spec));
+  }
+}
+
+TEST_F(RunKey, IsOfADescriptionThatIsStoredWithoutPlaces) {
+  for (const RunSpec& spec : {ours_, recorded_, dosed_, detected_})
+    EXPECT_EQ(stored_spec(spec).find(folder_.string()), std::string::npos) << stored_spec(spec);
+  const Json detected = Json::parse(stored_spec(detected_));
+  EXPECT_EQ(detected["labels"]["detector"]["network"], "yolo.weights");
+  EXPECT_EQ(detected["level"], "pepper");
+  const Json recorded = Json::parse(stored_spec(recorded_));
+  EXPECT_EQ(recorded["environment"]["settings"], "camera.yaml");
+  EXPECT_EQ(recorded["level"], kRecordedLevel);
+}
 
 TEST_F(RunKey, ChangesWithEveryFieldOfARunButItsNames) {
   ASSERT_EQ(run_key_of(ours_), run_key_of(ours_));
@@ -168,13 +291,15 @@ TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideSystemButItsFolder) {
   std::set<std::string> free = kNames;
   free.insert("/system/outside/folder");
   EXPECT_EQ(free_places(theirs_, run_key_of), free);
-  theirs_.system.outside = {.name = "vo",
-                            .mode = OutsideMode::kConversation,
-                            .folder = folder_,
-                            .inputs = {file("weights").string()},
-                            .library = file("libvo.so").string(),
-                            .settings = file("vo.yaml").string()};
-  EXPECT_EQ(free_places(theirs_, run_key_of), free);
+  EXPECT_EQ(free_places(library_, run_key_of), free);
+}
+
+TEST_F(RunKey, ChangesWithEveryFieldOfARecordingAndOfLabels) {
+  std::set<std::string> free = kNames;
+  free.insert("/level");  // kRecordedLevel is the only one
+  EXPECT_EQ(free_places(recorded_, run_key_of), free);
+  EXPECT_EQ(free_places(dosed_, run_key_of), kNames);
+  EXPECT_EQ(free_places(detected_, run_key_of), kNames);
 }
 
 TEST_F(RunKey, OfAMapLeavesOutWhatOnlyItsQueriesDependOn) {
@@ -205,7 +330,7 @@ TEST_F(RunKey, ChangesWithAPointOrAnInputMoreAndWithWhatIsNotThere) {
     EXPECT_NE(run_key_of(changed), before);
   }
   changed = theirs_;
-  changed.system.outside.inputs.clear();
+  changed.system.outside->inputs.clear();
   EXPECT_NE(run_key_of(changed), run_key_of(theirs_));
 }
 

@@ -531,7 +531,7 @@ TEST_F(SuiteFile, NamesAnOutsideProgram) {
          "trajectory}, semantic]\n"
          "parameters: {map: rebuilt, semantics.xi: [1, 2]}\n";
   const Suite suite = load_suite(folder_ / "suite.yaml");
-  EXPECT_EQ(suite.systems[1].outside.mode, OutsideMode::kTrajectory);
+  EXPECT_EQ(suite.systems[1].outside->mode, OutsideMode::kTrajectory);
   const std::vector<RunSpec> runs = expand(suite);
   ASSERT_EQ(runs.size(), 4u) << "the semantic system alone looks at xi";
   EXPECT_EQ(runs[1].name, "vo-exact-pepper-0");
@@ -550,9 +550,9 @@ TEST_F(SuiteFile, AnOutsideProgramIsOneForEachValueOfItsOwnParameters) {
       load_with("slam {n} {mode} {dataset} {trajectory}", "n: [500, 1000], mode: [fast, \"a'b\"]");
   ASSERT_EQ(systems.size(), 4U);
   EXPECT_EQ(systems[1].name, "orb_n_500_mode_a'b");
-  EXPECT_EQ(systems[1].outside.command, "slam '500' 'a'\\''b' {dataset} {trajectory}");
+  EXPECT_EQ(systems[1].outside->command, "slam '500' 'a'\\''b' {dataset} {trajectory}");
   EXPECT_EQ(systems[2].name, "orb_n_1000_mode_fast");
-  EXPECT_EQ(systems[2].outside.name, systems[2].name);
+  EXPECT_EQ(systems[2].outside->name, systems[2].name);
   EXPECT_THROW(load_with("slam {dataset} {trajectory}", "n: [1]"), InputError) << "not in it";
   EXPECT_THROW(load_with("slam {n} {trajectory}", "n: []"), InputError);
   EXPECT_THROW(load_with("slam {n} {trajectory}", "m: [1]"), InputError);
@@ -615,11 +615,11 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
   };
   const Suite read = suite("library: libvo.so, settings: vo.yaml, inputs: [weights]");
   const SystemSpec& vo = read.systems.front();
-  EXPECT_EQ(vo.outside.mode, OutsideMode::kConversation);
+  EXPECT_EQ(vo.outside->mode, OutsideMode::kConversation);
   EXPECT_TRUE(vo.is_outside());
   EXPECT_FALSE(vo.takes_settings());
-  EXPECT_NO_THROW(require_program(vo.outside));
-  EXPECT_EQ(unseen_program(vo.outside), "");
+  EXPECT_NO_THROW(require_program(*vo.outside));
+  EXPECT_EQ(unseen_program(*vo.outside), "");
   const RunSpec run = expand(read).front();
   EXPECT_EQ(run.name, "vo-exact-pepper-0");
   EXPECT_EQ(to_json(run_spec_from_json(to_json(run))), to_json(run));
@@ -637,7 +637,7 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
 
   const auto refused = [&](const std::string& system) {
     try {
-      require_program(suite(system).systems.front().outside);
+      require_program(*suite(system).systems.front().outside);
     } catch (const InputError& error) {
       return std::string(error.what());
     }

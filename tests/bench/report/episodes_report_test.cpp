@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Table and JSON of made-up episodes of which every cell is known.
-#include "bench/run/episodes/report.hpp"
+#include "bench/report/episodes_report.hpp"
 
 #include <initializer_list>
 #include <sstream>
@@ -8,8 +8,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "slam/io/files.hpp"
-#include "slam/io/temporary_folder.hpp"
+#include "bench/protocol/metrics/measures.hpp"
+#include "bench/report/pages/tables.hpp"
+#include "bench/report/run_json.hpp"
+#include "bench/results/gate/from_runs.hpp"
 
 namespace mh {
 namespace {
@@ -37,14 +39,14 @@ EpisodeScore failed(std::size_t start, const std::string& reason, int collisions
   return score;
 }
 
-EpisodeRun run_of(const Suite& suite, std::size_t environment, std::size_t system,
-                  std::vector<EpisodeScore> scores) {
-  EpisodeRun run;
+RunResult run_of(const Suite& suite, std::size_t environment, std::size_t system,
+                 std::vector<EpisodeScore> scores) {
+  RunResult run;
   run.spec.name = suite.systems[system].name + "-" + suite.environments[environment].name;
   run.spec.environment = suite.environments[environment];
   run.spec.system = suite.systems[system];
-  run.key = "key of " + run.spec.name;
-  run.scores = std::move(scores);
+  run.spec.episodes = suite.episodes;
+  run.episodes = std::move(scores);
   return run;
 }
 
@@ -62,7 +64,7 @@ Suite suite_of(std::initializer_list<const char*> environments, std::size_t star
 
 struct Made {
   Suite suite = suite_of({"kitchen", "hall"}, 3, {{}, {.name = "dim"}});
-  std::vector<EpisodeRun> runs;
+  std::vector<RunResult> runs;
 };
 
 Made two_places() {
@@ -79,7 +81,6 @@ Made two_places() {
               failed(2, "stuck", 1, 0.12)}),
       // Of the third start in the hall this system has no episode.
       run_of(made.suite, 1, 1, {succeeded(0, 21, 0.25), failed(1, "no_path")})};
-  made.runs[3].failure = "it ended";
   return made;
 }
 
@@ -100,7 +101,7 @@ TEST(EpisodesTable, EachCellStandsUnderItsHeading) {
   EXPECT_EQ(
       lines_of(episodes_table(made.suite, made.runs)),
       (std::vector<std::string>{
-          "made up: 3 kidnappings in 2 environments, the same for each system", "",
+          "", "made up: 3 kidnappings in 2 environments, the same for each system", "",
           "variant system success 95 % located median s SPL collided worst m/s wrong arrivals",
           // SPL 1.3 over six episodes, not over two successes; the worst contact is the second.
           "as_mapped semantic 2/6 10-70 % 5 30.0 0.22 2 0.30 1 "
@@ -120,7 +121,6 @@ TEST(EpisodesTable, EachCellStandsUnderItsHeading) {
 TEST(EpisodesJson, HoldsWhatTheTableHolds) {
   const Made made = two_places();
   const Json json = episodes_json(made.suite, made.runs);
-  EXPECT_EQ(json["suite"], "made up");
   ASSERT_EQ(json["summary"].size(), 4U);
   Json first = json["summary"][0];
   EXPECT_NEAR(first["low"], 0.09677, 1e-5);
@@ -143,14 +143,8 @@ TEST(EpisodesJson, HoldsWhatTheTableHolds) {
       "pairs": 5, "difference": -0.2, "low": null, "high": null, "p": 1.0, "p_holm": 1.0})"));
   EXPECT_NEAR(json["comparisons"][1]["difference"], -0.09, 1e-12);
 
-  ASSERT_EQ(json["runs"].size(), 4U);
-  const Json& last = json["runs"][3];
+  const Json last = run_json(made.runs[3]);
   EXPECT_EQ(last["name"], "plain-hall");
-  EXPECT_EQ(last["environment"], "hall");
-  EXPECT_EQ(last["system"], "plain");
-  EXPECT_EQ(last["key"], "key of plain-hall");
-  EXPECT_EQ(last["failure"], "it ended");
-  EXPECT_FALSE(json["runs"][0].contains("failure"));
   ASSERT_EQ(last["episodes"].size(), 2U);
   EXPECT_EQ(last["episodes"][0]["spl"], 0.25);
   EXPECT_EQ(last["episodes"][0]["success"], true);
@@ -169,7 +163,7 @@ TEST(EpisodesTable, StartsOfOnePlaceAreComparedInBlocksAndCorrectedByHolm) {
     second.push_back(failed(start, "stuck"));
     second.back().spl = last_block ? 0.75 : 0.25;
   }
-  const std::vector<EpisodeRun> runs{run_of(suite, 0, 0, first), run_of(suite, 0, 1, second)};
+  const std::vector<RunResult> runs{run_of(suite, 0, 0, first), run_of(suite, 0, 1, second)};
   const std::vector<std::string> lines = lines_of(episodes_table(suite, runs));
   EXPECT_EQ(lines.at(lines.size() - 2),
             "success, as_mapped: semantic - plain: +1.000 (+1.000 to +1.000), 12 pairs, p 0.031, "
@@ -183,14 +177,27 @@ TEST(EpisodesTable, StartsOfOnePlaceAreComparedInBlocksAndCorrectedByHolm) {
   EXPECT_GT(spl["high"], spl["difference"]);
 }
 
-TEST(WriteEpisodes, WritesTheTableAndTheJson) {
-  const Made made = two_places();
-  const TemporaryFolder folder(std::filesystem::temp_directory_path());
-  const std::string table = write_episodes(folder.path(), made.suite, made.runs);
-  EXPECT_EQ(table, episodes_table(made.suite, made.runs));
-  EXPECT_EQ(read_file(folder.path() / "table.txt"), table);
-  EXPECT_EQ(Json::parse(read_file(folder.path() / "episodes.json")),
-            episodes_json(made.suite, made.runs));
+TEST(EpisodesMetrics, AreOfTheGate) {
+  Made made = two_places();
+  made.runs[0].points.resize(1);
+  const RunFigures of_run = figures(made.runs[0]);
+  EXPECT_EQ(of_run.values.at("episodes.count"), 4);
+  EXPECT_EQ(of_run.values.at("episodes.success"), 0.5);
+  EXPECT_EQ(of_run.values.at("episodes.median_s"), 30);
+  ASSERT_NE(find_measure("episodes.spl"), nullptr);
+  const std::string before = of_run.digest;
+  made.runs[0].episodes[0].digest ^= 1;
+  EXPECT_NE(figures(made.runs[0]).digest, before);
+}
+
+TEST(EpisodesJson, IsOfSuitesWithEpisodesAlone) {
+  Made made = two_places();
+  EXPECT_EQ(episodes_page_json(made.suite, made.runs)["rows"], 4);
+  made.suite.episodes.reset();
+  EXPECT_EQ(episodes_table(made.suite, made.runs), "");
+  EXPECT_TRUE(episodes_page_json(made.suite, made.runs).is_null());
+  made.runs[0].spec.episodes.reset();
+  EXPECT_FALSE(run_json(made.runs[0]).contains("episodes"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/starts.hpp"
+#include "bench/protocol/episodes/starts.hpp"
 
 #include <algorithm>
 #include <cmath>

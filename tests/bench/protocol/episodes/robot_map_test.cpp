@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/robot_map.hpp"
+#include "bench/protocol/episodes/robot_map.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/navigation/local_map.hpp"
+#include "robots/navigation/near_map.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,27 +22,27 @@ Vector2d ahead_of(double angle_rad) {
 
 }  // namespace
 
-LocalMap::LocalMap(const LocalMapConfig& config)
+NearMap::NearMap(const NearMapConfig& config)
     : config_(config),
       cells_(2 * static_cast<int>(std::ceil(config.half_size_m / config.resolution_m))),
       corner_(-cells_ / 2, -cells_ / 2),
       layers_(cells_, cells_) {}
 
-void LocalMap::clear() {
+void NearMap::clear() {
   std::fill(layers_.begin(), layers_.end(), std::uint8_t{0});
 }
 
-Vector2d LocalMap::center_of(int x, int y) const {
+Vector2d NearMap::center_of(int x, int y) const {
   return config_.resolution_m * (corner_ + Eigen::Vector2i(x, y)).cast<double>();
 }
 
-std::uint8_t* LocalMap::cell(const Vector2d& place_m) {
+std::uint8_t* NearMap::cell(const Vector2d& place_m) {
   const int x = static_cast<int>(std::lround(place_m.x() / config_.resolution_m)) - corner_.x();
   const int y = static_cast<int>(std::lround(place_m.y() / config_.resolution_m)) - corner_.y();
   return layers_.contains(x, y) ? &layers_(x, y) : nullptr;
 }
 
-void LocalMap::move_to(const Vector2d& place_m) {
+void NearMap::move_to(const Vector2d& place_m) {
   const Vector2d middle = center_of(cells_ / 2, cells_ / 2);
   if ((place_m - middle).cwiseAbs().maxCoeff() < kMove_m) return;
   const Eigen::Vector2i corner(
@@ -58,15 +58,15 @@ void LocalMap::move_to(const Vector2d& place_m) {
   corner_ = corner;
 }
 
-void LocalMap::see_through(const Vector2d& start_m, const Vector2d& direction, double from_m,
-                           double to_m, Layer layer) {
+void NearMap::see_through(const Vector2d& start_m, const Vector2d& direction, double from_m,
+                          double to_m, Layer layer) {
   for (double at_m = from_m; at_m <= to_m; at_m += 0.5 * config_.resolution_m)
     if (std::uint8_t* c = cell(start_m + at_m * direction))
       *c = static_cast<std::uint8_t>((*c & ~layer) | kSeen);
 }
 
-void LocalMap::add_lasers(const Equipment& equipment, std::span<const std::vector<float>> lasers_m,
-                          const Pose2& odom_from_base) {
+void NearMap::add_lasers(const Equipment& equipment, std::span<const std::vector<float>> lasers_m,
+                         const Pose2& odom_from_base) {
   move_to(odom_from_base.place_m);
   if (std::uint8_t* c = cell(odom_from_base.place_m)) *c |= kSeen;  // the robot is there
   for (std::size_t l = 0; l < std::min(lasers_m.size(), equipment.lasers.size()); ++l) {
@@ -86,8 +86,8 @@ void LocalMap::add_lasers(const Equipment& equipment, std::span<const std::vecto
   }
 }
 
-void LocalMap::add_depth(const Grid2d<float>& depth_m, const Camera& camera,
-                         const SE3& base_from_camera, const Pose2& odom_from_base) {
+void NearMap::add_depth(const Grid2d<float>& depth_m, const Camera& camera,
+                        const SE3& base_from_camera, const Pose2& odom_from_base) {
   move_to(odom_from_base.place_m);
   const Vector2d eye_m = odom_from_base * Vector2d(base_from_camera.translation().head<2>());
   struct Mark {
@@ -120,11 +120,11 @@ void LocalMap::add_depth(const Grid2d<float>& depth_m, const Camera& camera,
     if (std::uint8_t* c = cell(mark.place_m)) *c |= kDepth | kSeen;
 }
 
-void LocalMap::add_contact(const Vector2d& place_in_odom_m) {
+void NearMap::add_contact(const Vector2d& place_in_odom_m) {
   if (std::uint8_t* c = cell(place_in_odom_m)) *c |= kTouched | kSeen;
 }
 
-std::vector<Vector2d> LocalMap::obstacles_near(const Vector2d& place_m, double radius_m) const {
+std::vector<Vector2d> NearMap::obstacles_near(const Vector2d& place_m, double radius_m) const {
   std::vector<Vector2d> near;
   const int reach = static_cast<int>(std::ceil(radius_m / config_.resolution_m)) + 1;
   const int cx = static_cast<int>(std::lround(place_m.x() / config_.resolution_m)) - corner_.x();
@@ -137,7 +137,7 @@ std::vector<Vector2d> LocalMap::obstacles_near(const Vector2d& place_m, double r
   return near;
 }
 
-FloorGrid LocalMap::grid() const {
+FloorGrid NearMap::grid() const {
   Grid2d<std::uint8_t> blocked(cells_, cells_);
   for (int y = 0; y < cells_; ++y)
     for (int x = 0; x < cells_; ++x)

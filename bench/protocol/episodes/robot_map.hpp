@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "robots/model/robot.hpp"
@@ -9,6 +10,7 @@
 #include "slam/core/sequence.hpp"
 #include "slam/core/trajectory.hpp"
 #include "slam/occupancy/objects.hpp"
+#include "slam/occupancy/obstacle_grid.hpp"
 #include "slam/occupancy/occupancy_grid.hpp"
 #include "slam/occupancy/voxel_map.hpp"
 
@@ -26,6 +28,12 @@ struct RobotMap {
 
   bool empty() const { return known.blocked.empty(); }
 };
+
+/// Adds what a robot's lasers read at one moment.
+/// @param map_from_base  assumed pose of the robot
+/// @param lasers_m       by laser, as RobotReading's
+void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
+               std::span<const std::vector<float>> lasers_m);
 
 /// A grid as the navigator reads it, with the walls that its map saw.
 KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid);

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/starts.hpp"
+#include "bench/protocol/episodes/starts.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "bench/run/episodes/episode_store.hpp"
 #include "bench/suite/suite.hpp"
 #include "scenes/load.hpp"
 #include "slam/io/error.hpp"
-#include "slam/io/temporary_folder.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {
@@ -145,40 +143,6 @@ TEST(DrawStarts, NobodyArrivesFromAnotherRoomOfTheModelHouse) {
       }
     EXPECT_GT(arrived, 50) << goal;
   }
-}
-
-TEST(EpisodeStore, KeepsEveryFieldAndReplacesAnEpisode) {
-  const TemporaryFolder folder(std::filesystem::temp_directory_path());
-  const std::filesystem::path file = folder.path() / "episodes.sqlite";
-  EpisodeScore score{.variant = "moved",
-                     .start = 4,
-                     .goal = "bed",
-                     .reason = "stuck",
-                     .time_s = 12.5,
-                     .located_s = 3.25,
-                     .length_m = 7,
-                     .collisions = 1,
-                     .digest = 0xfedcba9876543210ULL};
-  {
-    EpisodeStore store(file);
-    store.put("key", "run", score);
-    score.reason = "no_path";
-    store.put("key", "run", score);
-    score.start = 2;
-    score.located_s.reset();
-    store.put("key", "run", score);
-  }
-  EpisodeStore store(file);
-  const std::vector<EpisodeScore> back = store.load("key");
-  ASSERT_EQ(back.size(), 2U);
-  EXPECT_EQ(back[0].start, 2U);
-  EXPECT_FALSE(back[0].located_s);
-  EXPECT_EQ(back[1].start, 4U);
-  EXPECT_EQ(back[1].reason, "no_path");
-  EXPECT_EQ(back[1].located_s, 3.25);
-  EXPECT_EQ(back[1].collisions, 1);
-  EXPECT_EQ(back[1].digest, 0xfedcba9876543210ULL);
-  EXPECT_TRUE(store.load("another").empty());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/judge.hpp"
+#include "bench/protocol/episodes/judge.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/run/episodes/walls.hpp"
+#include "bench/protocol/episodes/walls.hpp"
 #include "bench/suite/episodes_spec.hpp"
 #include "robots/model/robot.hpp"
 #include "robots/navigation/grid.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/robot_map.hpp"
+#include "bench/protocol/episodes/robot_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/run/maps/laser_scans.hpp"
 #include "slam/io/error.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 #include "slam/occupancy/occupancy_mapper.hpp"
@@ -50,6 +49,19 @@ void add_lasers(const MapInput& input, const std::vector<std::size_t>& chosen,
 }
 
 }  // namespace
+
+void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
+               std::span<const std::vector<float>> lasers_m) {
+  for (std::size_t l = 0; l < equipment.lasers.size(); ++l) {
+    const LaserScanner& laser = equipment.lasers[l];
+    scans.add_scan(map_from_base * laser.base_from_laser,
+                   {.first_angle_rad = -0.5 * laser.field_of_view_rad,
+                    .angle_increment_rad = laser.field_of_view_rad / (laser.rays - 1),
+                    .min_range_m = laser.min_range_m,
+                    .max_range_m = laser.max_range_m,
+                    .ranges_m = lasers_m[l]});
+  }
+}
 
 KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid) {
   KnownMap known{.grid = {}, .blocked = blocked_cells(grid), .walls = walls_of(map, grid)};

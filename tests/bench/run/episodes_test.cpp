@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kidnappings from start to end, in a small room.
-#include "bench/run/episodes/episode.hpp"
+#include "bench/run/ask_episodes.hpp"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/run/episodes/report.hpp"
-#include "bench/run/episodes/run_episodes.hpp"
-#include "bench/run/episodes/strip.hpp"
+#include "bench/report/episode_record.hpp"
+#include "bench/run/plan_runs.hpp"
 #include "bench/run/run_one.hpp"
+#include "bench/suite/json_fields.hpp"
+#include "bench/suite/run_key.hpp"
+#include "bench/suite/spec_json.hpp"
+#include "bench/systems/outside_error.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/temporary_folder.hpp"
@@ -38,78 +41,92 @@ systems: )" + systems + "\n" +
                      fs::path(root) / "small.yaml");
 }
 
-TEST(Episodes, TheSameBitsAtOneAndAtTwoJobsAndResumed) {
-  const Suite suite = small_suite();
+/// The first run of a suite, and its world.
+struct Place {
+  explicit Place(const Suite& suite) : spec(expand(suite).front()) {}
+  RunSpec spec;
+  World world = build_world(spec, 2, Cache(), {});
+};
+
+TEST(Episodes, WhatHasEndedIsNotRepeated) {
+  const Place place(small_suite());
   const TemporaryFolder work(fs::temp_directory_path());
-  EpisodeOptions options;
-  options.cache = work.path() / "cache";
-  const auto run = [&](const char* name, int jobs, std::optional<std::size_t> starts) {
-    options.out = work.path() / name;
-    fs::create_directories(options.out);
-    options.jobs = jobs;
-    options.starts = starts;
-    return run_episodes(suite, options);
+  const auto run = [&](const char* key) {
+    return run_one(place.spec, place.world,
+                   {.folder = work.path(),
+                    .maps = Cache(work.path() / "maps"),
+                    .episodes = {.ended = Cache(work.path() / "ended"), .key = key}});
   };
-  const std::vector<EpisodeRun> once = run("one", 1, {});
-  ASSERT_EQ(once.size(), 2U);
-  run("two", 1, 1);  // the first start alone; the same command then resumes
-  const std::vector<EpisodeRun> again = run("two", 2, {});
-  EXPECT_EQ(episodes_json(suite, once).dump(), episodes_json(suite, again).dump());
-  for (const EpisodeRun& r : once)
-    for (const EpisodeScore& score : r.scores) {
-      EXPECT_NE(score.digest, 0U);
-      EXPECT_EQ(score.collisions, 0);
-      EXPECT_EQ(score.success, score.reason.empty());
-      EXPECT_LE(score.spl, 1.0);
-    }
-  // Semantic and plain are put at the same places.
-  for (std::size_t s = 0; s < 2; ++s)
-    EXPECT_EQ(once[0].scores[s].start_x_m, once[1].scores[s].start_x_m);
-  EXPECT_TRUE(std::ranges::any_of(once[0].scores, &EpisodeScore::success))
-      << episodes_table(suite, once);
-  EXPECT_NE(episodes_table(suite, once).find("semantic"), std::string::npos);
-}
-
-TEST(Episodes, AProgramThatEndsFailsAloneAndIsTriedAgain) {
-  const Suite suite =
-      small_suite("pepper", "[{name: broken, protocol: conversation, command: 'exit 7'}, plain]");
-  const TemporaryFolder work(fs::temp_directory_path());
-  EpisodeOptions options;
-  options.cache = work.path() / "cache";
-  options.out = work.path();
-  options.starts = 1;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    const std::vector<EpisodeRun> runs = run_episodes(suite, options);
-    ASSERT_EQ(runs.size(), 2U);
-    EXPECT_NE(runs[0].failure.find("exited with code 7"), std::string::npos) << runs[0].failure;
-    ASSERT_EQ(runs[0].scores.size(), 1U);
-    EXPECT_EQ(runs[0].scores[0].reason, "system_failed");
-    EXPECT_EQ(runs[1].failure, "");
-    EXPECT_NE(runs[1].scores.at(0).digest, 0U);
-    EXPECT_NE(episodes_table(suite, runs).find("1 system_failed"), std::string::npos);
+  const auto text = [](const RunResult& result) { return json_of(result.episodes).dump(); };
+  const RunResult once = run("0a");
+  ASSERT_EQ(once.episodes.size(), 2U);
+  for (const EpisodeScore& score : once.episodes) {
+    EXPECT_NE(score.digest, 0U);
+    EXPECT_EQ(score.collisions, 0);
+    EXPECT_EQ(score.success, score.reason.empty());
+    EXPECT_LE(score.spl, 1.0);
   }
+  EXPECT_TRUE(std::ranges::any_of(once.episodes, &EpisodeScore::success)) << text(once);
+  const RunResult again = run("0a");
+  EXPECT_EQ(text(again), text(once));
+  EXPECT_TRUE(again.times.relocalize_ms.empty()) << "it was kidnapped again";
+  const RunResult other = run("0b");  // of another run
+  EXPECT_EQ(text(other), text(once));
+  EXPECT_FALSE(other.times.relocalize_ms.empty());
 }
 
-TEST(Episodes, AnExitCodeAtTheEndOfAConversationIsReported) {
+TEST(Episodes, EverySystemIsPutAtTheSamePlaces) {
+  const std::vector<RunSpec> runs = expand(small_suite());
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[1].labels, Labels());
+  EXPECT_EQ(runs[1].map_labels, Labels(LabelMode::kExact));
+  const World one = build_world(runs[0], 2, Cache(), {}),
+              two = build_world(runs[1], 2, Cache(), {});
+  for (std::size_t s = 0; s < 2; ++s)
+    EXPECT_EQ(one.variants[0].starts[s].place_m, two.variants[0].starts[s].place_m);
+  EXPECT_FALSE(two.mapping->frame(0, RandomStream(0)).semantics.index.empty())
+      << "of the robot's map";
+}
+
+TEST(Episodes, AnotherNumberOfStartsIsAnotherRunOnTheSameMap) {
+  RunSpec few = expand(small_suite()).front(), many = few;
+  many.episodes->starts = 3;
+  EXPECT_NE(run_key(few, {}), run_key(many, {}));
+  EXPECT_EQ(map_key(few, {}), map_key(many, {}));
+  many.episodes->ticks_per_frame = 1;
+  EXPECT_NE(map_key(few, {}), map_key(many, {}));
+  many = run_spec_from_json(to_json(few));
+  EXPECT_EQ(many.episodes, few.episodes);
+  EXPECT_EQ(many.map_labels, few.map_labels);
+}
+
+std::string outside_error(const std::string& systems) {
+  const Place place(small_suite("pepper", systems));
+  const TemporaryFolder work(fs::temp_directory_path());
+  try {
+    run_one(place.spec, place.world, {.folder = work.path()});
+  } catch (const OutsideError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Episodes, AProgramThatEndsEarlyOrBadlyIsReported) {
+  const std::string ended =
+      outside_error("[{name: broken, protocol: conversation, command: 'exit 7'}]");
+  EXPECT_NE(ended.find("exited with code 7"), std::string::npos) << ended;
   // Lost in every frame, and not content with that in the end.
-  const Suite suite = small_suite("pepper", R"y([{name: sulking, protocol: conversation, command: "
+  const std::string sulked = outside_error(R"y([{name: sulking, protocol: conversation, command: "
     sed -u -E 's/^.\"id\":([0-9]+),\"do\":\"hello.*/{\"id\":\\1,\"protocol\":1}/; t;
     s/^.\"id\":([0-9]+),\"do\":\"(freeze|rewind|reset).*/{\"id\":\\1}/; t;
     s/^.\"id\":([0-9]+).*/{\"id\":\\1,\"pose\":null}/'; exit 5"}])y");
-  const TemporaryFolder work(fs::temp_directory_path());
-  EpisodeOptions options;
-  options.out = work.path();
-  const std::vector<EpisodeRun> runs = run_episodes(suite, options);
-  ASSERT_EQ(runs.size(), 1U);
-  EXPECT_NE(runs[0].failure.find("exited with code 5"), std::string::npos) << runs[0].failure;
-  ASSERT_EQ(runs[0].scores.size(), 2U);
-  for (const EpisodeScore& score : runs[0].scores) EXPECT_EQ(score.reason, "no_map");
+  EXPECT_NE(sulked.find("exited with code 5"), std::string::npos) << sulked;
 }
 
 TEST(Episodes, WhatCanOnlyFailIsRefusedBeforeTheWork) {
   const auto expect_refused = [](const Suite& suite, const char* why) {
     try {
-      episode_runs(suite);
+      check_episodes(suite);
       ADD_FAILURE() << "not refused: " << why;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
@@ -119,6 +136,10 @@ TEST(Episodes, WhatCanOnlyFailIsRefusedBeforeTheWork) {
   suite.episodes->goals = {"sofa", "wall"};
   expect_refused(suite, "'wall' is never an object");
   expect_refused(small_suite("pepper", "[plain]", "labels: [none]\n"), "labels: 'none'");
+  expect_refused(small_suite("pepper", "[plain]", "labels: [exact, boxes]\n"), "labels: 2");
+  expect_refused(small_suite("pepper", "[plain]",
+                             "labels: [exact]\ngraded: {distance_m: [0, 1], angle_deg: [0, 9]}\n"),
+                 "graded:");
   expect_refused(small_suite("pepper", "[plain]", "labels: [exact]\ntrials: 2\n"), "trials: 2");
   expect_refused(
       small_suite("pepper", "[{name: paths, protocol: trajectory, command: 'cp x {trajectory}'}]"),
@@ -135,23 +156,17 @@ TEST(Episodes, WhatCanOnlyFailIsRefusedBeforeTheWork) {
 }
 
 TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {
-  const Suite suite = small_suite();
-  const RunSpec run = labeled(episode_runs(suite).front(), suite);
-  const EpisodeWorld world = build_episode_world(run, *suite.episodes, 2, Cache(), {});
-  const Trajectory nothing;
-  MappedSystem mapped;  // as a system leaves it that tracked no frame
-  mapped.map = build_robot_map({.frames = *world.mapping,
-                                .estimate = nothing,
-                                .robot = world.world.simulated->robot,
-                                .noise = RandomStream(0)});
-  ASSERT_TRUE(mapped.map.empty());
-  mapped.system = make_system(run, world.world, {});
-  const EpisodeStart& start = world.variants.front().starts.front();
-  const EpisodeScore score = run_episode(episode_place(run, world, world.variants.front(), mapped),
-                                         *suite.episodes, start);
-  EXPECT_FALSE(score.success);
-  EXPECT_EQ(score.reason, "no_map");
-  EXPECT_GT(EpisodeRecord(mapped.map, start).strip("plain, start 0", score).total(), 0U);
+  const Place place(small_suite());
+  const auto system = make_system(place.spec, place.world, {});
+  const std::vector<EpisodeScore> scores = ask_episodes(
+      place.spec, place.world, *system, {}, SE3(), RandomStream(0), {});  // it tracked no frame
+  ASSERT_EQ(scores.size(), 2U);
+  EXPECT_FALSE(scores[0].success);
+  EXPECT_EQ(scores[0].reason, "no_map");
+  EXPECT_GT(EpisodeRecord({}, place.world.variants.front().starts.front())
+                .strip("plain, start 0", scores[0])
+                .total(),
+            0U);
 }
 
 TEST(Episodes, ARobotWithoutLasersOrWheelsIsRefused) {
@@ -171,8 +186,7 @@ TEST(Episodes, ARobotWithoutLasersOrWheelsIsRefused) {
     write_atomically(work.path() / "robot.yaml", robot);
     suite.environments.front().robot = work.path() / "robot.yaml";
     try {
-      build_episode_world(labeled(episode_runs(suite).front(), suite), *suite.episodes, 2, Cache(),
-                          {});
+      build_world(expand(suite).front(), 2, Cache(), {});
       ADD_FAILURE() << "was taken without " << lacks;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(std::string("has no ") + lacks), std::string::npos)
@@ -186,14 +200,10 @@ TEST(Episodes, GoalsThatNoPlaceHasAreRefusedBeforeTheWork) {
   suite.environments.push_back(suite.environments.front());
   suite.environments.back().name = "bathroom";
   suite.environments.back().scene = "generated:bathroom:0";
-  const TemporaryFolder work(fs::temp_directory_path());
-  EpisodeOptions options;
-  options.out = work.path();
-  options.say = [](std::string_view stage) {
-    EXPECT_EQ(stage.find("maps the tour"), std::string_view::npos) << stage;
-  };
+  InputReader inputs;
+  const std::vector<Job> jobs = plan_runs(suite, inputs, [](std::string_view) {});
   try {
-    run_episodes(suite, options);
+    validate_inputs(jobs, inputs, [](std::string_view) {});
     ADD_FAILURE() << "not refused";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("bathroom-0: has none of the goals"),
@@ -207,12 +217,6 @@ TEST(Episodes, MappingIsALiveFeed) {
   EXPECT_EQ(small_suite("pepper", "[plain]", "labels: [exact]\nprotocol: {on_failure: rewind}\n")
                 .protocol.on_failure,
             OnFailure::kRewind);
-}
-
-TEST(Episodes, ASuiteWithoutThemIsRefused) {
-  Suite suite = small_suite();
-  suite.episodes.reset();
-  EXPECT_THROW(episode_runs(suite), InputError);
 }
 
 TEST(GoalsNamed, AnUnknownNameGetsASuggestion) {

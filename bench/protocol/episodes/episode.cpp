@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/episode.hpp"
+#include "bench/protocol/episodes/episode.hpp"
 
 #include <memory>
 #include <numbers>
 #include <utility>
 
+#include "bench/protocol/episodes/judge.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/step_digest.hpp"
-#include "bench/run/episodes/judge.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh {

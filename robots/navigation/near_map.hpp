@@ -14,7 +14,7 @@
 
 namespace mh {
 
-struct LocalMapConfig {
+struct NearMapConfig {
   double resolution_m = 0.05;
   double half_size_m = 5.0;  ///< of the window that moves along with the robot
   // What the depth camera shows between these heights is an obstacle. 8 cm: depth noise at
@@ -28,9 +28,9 @@ struct LocalMapConfig {
 /// What lasers, bumpers and the depth camera have recently shown around the robot, in the frame of
 /// the wheel odometry: it needs no map and no pose in one. What was seen stays until the same kind
 /// of sensor sees through it.
-class LocalMap {
+class NearMap {
  public:
-  explicit LocalMap(const LocalMapConfig& config = {});
+  explicit NearMap(const NearMapConfig& config = {});
 
   /// Forgets everything: the robot was carried.
   void clear();
@@ -58,7 +58,7 @@ class LocalMap {
   void see_through(const Eigen::Vector2d& start_m, const Eigen::Vector2d& direction, double from_m,
                    double to_m, Layer layer);
 
-  LocalMapConfig config_;
+  NearMapConfig config_;
   int cells_;                     ///< of a side of the window
   Eigen::Vector2i corner_{0, 0};  ///< cell of the odometry frame that is cell (0, 0) of the window
   Grid2d<std::uint8_t> layers_;

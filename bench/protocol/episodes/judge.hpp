@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "bench/run/episodes/episode.hpp"
+#include "bench/protocol/episodes/episode.hpp"
 #include "sim/motion/commanded_base.hpp"
 
 namespace mh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/navigation/local_map.hpp"
+#include "robots/navigation/near_map.hpp"
 
 #include <cmath>
 
@@ -24,8 +24,8 @@ Equipment one_laser() {
   return equipment;
 }
 
-TEST(LocalMap, AWallAheadIsThereAndTheFloorBeforeItIsFree) {
-  LocalMap map;
+TEST(NearMap, AWallAheadIsThereAndTheFloorBeforeItIsFree) {
+  NearMap map;
   const std::vector<std::vector<float>> wall{std::vector<float>(31, 2.0F)};
   map.add_lasers(one_laser(), wall, {});
   EXPECT_FALSE(map.obstacles_near({2, 0}, 0.1).empty());
@@ -36,8 +36,8 @@ TEST(LocalMap, AWallAheadIsThereAndTheFloorBeforeItIsFree) {
   EXPECT_EQ(grid.clearance_at({-1.0, 0}), 0);  // behind the robot: never seen
 }
 
-TEST(LocalMap, WhatALaserSeesThroughIsGone) {
-  LocalMap map;
+TEST(NearMap, WhatALaserSeesThroughIsGone) {
+  NearMap map;
   std::vector<std::vector<float>> scan{std::vector<float>(31, 1.0F)};
   map.add_lasers(one_laser(), scan, {});
   ASSERT_FALSE(map.obstacles_near({1, 0}, 0.1).empty());
@@ -46,9 +46,9 @@ TEST(LocalMap, WhatALaserSeesThroughIsGone) {
   EXPECT_TRUE(map.obstacles_near({1, 0}, 0.3).empty());
 }
 
-TEST(LocalMap, ATableTopStaysThoughLasersPassBelowIt) {
+TEST(NearMap, ATableTopStaysThoughLasersPassBelowIt) {
   const Robot robot = test::pepper();
-  LocalMap map;
+  NearMap map;
   // A camera that looks ahead sees a top edge 2 m away, 0.4 m below itself.
   Grid2d<float> depth(robot.camera.width_px, robot.camera.height_px, 3.4F);
   const int row = static_cast<int>(robot.camera.cy_px + robot.camera.fy_px * 0.4 / 2.0);
@@ -61,8 +61,8 @@ TEST(LocalMap, ATableTopStaysThoughLasersPassBelowIt) {
   EXPECT_FALSE(map.obstacles_near({2.0, 0}, 0.15).empty());
 }
 
-TEST(LocalMap, ItMovesWithTheRobotAndForgetsWhenItIsCarried) {
-  LocalMap map;
+TEST(NearMap, ItMovesWithTheRobotAndForgetsWhenItIsCarried) {
+  NearMap map;
   map.add_contact({3, 1});
   map.add_lasers(one_laser(), {}, {{4, 0}, 0});
   ASSERT_EQ(map.obstacles_near({3, 1}, 0.1).size(), 1U);

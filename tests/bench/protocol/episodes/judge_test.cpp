@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said of an episode that ended in a stated way.
-#include "bench/run/episodes/judge.hpp"
+#include "bench/protocol/episodes/judge.hpp"
 
 #include <memory>
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/strip.hpp"
+#include "bench/report/episode_record.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,19 +2,20 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
 
-#include "bench/run/episodes/episode.hpp"
+#include "bench/protocol/episodes/episode.hpp"
 
 namespace mh {
 
 /// Collects an episode as it happens, for its log and its image.
 class EpisodeRecord {
  public:
-  /// @param map  outlives it
-  EpisodeRecord(const RobotMap& map, const EpisodeStart& start) : map_(map), start_(start) {}
+  EpisodeRecord(RobotMap map, EpisodeStart start)
+      : map_(std::move(map)), start_(std::move(start)) {}
 
   /// An EpisodeObserver.
   void add(const EpisodeMoment& moment);
@@ -44,8 +45,8 @@ class EpisodeRecord {
   };
   std::vector<const Shot*> chosen_shots() const;
 
-  const RobotMap& map_;
-  const EpisodeStart& start_;
+  RobotMap map_;
+  EpisodeStart start_;
   Pose2 world_from_map_;
   std::vector<Shot> shots_;
   std::vector<Step> steps_;

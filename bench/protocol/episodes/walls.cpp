@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/episodes/walls.hpp"
+#include "bench/protocol/episodes/walls.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/protocol/episode_score.hpp"
+#include "bench/protocol/episodes/robot_map.hpp"
+#include "bench/protocol/episodes/starts.hpp"
+#include "bench/protocol/system.hpp"
+#include "sim/world/simulation.hpp"
+
+namespace mh {
+
+/// A contact faster than this is a collision.
+inline constexpr double kCollision_m_per_s = 0.1;
+/// A belief farther off than this, or turned by more, is false.
+inline constexpr double kFalsePose_m = 0.5, kFalsePose_deg = 20;
+
+/// Where and with what an episode is run.
+struct EpisodePlace {
+  SimulatedScene scene;
+  const Robot& robot;
+  const SensorConfig& level;
+  LabelMode labels = LabelMode::kExact;
+  bool system_sees_labels = true;
+  const RobotMap& map;
+  const System& frozen;
+  SE3 truth_from_estimate;  ///< for the score alone
+  std::string variant = "as_mapped";
+  std::uint64_t system_seed = 0;  ///< of the SLAM system's draws
+};
+
+/// One moment of an episode, for logs and images.
+struct EpisodeMoment {
+  double time_s = 0;
+  const RgbdFrame* frame = nullptr;  ///< null if none arrived
+  const SystemReport* report = nullptr;
+  Pose2 world_from_base;                 ///< truth
+  std::optional<Pose2> believed;         ///< world, as the truth aligns the robot's map
+  Pose2 world_from_map;                  ///< the same alignment
+  const Navigator* navigator = nullptr;  ///< null if the episode ended before it began
+  std::vector<std::string> said = {};
+};
+using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
+
+/// Scores of an episode before it begins: where the robot is, what it is to find.
+EpisodeScore score_at_start(const std::string& variant, const EpisodeStart& start);
+
+/// Kidnaps the robot: it is put at the start in the dark, the light goes on, it looks around,
+/// relocalizes, plans on its own map, and drives to the goal. Deterministic; what it sees depends
+/// on seed, variant and start, not on the system.
+EpisodeScore run_episode(const EpisodePlace& place, const EpisodesSpec& spec,
+                         const EpisodeStart& start, const EpisodeObserver& observe = {});
+
+}  // namespace mh

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "bench/protocol/episodes/starts.hpp"
+#include "bench/suite/input_digest.hpp"
+#include "bench/suite/runs.hpp"
+#include "sim/sensors/config.hpp"
+#include "sim/world/simulation.hpp"
+
+namespace mh {
+
+struct SimulatedPlace;
+
+/// Where the robot is kidnapped: what differs from the mapping, and the starts.
+struct VariantPlace {
+  std::string name;
+  SimulatedScene scene;
+  SensorConfig level;
+  std::vector<EpisodeStart> starts;
+};
+
+/// The variants of a run's episodes.
+/// @param mapped  the place that was mapped
+/// @param inputs  receives what was read for them (input_name())
+/// @param light   bakes a scene's light
+/// @throws InputError as draw_starts(); if a scene's floor is not z = 0, or the robot cannot drive
+/// on its own.
+std::vector<VariantPlace> make_variants(const RunSpec& spec, const SimulatedPlace& mapped,
+                                        std::vector<InputDigest>& inputs,
+                                        const std::function<void(Scene&)>& light);
+
+/// Checks, before anything is mapped, that there is something to find in a run's environment.
+/// @throws InputError as make_variants()
+void require_goals(const RunSpec& spec);
+
+}  // namespace mh

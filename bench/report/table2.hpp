@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "bench/protocol/metrics/query_summary.hpp"
+#include "bench/results/published.hpp"
+
+namespace mh {
+
+/// A column of Table 2, relocalization, wherever it is shown: text has those of the paper's own
+/// table under its headings; pages, their data and figures have all.
+struct Table2Column {
+  std::string_view key;
+  std::string_view title;
+  std::string_view unit;  ///< "m"; "%": a share, stored as 0 to 1 and printed times 100
+  int decimals = 0;
+  std::optional<double> (*measured)(const QuerySummary&);
+  double PublishedRow::*published = nullptr;  ///< null: the paper's table does not have it
+  std::string_view published_heading = {};
+};
+
+inline constexpr Table2Column kTable2Columns[] = {
+    {"queries", "queries per environment", "", 1,
+     [](const QuerySummary& s) { return std::optional(s.queries); }},
+    {"success", "success", "%", 2, [](const QuerySummary& s) { return std::optional(s.success); },
+     &PublishedRow::success, "Reloc. success (%)"},
+    {"correct", "correct", "%", 2, [](const QuerySummary& s) { return s.correct; }},
+    {"false_positive", "false pos.", "%", 2,
+     [](const QuerySummary& s) { return s.false_positive; }},
+    {"distance_mean_m", "mean distance", "m", 4,
+     [](const QuerySummary& s) { return s.distance_mean_m; }, &PublishedRow::distance_mean_m,
+     "Average distance (m)"},
+    {"distance_median_m", "median distance", "m", 4,
+     [](const QuerySummary& s) { return s.distance_median_m; }}};
+
+}  // namespace mh

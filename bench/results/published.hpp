@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "bench/suite/suite.hpp"
+
+namespace mh {
+
+// What the paper states of relocalization, in a real house of 60 m² with labels from YOLOv3's
+// boxes: other data than any suite's, shown for orientation.
+
+/// A row of its Table 2.
+struct PublishedRow {
+  std::string_view system;
+  double success = 0;  ///< share of the queries
+  double distance_mean_m = 0;
+};
+inline constexpr PublishedRow kTable2[] = {{"the paper's semantic system", 0.7925, 0.0512},
+                                           {"ORB-SLAM2", 0.7143, 0.0945}};
+
+/// Its section 3.3.3: keyframes left after equations 3, 4 and 5, as shares of the map; after
+/// equation 6, their number, and the share of queries with exactly one.
+struct PublishedCandidates {
+  std::string_view system;
+  double c1 = 0, c2 = 0, c3 = 0, final = 0, single = 0;
+};
+inline constexpr PublishedCandidates kCandidates[] = {
+    {"the paper's semantic system", 0.9936, 0.0218, 0.0093, 1.89, 0.6618}};
+
+/// The rows to show below those of a suite: none unless it names the table.
+inline std::span<const PublishedRow> published_rows(const Suite& suite) {
+  if (suite.published != Published::kTable2) return {};
+  return kTable2;
+}
+inline std::span<const PublishedCandidates> published_candidates(const Suite& suite) {
+  if (suite.published != Published::kTable2) return {};
+  return kCandidates;
+}
+
+}  // namespace mh

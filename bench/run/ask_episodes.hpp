@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/protocol/episodes/episode.hpp"
+#include "bench/protocol/world/world.hpp"
+#include "bench/suite/cache.hpp"
+#include "bench/suite/runs.hpp"
+
+namespace mh {
+
+/// One episode of the first variant, to be watched.
+struct WatchedEpisode {
+  std::size_t start = 0;
+  /// Makes its observer once the robot has its map.
+  std::function<EpisodeObserver(const RobotMap&, const EpisodeStart&)> observer;
+};
+
+/// What the episodes of a run receive; only `only` changes which are run, nothing a score.
+struct EpisodeTools {
+  /// Episodes that have ended are kept here, so that an interrupted run does not repeat them.
+  Cache ended = Cache();
+  std::string key = {};  ///< of the run
+  std::optional<WatchedEpisode> only = {};
+  std::function<void()> require_unchanged = [] {};  ///< called before one is kept; may throw
+  std::function<void(std::string_view)> status = [](std::string_view) {};
+  std::function<void()> done = [] {};  ///< called after each
+};
+
+/// Kidnaps the robot of a run at each start of each variant, in this order. Its map is made of the
+/// mapped frames at the estimated poses.
+/// @param estimate             of the mapping
+/// @param truth_from_estimate  for the scores alone
+/// @param noise                of the mapped frames
+/// @throws OutsideError
+std::vector<EpisodeScore> ask_episodes(const RunSpec& spec, const World& world,
+                                       const System& frozen, const Trajectory& estimate,
+                                       const SE3& truth_from_estimate, RandomStream noise,
+                                       const EpisodeTools& tools);
+
+}  // namespace mh
