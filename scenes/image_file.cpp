@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/tga.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/narrowed.hpp"
@@ -120,6 +121,7 @@ const char* image_fault(std::string_view bytes) {
   if (bytes.starts_with("\xff\xd8")) return jpeg_is_whole(bytes) ? nullptr : "is truncated";
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return png_fault(bytes);
   if (bytes.starts_with("\xabKTX ")) return "is KTX (Basis Universal), which is not read: use PNG";
+  if (bytes.starts_with("GIF8")) return "is GIF, which is not read: use PNG";
   if (bytes.starts_with("DDS ")) return "is DDS, which is not read: use PNG";
   if (bytes.substr(0, 12).ends_with("ftypavif")) return "is AVIF, which is not read: use PNG";
   return nullptr;
@@ -171,6 +173,7 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form) {
       image = cv::imdecode(view, flags);
     } catch (const cv::Exception&) {  // beyond OpenCV's own limits
     }
+  if (image.empty() && form == ImageForm::kStored) image = decode_tga(bytes);
   if (image.empty()) throw InputError("is not an image, or a damaged one");
   return image;
 }

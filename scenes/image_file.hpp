@@ -41,8 +41,8 @@ std::string without_remarks(std::string_view bytes);
 /// one of 8 bits.
 enum class ImageForm { kStored, kColor, kGray };
 
-/// Decodes an image of any kind that OpenCV reads; all image decoding in the program goes through
-/// this function.
+/// Decodes an image of any kind that OpenCV reads, or as stored a TGA; all image decoding in the
+/// program goes through this function.
 /// @throws InputError stating what is wrong with it, to be appended to a file's name: damaged,
 /// truncated, or declaring more than such a file can contain.
 cv::Mat decode_image(std::string_view bytes, ImageForm form = ImageForm::kStored);

@@ -99,8 +99,10 @@ class EquipmentReader {
   }
 
   Equipment read() {
-    if (const auto base = yaml_.find("base_link"))
-      e_.base_from_root = base_from(*base, base->as_string()).inverse();
+    if (const auto base = yaml_.find("base_link")) {
+      base_link_ = base->as_string();
+      e_.base_from_root = base_from(*base, base_link_).inverse();
+    }
     if (const auto wheels = yaml_.find("wheels")) e_.wheels = read_wheels(*wheels);
     if (auto head = yaml_.find("head")) {
       e_.head = {.yaw = joint(head->at("yaw")).name, .pitch = joint(head->at("pitch")).name};
@@ -158,6 +160,21 @@ class EquipmentReader {
     return base_from(link, link.as_string());
   }
 
+  /// The joint between a wheel and the base that turns the wheel's axle over the floor, as of PR2's
+  /// casters; "" if there is none.
+  std::string steered_by(const Joint& wheel) const {
+    constexpr double kUpright = 0.5;
+    std::string link = wheel.parent;
+    for (auto at = e_.tree.joints.rbegin(); at != e_.tree.joints.rend(); ++at) {
+      if (link == base_link_) break;
+      if (at->child != link) continue;
+      const Eigen::Vector3d axis = e_.base_from(at->child).rotation() * at->axis;
+      if (at->kind == Joint::Kind::kTurning && std::abs(axis.z()) > kUpright) return at->name;
+      link = at->parent;
+    }
+    return "";
+  }
+
   WheelBase read_wheels(YamlReader yaml) const {
     WheelBase wheels;
     MappingReader reader(yaml);
@@ -176,6 +193,11 @@ class EquipmentReader {
         name.fail(fmt::format(
             "joint '{}' is no wheel's: it {}", wheel.name,
             wheel.kind == Joint::Kind::kTurning ? "turns about an upright axis" : "does not turn"));
+      if (const std::string steered = steered_by(wheel); !steered.empty())
+        name.fail(fmt::format(
+            "joint '{}' hangs on joint '{}', which steers it: leave `wheels` out, such a base is "
+            "not known",
+            wheel.name, steered));
       if (!(wheel.velocity > 0))
         name.fail(fmt::format("the URDF limits the velocity of joint '{}' to 0", wheel.name));
       wheels.wheels.push_back({.joint = wheel.name,
@@ -225,6 +247,7 @@ class EquipmentReader {
   }
 
   YamlReader yaml_;
+  std::string base_link_;  ///< "": the URDF's root
   std::vector<std::string>* warnings_;
   Equipment e_;
 };

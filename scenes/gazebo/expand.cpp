@@ -188,9 +188,23 @@ class Expander {
       if (!circle) fail(from, include, fmt::format("more than {} includes deep", kDeepest));
       throw InputError(fmt::format("{}{}: the includes lead in a circle", chain, own.string()));
     }
+    const Source* source = readable(file, include, from);
+    if (source == nullptr) return;
     open_.push_back(own);
-    add_models(read(file), include, out, names);
+    add_models(*source, include, out, names);
     open_.pop_back();
+  }
+
+  /// null: the file is not SDF, and left out.
+  const Source* readable(const fs::path& file, const XMLElement& include, const Source& from) {
+    try {
+      return &read(file);
+    } catch (const InputError& error) {
+      collected_.add(fmt::format("{}:{}: include: {}: left out", from.file.string(),
+                                 include.GetLineNum(), error.what()),
+                     "include " + file.string());
+      return nullptr;
+    }
   }
 
   void add_models(const Source& source, const XMLElement& include, XMLElement& out, Names& names) {

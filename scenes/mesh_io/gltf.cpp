@@ -82,6 +82,18 @@ std::string_view body_of(std::string_view chunks) {
   return chunks.substr(kHead, number_at(chunks, 0));
 }
 
+/// Whether the second chunk begins where the first ends. It should begin at a multiple of 4, which
+/// some writers forget (trimesh's early ones).
+bool is_unpadded(std::size_t end, std::string_view bytes) {
+  constexpr std::size_t kLength = 4;
+  return end % 4 != 0 && end + kLength < bytes.size() && bytes.substr(end + kLength, 3) == "BIN";
+}
+
+std::string_view chunks_after(std::size_t end, std::string_view bytes) {
+  const std::size_t begin = is_unpadded(end, bytes) ? end : (end + 3) / 4 * 4;
+  return bytes.substr(std::min(begin, bytes.size()));
+}
+
 }  // namespace
 
 std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::filesystem::path& file,
@@ -91,7 +103,7 @@ std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::fil
   if (binary) {
     if (bytes.size() < kHeader) return std::nullopt;
     text = bytes.substr(kHeader, number_at(bytes, 12));
-    chunks = bytes.substr(std::min(kHeader + (text.size() + 3) / 4 * 4, bytes.size()));
+    chunks = chunks_after(kHeader + text.size(), bytes);
   }
   Json gltf = parse_json_or_discard<Json>(text);
   if (!gltf.is_object()) return std::nullopt;
@@ -107,7 +119,7 @@ std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::fil
   if (warnings != nullptr)
     for (const std::string& line : lines)
       warnings->push_back(fmt::format("{}: {}", file.string(), line));
-  if (gltf == before) return std::nullopt;
+  if (gltf == before && !(binary && is_unpadded(kHeader + text.size(), bytes))) return std::nullopt;
   repaired.decoded_name = file.parent_path() / gltf::kDecodedBuffer;
   repaired.bytes = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (!binary) return repaired;

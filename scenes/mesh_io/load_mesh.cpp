@@ -25,6 +25,8 @@
 #include "scenes/mesh_io/mtl_textures.hpp"
 #include "scenes/mesh_io/noted_files.hpp"
 #include "scenes/mesh_io/ply.hpp"
+#include "scenes/mesh_io/ply_corners.hpp"
+#include "scenes/mesh_io/ply_header.hpp"
 #include "scenes/mesh_io/ply_labels.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/file_errors.hpp"
@@ -52,13 +54,16 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Mesh
                     MtlTextures& textures, std::vector<std::string>* warnings) {
   const MeshFormat format = format_of(file);
   require_readable(file);
-  if (format.obj) without_mark(map_file(file).view, file);  // throws on UTF-16
+  if (format.obj || format.dae) without_mark(map_file(file).view, file);  // throws on UTF-16
   std::map<fs::path, std::string> in_memory;
   if (format.gltf)
     if (auto repaired = repaired_gltf(map_file(file).view, file, warnings)) {
       in_memory[repaired->decoded_name] = std::move(repaired->decoded);
       in_memory[file] = std::move(repaired->bytes);
     }
+  if (format.ply)
+    if (auto split = ply_with_corners(map_file(file).view, file.string()))
+      in_memory[file] = *std::move(split);
   importer.SetIOHandler(new NotedFiles(std::move(in_memory), textures));  // which it owns
   // No step that reorders vertices or faces: labels next to a PLY depend on their order.
   const unsigned steps =
@@ -93,11 +98,26 @@ void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* w
     rest = rest.substr(0, rest.find_first_of("\r\n"));
     rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
     rest = rest.substr(0, rest.find_last_not_of(" \t") + 1);
-    if (!is_there(file.parent_path() / rest))
+    std::string portable(rest);
+    std::ranges::replace(portable, '\\', '/');
+    if (!is_there(file.parent_path() / portable))
       warnings->push_back(fmt::format("{}:{}: mtllib {} is missing: what it colors is gray",
                                       file.string(),
                                       1 + std::ranges::count(held.view.substr(0, at), '\n'), rest));
   }
+}
+
+/// Colors of vertices are read, those of faces are not.
+void warn_of_face_colors(std::string_view bytes, const fs::path& file,
+                         std::vector<std::string>* warnings) {
+  const ply::Header header = ply::parse_header(bytes, file.string());
+  const auto has_colors = [&](std::string_view name) {
+    const auto element = std::ranges::find(header.elements, name, &ply::Element::name);
+    return element != header.elements.end() && element->find("red") != nullptr;
+  };
+  if (warnings != nullptr && has_colors("face") && !has_colors("vertex"))
+    warnings->push_back(fmt::format(
+        "{}: the colors of its faces are not read, those of vertices would be", file.string()));
 }
 
 /// assimp assigns a gray material to a mesh without one; vertex colors should show unchanged.
@@ -169,6 +189,7 @@ Scene load_mesh(const fs::path& file, std::vector<std::string>* warnings, const 
   const MeshFormat format = format_of(file);
   if (format.ply) {
     const HeldBytes held = map_file(file);
+    warn_of_face_colors(held.view, file, warnings);
     if (is_plain_ply(held.view)) {
       PlyMesh mesh = parse_ply(held.view, file.string());
       warn_of_bytes_left(mesh, file, warnings);

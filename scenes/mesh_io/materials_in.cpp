@@ -51,6 +51,8 @@ ImageIn find_texture(const aiScene& in, const std::string& name, const fs::path&
     return convert_embedded(*embedded, images);
   std::string portable = name;
   std::ranges::replace(portable, '\\', '/');
+  // MeshLab's PLYs have a blank behind the name.
+  portable.erase(portable.find_last_not_of(" \t\r") + 1);
   if (portable.starts_with("file://")) portable.erase(0, std::strlen("file://"));
   return images.read(place_of_image(portable, folder));
 }

@@ -20,14 +20,38 @@ void append_coordinates(std::string_view line, std::string& to) {
   }
 }
 
+bool is_line_of(std::string_view line, std::string_view key) {
+  return line.starts_with(key) && line.size() > key.size() && is_blank(line[key.size()]);
+}
+
+/// The place of the first face if there are materials, and none is chosen before it; else npos.
+std::size_t face_without_material(std::string_view text) {
+  bool has_materials = false;
+  for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
+    const std::string_view line = text.substr(at, 16);
+    has_materials = has_materials || is_line_of(line, "mtllib");
+    if (is_line_of(line, "usemtl")) return text.npos;
+    if (is_line_of(line, "f")) return has_materials ? at : text.npos;
+    if (text.find('\n', at) == text.npos) break;
+  }
+  return text.npos;
+}
+
 }  // namespace
 
 std::optional<std::string> repaired_obj(std::string_view text) {
   constexpr std::array<std::string_view, 5> kSigns = {" .", "\t.", "-.", "+.", "aniso"};
-  if (std::ranges::none_of(kSigns, [&](auto sign) { return text.find(sign) != text.npos; }))
+  const std::size_t face = face_without_material(text);
+  if (face == text.npos &&
+      std::ranges::none_of(kSigns, [&](auto sign) { return text.find(sign) != text.npos; }))
     return std::nullopt;
   std::string repaired;
-  repaired.reserve(text.size() + text.size() / 8);
+  if (face != text.npos) {
+    repaired = repaired_obj(text.substr(0, face)).value_or(std::string(text.substr(0, face)));
+    repaired += "usemtl DefaultMaterial\n";  // by which load_mesh() knows it
+    text.remove_prefix(face);
+  }
+  repaired.reserve(repaired.size() + text.size() + text.size() / 8);
   while (!text.empty()) {
     const std::size_t size = std::min(text.find('\n'), text.size() - 1) + 1;
     const std::string_view line = text.substr(0, size);

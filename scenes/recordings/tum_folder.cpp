@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "scenes/image_file.hpp"
 #include "scenes/recordings/associations.hpp"
@@ -99,6 +100,14 @@ cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
   return image;
 }
 
+/// Gray cameras and simulators that write opacity have other channels.
+cv::Mat as_three_channels(const cv::Mat& image) {
+  if (image.channels() == 3) return image;
+  cv::Mat color;
+  cv::cvtColor(image, color, image.channels() == 1 ? cv::COLOR_GRAY2BGR : cv::COLOR_BGRA2BGR);
+  return color;
+}
+
 Grid2d<std::uint16_t> widened(const cv::Mat& ids) {
   Grid2d<std::uint16_t> wide(ids.cols, ids.rows);
   cv::Mat out(ids.rows, ids.cols, CV_16UC1, wide.data());
@@ -129,7 +138,8 @@ Grid2d<Rgb8> as_it_is(const cv::Mat& bgr) {
 }  // namespace
 
 fs::path associations_in(const fs::path& folder) {
-  for (const char* name : {"associations.txt", "associated.txt"})
+  for (const char* name :
+       {"associations.txt", "associated.txt", "association.txt", "associate.txt"})
     if (is_there(folder / name)) return folder / name;
   return {};
 }
@@ -175,7 +185,8 @@ std::vector<RecordedFrame> load_tum_folder(const fs::path& folder,
 
 RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera,
                      const ClassMap* classes) {
-  const cv::Mat color = read_frame_image(recorded.color, {CV_8UC3}, camera.camera);
+  const cv::Mat color = as_three_channels(
+      read_frame_image(recorded.color, {CV_8UC3, CV_8UC1, CV_8UC4}, camera.camera));
   const cv::Mat depth = read_frame_image(recorded.depth, {CV_16UC1}, camera.camera);
   RgbdFrame frame;
   frame.stamp_ns = recorded.stamp_ns;

@@ -33,8 +33,8 @@ struct RecordedFrame {
   std::filesystem::path color, depth, classes;  ///< classes: empty if the recording has none
 };
 
-/// The list of pairs in a folder of TUM's or ETH3D's layout, associations.txt or associated.txt;
-/// empty if it holds neither.
+/// The list of pairs in a folder of TUM's or ETH3D's layout: associations.txt, associated.txt, or
+/// association.txt or associate.txt, as people call it too; empty if it holds none.
 std::filesystem::path associations_in(const std::filesystem::path& folder);
 
 /// Reads a folder in TUM's layout: rgb.txt and depth.txt, or if one is missing associations.txt or

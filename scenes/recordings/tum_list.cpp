@@ -9,6 +9,16 @@
 #include "slam/io/error.hpp"
 
 namespace mh {
+namespace {
+
+/// Whether a stamp is a time since 1970 in nanoseconds, as ROS programs name their images: seconds
+/// have no more than ten digits before the point.
+bool is_in_nanoseconds(const std::string& stamp) {
+  constexpr std::size_t kDigits = 18;  // since 1973
+  return stamp.size() >= kDigits && stamp.find_first_not_of("0123456789") == std::string::npos;
+}
+
+}  // namespace
 
 std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::string& name,
                                          int skip) {
@@ -24,7 +34,7 @@ std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::str
     if (!(words >> file))
       throw InputError(fmt::format("{}:{}: a stamp and a file are needed", name, number));
     try {
-      entries.push_back({parse_stamp(stamp), file});
+      entries.push_back({parse_stamp(stamp, is_in_nanoseconds(stamp) ? -9 : 0), file});
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}:{}: {}", name, number, error.what()));
     }

@@ -16,7 +16,8 @@ struct TumListEntry {
 };
 
 /// Parses "stamp file" lines, after the given number of words to skip; '#' starts a comment.
-/// Entries keep the list's order; their stamps need not increase.
+/// Stamps are seconds, or nanoseconds since 1970. Entries keep the list's order; their stamps need
+/// not increase.
 /// @param name  names the list in messages
 /// @throws InputError naming list and line: no file, no stamp.
 std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::string& name,

@@ -61,13 +61,15 @@ Words words_of_data(std::string_view line, char separator) {
   return words;
 }
 
-/// Whether a line holds names: no word is a number, and the first is empty or begins with a letter.
+/// Whether a line holds names: no word is a number, and the first is empty or begins with a letter,
+/// or with _ or / as PlotJuggler's do.
 bool is_of_names(const Words& words) {
   const auto is_number = [](std::string_view word) {
     return number_in(without_plus(word)).has_value();
   };
+  const char first = words[0].empty() ? '_' : words[0][0];
   return std::ranges::none_of(words, is_number) &&
-         (words[0].empty() || std::isalpha(static_cast<unsigned char>(words[0][0])) != 0);
+         (std::isalpha(static_cast<unsigned char>(first)) != 0 || first == '_' || first == '/');
 }
 
 /// How a file writes its poses.
@@ -86,8 +88,8 @@ Layout layout_of(const std::string& text, const std::string& name) {
   std::vector<std::pair<std::string_view, int>> before;
   for_each_line(text, [&](std::string_view line, int number) {
     const std::string_view data = without_comment(line);
-    const char separator = data.find(',') != std::string_view::npos   ? ','
-                           : data.find(';') != std::string_view::npos ? ';'
+    const char separator = data.find(';') != std::string_view::npos   ? ';'
+                           : data.find(',') != std::string_view::npos ? ','
                                                                       : ' ';
     Words words = words_of_data(line, separator);
     if (words.empty() || is_of_names(words)) {
@@ -121,12 +123,16 @@ Layout layout_of(const std::string& text, const std::string& name) {
 Words words_of_pose(std::string_view line, const Layout& layout, const LinePlace& place) {
   Words words = words_of_data(line, layout.separator);
   const auto& [least, most] = std::pair(layout.columns.least, layout.columns.most);
+  constexpr std::size_t kMatrix = 12;
   if (!words.empty() && (words.size() < least || words.size() > most))
-    place.fail(fmt::format("pose: {}, expected {}{}{}", counted(words.size(), "value"),
+    place.fail(fmt::format("pose: {}, expected {}{}{}{}", counted(words.size(), "value"),
                            least == most ? "" : "at least ", least,
                            least != 8        ? ""
                            : layout.is_table ? " (timestamp p_x p_y p_z q_w q_x q_y q_z)"
-                                             : " (stamp tx ty tz qx qy qz qw)"));
+                                             : " (stamp tx ty tz qx qy qz qw)",
+                           words.size() == kMatrix && !layout.is_table
+                               ? "; matrices without stamps are KITTI's: `evaluate --format kitti`"
+                               : ""));
   return words;
 }
 
@@ -207,6 +213,8 @@ TimedPose pose_in(const Words& words, const PoseColumns& columns, const LinePlac
 /// @param may_be_empty  whether a file without poses is accepted
 Trajectory parse(const std::string& text, const std::string& name, std::vector<std::string>* notes,
                  bool may_be_empty) {
+  if (text.find('\0') != std::string::npos)
+    throw InputError(name + ": is not text, as files of poses are");
   Layout layout = layout_of(text, name);
   if (!layout.columns.unit) {
     const StampRange range = range_of_stamps(text, layout);

@@ -15,6 +15,7 @@
 #include "slam/io/error.hpp"
 #include "slam/io/lower_case.hpp"
 #include "slam/io/text_file.hpp"
+#include "slam/io/yaml.hpp"
 
 namespace mh {
 namespace {
@@ -111,6 +112,33 @@ std::optional<std::size_t> take_index(std::string_view& rest) {
   return take(rest, ':') ? std::optional(index) : std::nullopt;
 }
 
+std::vector<std::string> require_some(std::vector<std::string> names,
+                                      const std::filesystem::path& file) {
+  if (names.empty()) throw InputError(fmt::format("{}: names no class", file.string()));
+  return names;
+}
+
+/// Of a data set's file for Ultralytics: `names`, a list, or a mapping from index to name.
+std::vector<std::string> names_in_yaml(const std::filesystem::path& file) {
+  YamlReader yaml = YamlReader::load(file);
+  YamlReader list = yaml.at("names");
+  std::vector<std::string> names;
+  if (list.is_sequence()) {
+    for (const YamlReader& name : list.items()) names.push_back(name.as_string());
+    return names;
+  }
+  const auto entries = list.entries();
+  names.resize(entries.size());
+  for (const auto& [key, name] : entries) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+    if (error != std::errc() || end != key.data() + key.size() || index >= names.size())
+      name.fail(fmt::format("'{}' is not an index from 0 to {}", key, names.size() - 1));
+    names[index] = name.as_string();
+  }
+  return names;
+}
+
 }  // namespace
 
 std::string ClassNames::unknown_note(const std::filesystem::path& of) const {
@@ -132,16 +160,20 @@ int coco80_of_category(int category_id) {
 }
 
 ClassNames load_class_names(const std::filesystem::path& file) {
+  const std::string ending = lower_case(file.extension().string());
+  if (ending == ".yaml" || ending == ".yml")
+    return with_ids(require_some(names_in_yaml(file), file));
+  const std::string text = read_text(file);
+  if (auto printed = read_class_names(text)) return *std::move(printed);
   std::vector<std::string> names;
-  std::istringstream text(read_text(file));
-  for (std::string line; std::getline(text, line);) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
     const auto first = line.find_first_not_of(" \t\r");
     line = first == line.npos ? "" : line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
     names.push_back(std::move(line));
   }
   while (!names.empty() && names.back().empty()) names.pop_back();
-  if (names.empty()) throw InputError(fmt::format("{}: names no class", file.string()));
-  return with_ids(std::move(names));
+  return with_ids(require_some(std::move(names), file));
 }
 
 std::optional<ClassNames> read_class_names(std::string_view python) {

@@ -28,7 +28,8 @@ const ClassNames& coco80();
 /// none.
 int coco80_of_category(int category_id);
 
-/// Reads one name per line, as darknet's .names files are; blank lines at the end do not count.
+/// Reads one name per line, as darknet's .names files are (blank lines at the end do not count), a
+/// list in JSON, or `names` of a data set's .yaml for Ultralytics.
 /// @throws InputError naming the file, also if it contains no names.
 ClassNames load_class_names(const std::filesystem::path& file);
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -65,9 +66,21 @@ std::optional<Matrix> as_matrix(const Tensor& tensor) {
   return Matrix{shape[shape.size() - 2], shape.back(), tensor.values};
 }
 
-bool is_segmentation(const Tensor& tensor) {
+/// Whether a tensor has a channel per class, in the proportions of the input up to a cell: other
+/// networks, such as Yolo-FastestV2, have height, width and channels in this order.
+bool is_segmentation(const Tensor& tensor, const InputSize& input) {
   const auto& s = tensor.shape;
-  return s.size() == 4 && s[0] == 1 && s[1] >= 2 && s[1] <= 4096 && s[2] > 1 && s[3] > 1;
+  return s.size() == 4 && s[0] == 1 && s[1] >= 2 && s[1] <= 4096 && s[2] > 1 && s[3] > 1 &&
+         std::abs(std::int64_t{s[3]} * input.height - std::int64_t{s[2]} * input.width) <=
+             std::max(input.width, input.height);
+}
+
+/// Whether there are such tensors of different sizes: the scales of a detector.
+bool has_scales(std::span<const Tensor> outputs, const InputSize& input) {
+  const Tensor* first = segmentation_in(outputs, input);
+  return first != nullptr && std::ranges::any_of(outputs, [&](const Tensor& tensor) {
+           return is_segmentation(tensor, input) && tensor.shape[3] != first->shape[3];
+         });
 }
 
 /// Whether boxes are around their cells in pixels, as decoded ones do; raw ones are offsets of
@@ -169,20 +182,27 @@ std::string shape_text(const Tensor& tensor) {
   return fmt::format("{}", fmt::join(tensor.shape, " x "));
 }
 
+const Tensor* segmentation_in(std::span<const Tensor> outputs, const InputSize& input) {
+  const auto found =
+      std::ranges::find_if(outputs, [&](const Tensor& t) { return is_segmentation(t, input); });
+  return found == outputs.end() ? nullptr : &*found;
+}
+
 bool gives_boxes_and_masks(std::span<const Tensor> outputs, const InputSize& input) {
   const auto boxes = [&](const Tensor& tensor) {
     const std::optional<Matrix> m = as_matrix(tensor);
     return m && (!cells_of(m->columns, input).empty() || !cells_of(m->rows, input).empty() ||
                  (m->rows % 3 == 0 && !cells_of(m->rows / 3, input).empty()));
   };
-  return std::ranges::any_of(outputs, is_segmentation) && std::ranges::any_of(outputs, boxes);
+  const auto masks = [&](const Tensor& tensor) { return is_segmentation(tensor, input); };
+  return std::ranges::any_of(outputs, masks) && std::ranges::any_of(outputs, boxes);
 }
 
 Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, bool darknet) {
   if (darknet) return rows_of(Head::kDarknet, outputs, input) ? Head::kDarknet : Head::kAuto;
-  if (gives_boxes_and_masks(outputs, input)) return Head::kAuto;
+  if (gives_boxes_and_masks(outputs, input) || has_scales(outputs, input)) return Head::kAuto;
+  if (segmentation_in(outputs, input) != nullptr) return Head::kSegmentation;
   for (const Tensor& tensor : outputs) {
-    if (is_segmentation(tensor)) return Head::kSegmentation;
     const std::optional<Matrix> m = as_matrix(tensor);
     if (!m) continue;
     const std::vector<Cell> by_row = cells_of(m->rows, input);
@@ -198,9 +218,8 @@ Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, boo
 
 int class_count(Head head, std::span<const Tensor> outputs, const InputSize& input) {
   if (head == Head::kSegmentation) {
-    for (const Tensor& tensor : outputs)
-      if (is_segmentation(tensor)) return tensor.shape[1];
-    return 0;
+    const Tensor* tensor = segmentation_in(outputs, input);
+    return tensor == nullptr ? 0 : tensor->shape[1];
   }
   const std::optional<Matrix> m = rows_of(head, outputs, input);
   return m ? m->columns - (head == Head::kYolov8 ? 4 : 5) : 0;

@@ -30,6 +30,9 @@ Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, boo
 /// are not supported.
 bool gives_boxes_and_masks(std::span<const Tensor> outputs, const InputSize& input);
 
+/// The output of a segmenting head: the first with a channel per class; null if there is none.
+const Tensor* segmentation_in(std::span<const Tensor> outputs, const InputSize& input);
+
 /// The number of classes of outputs with that head; 0 if they cannot be its outputs.
 int class_count(Head head, std::span<const Tensor> outputs, const InputSize& input);
 

@@ -68,10 +68,9 @@ class Network : public Detector {
     const NetworkOutputs out = run_network(file_, imported_, input);
     Detected found;
     if (settings.head == Head::kSegmentation) {
-      for (const Tensor& tensor : out.tensors)
-        if (tensor.shape.size() == 4)
-          found.pixels = segmented(tensor, at, imported_.input, {color.width(), color.height()},
-                                   imported_.names, settings.confidence);
+      if (const Tensor* tensor = segmentation_in(out.tensors, imported_.input))
+        found.pixels = segmented(*tensor, at, imported_.input, {color.width(), color.height()},
+                                 imported_.names, settings.confidence);
     } else {
       found.boxes = select_boxes(candidates(out), at, color.width(), color.height(),
                                  imported_.names, settings);

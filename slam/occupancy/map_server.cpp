@@ -243,6 +243,7 @@ void write_map_image(const MapImage& map, const std::filesystem::path& stem, con
 MapImage read_map_image(YamlReader& yaml, const std::filesystem::path& yaml_file,
                         std::vector<std::string>* warnings, const ImageDecoder& decode) {
   const std::filesystem::path file = image_named(yaml, yaml_file);
+  if (!is_there(file)) yaml.at("image").fail(fmt::format("{}: no such file", file.string()));
   MapImage map;
   map.resolution_m = yaml.number("resolution", 1e-4, 100.0);
   const std::vector<double> origin = read_origin(yaml.at("origin"), yaml_file, warnings);

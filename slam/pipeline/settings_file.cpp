@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "slam/features/undistort.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/lower_case.hpp"
 #include "slam/io/settings_io.hpp"
 #include "slam/io/text_file.hpp"
+#include "slam/pipeline/calibration_files.hpp"
 
 namespace mh {
 namespace {
@@ -32,16 +32,6 @@ void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera
                        .k4 = yaml.number_or(prefix + "k4", 0, -kMost, kMost),
                        .k5 = yaml.number_or(prefix + "k5", 0, -kMost, kMost),
                        .k6 = yaml.number_or(prefix + "k6", 0, -kMost, kMost)};
-}
-
-/// @param place  of the distortion
-void check_camera(const Camera& camera, const YamlReader& place) {
-  try {
-    validate(camera);
-    require_undistortable(camera);
-  } catch (const InputError& error) {
-    place.fail(error.what());
-  }
 }
 
 void read_camera(YamlReader& yaml, Settings& settings) {
@@ -65,7 +55,7 @@ void read_camera(YamlReader& yaml, Settings& settings) {
     distortion->finish();
   }
   camera.finish();
-  check_camera(c, distortion ? *distortion : camera);
+  require_usable(c, distortion ? *distortion : camera);
 }
 
 Settings read_own(YamlReader yaml, Settings settings) {
@@ -110,7 +100,7 @@ const OrbSlamKeys kOrbSlam3{"ORB-SLAM3", "Camera1.", "Stereo.b", "Stereo.ThDepth
 /// and keys for other sensors.
 constexpr auto kOrbSlamOthers = std::to_array<std::string_view>(
     {"Camera.type", "Camera.bFishEye", "Camera.newWidth", "Camera.newHeight", "Camera.imageScale",
-     "Stereo.T_c1_c2", "Tbc", "Tlr", "loopClosing", "thFarPoints"});
+     "InsertKFsWhenLost", "Stereo.T_c1_c2", "Tbc", "Tlr", "loopClosing", "thFarPoints"});
 
 bool is_one_of(const auto& keys, std::string_view key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
@@ -161,7 +151,7 @@ void read_orb_slam_lens(YamlReader& yaml, const OrbSlamKeys& keys, Camera& c) {
   const auto type = yaml.find("Camera.type");
   if (!type || type->as_string() != "Rectified") read_distortion(yaml, keys.lens, c);
   const auto k1 = yaml.find(keys.lens + "k1");
-  check_camera(c, k1 ? *k1 : yaml);
+  require_usable(c, k1 ? *k1 : yaml);
 }
 
 Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settings) {
@@ -202,55 +192,6 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   if (!passed_over.empty())
     settings.notes.push_back(fmt::format("{}: passed over: {}", yaml.file(), passed_over));
   return settings;
-}
-
-/// Reads the distortion of ROS' camera_info: plumb_bob or rational_polynomial.
-void read_ros_distortion(YamlReader& list, const std::string& model, Camera& camera) {
-  const std::vector<double> d = list.as_numbers();
-  const std::size_t most = model == "plumb_bob" ? 5 : 8;
-  if (d.size() > most || d.size() == 6 || d.size() == 7)
-    list.fail(fmt::format("{} coefficients; {} has {}", d.size(), model, most));
-  camera.distortion = distortion_of(d);
-}
-
-/// A calibration as written by ROS' camera_calibration. It may also contain our own sections.
-Settings read_camera_info(YamlReader yaml, Settings settings) {
-  settings.has_camera = true;
-  if (const auto ours = yaml.find("camera"))
-    ours->fail("states a camera, as camera_matrix does: which one is meant?");
-  Camera& c = settings.camera;
-  c.width_px = static_cast<int>(yaml.integer("image_width", 1, 100000));
-  c.height_px = static_cast<int>(yaml.integer("image_height", 1, 100000));
-  constexpr std::array kMatrixKeys{"rows", "cols", "data"};
-  const auto numbers = [&](YamlReader matrix) {
-    for (const char* key : kMatrixKeys) matrix.find(key);
-    matrix.finish();
-    return matrix.at("data");
-  };
-  const YamlReader data = numbers(yaml.at("camera_matrix"));
-  const std::vector<double> k = data.as_numbers(9);
-  if (k[1] != 0 || k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
-    data.fail("is not a matrix [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
-  c.fx_px = k[0];
-  c.fy_px = k[4];
-  c.cx_px = k[2];
-  c.cy_px = k[5];
-  std::string model = "plumb_bob";
-  if (const auto named = yaml.find("distortion_model")) {
-    model = named->as_string();
-    if (model != "plumb_bob" && model != "rational_polynomial")
-      named->fail(fmt::format("'{}' is neither plumb_bob nor rational_polynomial", model));
-  }
-  check_camera(c, data);
-  if (auto distortion = yaml.find("distortion_coefficients")) {
-    YamlReader list = numbers(*distortion);
-    read_ros_distortion(list, model, c);
-    check_camera(c, list);
-  }
-  // For stereo rigs and for people; not used here.
-  for (const char* key : {"camera_name", "rectification_matrix", "projection_matrix"})
-    yaml.find(key);
-  return read_own(std::move(yaml), std::move(settings));
 }
 
 /// Converts OpenCV's YAML dialect, line by line: "key:value" becomes "key: value", and a top-level
@@ -311,17 +252,19 @@ Settings parse_settings(std::string text, const std::string& name, const SlamCon
     text = without_dialect(text);
   }
   YamlReader yaml = YamlReader::parse(text, name);
-  bool orb_slam = false, orb_slam3 = false, camera_info = false;
+  bool orb_slam = false, orb_slam3 = false;
   for (const auto& [key, node] : YamlReader(yaml).entries()) {
     orb_slam = orb_slam || key.starts_with("Camera.");
     orb_slam3 = orb_slam3 || key.starts_with("Camera1.");
-    camera_info = camera_info || key == "camera_matrix";
   }
   Settings settings;
   settings.slam = base;
-  if (camera_info) return read_camera_info(std::move(yaml), std::move(settings));
   if (orb_slam || orb_slam3)
     return read_orb_slam(std::move(yaml), orb_slam3 ? kOrbSlam3 : kOrbSlam2, std::move(settings));
+  settings.has_camera = read_calibration(yaml, settings.camera);
+  if (settings.has_camera)
+    if (const auto ours = yaml.find("camera"))
+      ours->fail("states a camera, as the calibration around it does: which one is meant?");
   return read_own(std::move(yaml), std::move(settings));
 }
 

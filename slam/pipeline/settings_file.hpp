@@ -26,8 +26,8 @@ struct Settings {
 
 /// Reads our own settings (sections camera, images and those of SlamConfig, all optional; a camera
 /// needs its focal lengths and center), a settings file of ORB-SLAM2 (`Camera.fx: ...`) or
-/// ORB-SLAM3 (`Camera1.fx: ...`), or a ROS camera_info (`camera_matrix: ...`), which may also
-/// contain our other sections; the format is recognized by its keys.
+/// ORB-SLAM3 (`Camera1.fx: ...`), or a calibration (read_calibration()), which may also contain our
+/// other sections; the format is recognized by its keys.
 /// @param base  SLAM's parameters where the file does not set them
 /// @throws InputError "file:line: place: value".
 Settings load_settings(const std::filesystem::path& file, const SlamConfig& base = {});

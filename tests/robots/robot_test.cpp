@@ -172,6 +172,15 @@ TEST(LoadRobot, WheelsThatDoNotRollOnTheFloorAreNamed) {
             verdict_on_wheels("", "", "[l, g]", ground));
   expect_in("joint 'l' is no wheel's: it turns about an upright axis",
             verdict_on_wheels("0 1 0", "0 0 1", "[l, r]", ground));
+  const std::string on_body = "<joint name=\"l\" type=\"continuous\"><parent link=\"body\"/>",
+                    on_knuckle =
+                        "<link name=\"knuckle\"/><joint name=\"s\" type=\"continuous\"><parent "
+                        "link=\"body\"/><child link=\"knuckle\"/><axis xyz=\"0 0 1\"/></joint>"
+                        "<joint name=\"l\" type=\"continuous\"><parent link=\"knuckle\"/>";
+  expect_in("joint 'l' hangs on joint 's', which steers it",
+            verdict_on_wheels(on_body, on_knuckle, "[l, r]", ground));
+  expect_in("warning: ",
+            verdict_on_wheels(on_body, on_knuckle, "[l, r]", "base_link: knuckle\n  "));
   expect_in("velocity of joint 'l' to 0",
             verdict_on_wheels("<axis xyz=\"0 1 0\"/>",
                               "<axis  xyz=\"0 1 0\"/><limit effort=\"1\" velocity=\"0\"/>",

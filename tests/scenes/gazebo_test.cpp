@@ -190,6 +190,16 @@ TEST_F(GazeboWorld, ModelsWithinModelsAreShownInTheirPlace) {
   EXPECT_TRUE(tree.min_m.isApprox(Eigen::Vector3f(0.5F, 1.5F, -0.5F))) << tree.min_m.transpose();
 }
 
+// As pal_gazebo_worlds' green_ball: a single model whose file is damaged.
+TEST_F(GazeboWorld, AModelThatCannotBeReadIsLeftOut) {
+  write_model("models/ball", model("ball", "<link name='l'>"));
+  const Scene scene = load(
+      write_world(model("box", link(box(1))) + "\n<include><uri>model://ball</uri></include>"));
+  EXPECT_EQ(scene.instances.size(), 1U);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_TRUE(names(warnings_[0], {"w.world:3", "model.sdf:1", "not SDF", "left out"}));
+}
+
 TEST_F(GazeboWorld, PosesCountFromTheFramesThatTheyName) {
   const std::string inside = "<frame name='f'><pose>0 0 3 0 0 0</pose></frame>" + link(box(1)) +
                              "<link name='k'><pose relative_to='f'>1 0 0 0 0 0</pose>" + box(2) +
@@ -293,6 +303,8 @@ TEST_F(GazeboWorld, NamesOfMaterialsMayHaveBlanksAround) {
                                        model("b", link(box(1, script("\n  Wall\n"))))));
   EXPECT_TRUE(warnings_.empty()) << warnings_[0];
   ASSERT_EQ(scene.materials.size(), 2U);
+  load(write_world(model("a", link(box(1, script(""))))));
+  EXPECT_TRUE(warnings_.empty()) << "an empty name is none";
   EXPECT_EQ(scene.materials[0].base_color, (Rgb8{255, 0, 0}));
   EXPECT_EQ(scene.materials[1].base_color, (Rgb8{0, 0, 255}));
 }

@@ -344,11 +344,35 @@ TEST_F(Gltf, DracoCompressionIsUndoneAndItsNumbersMayBeQuantized) {
   EXPECT_TRUE(names(error_from(file), {"a.gltf: Draco compression"}));
 }
 
+TEST_F(Gltf, FacesOfVerticesThatAreNotThereAreWarnedOf) {
+  File file;
+  file.set_triangle();
+  file.primitive()["indices"] = file.add<std::uint16_t>({0, 1, 2, 0, 1, 3}, "SCALAR");
+  EXPECT_EQ(load(file).triangles.size(), 1U);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_TRUE(names(warnings_[0], {"a.gltf", "1 of 6 indices is beyond its 3 vertices"}));
+}
+
+TEST_F(Gltf, TheChunksOfABinaryFileMayLackTheirPadding) {
+  File file;
+  file.set_triangle();
+  for (int extra = 1; extra <= 4; ++extra) {
+    file.json["asset"]["generator"] = std::string(static_cast<std::size_t>(extra), 'x');
+    const std::string padded = file.glb(), chunk = file.json.dump();
+    const std::string body = padded.substr(20 + (chunk.size() + 3) / 4 * 4);
+    const std::string bytes = "glTF" + raw(2) +
+                              raw(static_cast<std::uint32_t>(20 + chunk.size() + body.size())) +
+                              raw(static_cast<std::uint32_t>(chunk.size())) + "JSON" + chunk + body;
+    EXPECT_EQ(digest(load_mesh(write("a.glb", bytes))), digest(load_mesh(write("a.glb", padded))))
+        << chunk.size() % 4;
+  }
+}
+
 TEST_F(Gltf, AnUnknownExtensionIsRefusedIfRequiredOtherwiseWarnedOf) {
   File file;
   file.set_triangle();
-  file.json["extensionsUsed"] = {"ACME_fog", "KHR_lights_punctual", "KHR_materials_ior",
-                                 "KHR_materials_variants"};
+  file.json["extensionsUsed"] = {"ACME_fog", "FB_ngon_encoding", "KHR_lights_punctual",
+                                 "KHR_materials_ior", "KHR_materials_variants"};
   load(file);
   ASSERT_EQ(warnings_.size(), 2U);
   EXPECT_TRUE(names(warnings_[0], {"a.gltf", "ACME_fog", "not known"}));

@@ -57,6 +57,19 @@ std::string collada(const std::string& color, const std::string& positions) {
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
+TEST_F(MeshRepair, FacesBeforeTheFirstMaterialHaveNone) {
+  write("c.mtl", "newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n");
+  const auto color_of_first = [&](const std::string& color) {
+    const Scene scene = load_mesh(write("c.obj", "mtllib c.mtl\nv 0 0 0" + color + "\nv 1 0 0" +
+                                                     color + "\nv 0 1 0" + color + "\nv 1 1 0" +
+                                                     color + "\nf 1 2 3\nusemtl green\nf 2 4 3\n"));
+    EXPECT_EQ(scene.materials[scene.material_of[1]].base_color, (Rgb8{0, 255, 0}));
+    return scene.materials[scene.material_of[0]].base_color;
+  };
+  EXPECT_EQ(color_of_first(""), (Rgb8{153, 153, 153})) << "as where no material is";
+  EXPECT_EQ(color_of_first(" 0 0 1"), (Rgb8{255, 255, 255})) << "its colors show unchanged";
+}
+
 TEST_F(MeshRepair, ColladaMayHaveBlanksBeforeItsNumbers) {
   const Scene clean = load_mesh(write("a.dae", collada("1 0.5 0 1", "0 0 0 1 0 0 0 1 0")));
   ASSERT_EQ(clean.triangles.size(), 1U);
@@ -129,6 +142,10 @@ TEST_F(MeshRepair, ObjMayLackZerosBeforePointsAndItsMaterialsBeAnisotropic) {
   EXPECT_EQ(repaired_obj("v .5 -.5\t+.5e1 1.5\nf 1 2 3\nusemtl a .5\n v .1"),
             "v 0.5 -0.5\t+0.5e1 1.5\nf 1 2 3\nusemtl a .5\n v 0.1");
   EXPECT_EQ(repaired_obj("newmtl m\naniso 0.7\nKd .5 0 0\nanisor 1"), "newmtl m\n\nKd .5 0 0\n\n");
+  EXPECT_EQ(repaired_obj("mtllib a.mtl\nv .5 0 0\nf 1 1 1\nusemtl m\nf 1 1 1\n"),
+            "mtllib a.mtl\nv 0.5 0 0\nusemtl DefaultMaterial\nf 1 1 1\nusemtl m\nf 1 1 1\n");
+  EXPECT_FALSE(repaired_obj("mtllib a.mtl\nusemtl m\nf 1 1 1\n"));
+  EXPECT_FALSE(repaired_obj("v 0 0 0\nf 1 1 1\nusemtl m\nf 1 1 1"));
   EXPECT_FALSE(repaired_obj(""));
   EXPECT_FALSE(repaired_obj("v 0.5 1.5 -2.5\n"));
   write("a.mtl", "newmtl m\nKd 1 0 0\naniso 0.7\nanisor 0.8\n");

@@ -288,5 +288,61 @@ TEST_F(LabeledPly, LabelsAloneAreNyu40) {
   EXPECT_TRUE(names(warnings[0], {"mesh.ply", "2 faces", "not an NYU40 id"}));
 }
 
+using PlyFile = TemporaryFolder;
+
+// As MeshLab writes it: blanks around the name.
+TEST_F(PlyFile, BlanksAroundATexturesNameAreNotOfIt) {
+  write("my tex.ppm", std::string("P6\n1 1\n255\n\xff") + '\0' + '\0');
+  std::vector<std::string> warnings;
+  const Scene scene = load_mesh(
+      write("a.ply",
+            "ply\nformat ascii 1.0\ncomment TextureFile   my tex.ppm \nelement vertex 3\n" +
+                kPoint + "property float s\nproperty float t\nelement face 1\n" + kList +
+                "end_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n"),
+      &warnings);
+  EXPECT_TRUE(warnings.empty()) << warnings[0];
+  ASSERT_FALSE(scene.materials[0].texture.empty());
+  EXPECT_EQ(scene.materials[0].texture(0, 0), (Rgb8{255, 0, 0}));
+}
+
+// As MeshLab writes it: two faces at a seam, of different places in the image. assimp gives each
+// vertex the place of its last face.
+TEST_F(PlyFile, CornersKeepTheTextureCoordinatesOfTheirFaces) {
+  write("t.ppm", std::string("P6\n2 1\n255\n\xff") + std::string(4, '\0') + "\xff");
+  const std::string text =
+      "ply\nformat ascii 1.0\ncomment TextureFile t.ppm\nelement vertex 4\n" + kPoint +
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n" + kList +
+      "property list uchar float texcoord\nproperty int texnumber\nend_header\n"
+      "0 0 0 9 9 9\n1 0 0 8 8 8\n1 1 0 7 7 7\n0 1 0 6 6 6\n"
+      "3 0 1 2 6 0.25 0 0.25 0 0.25 1 0\n3 0 2 3 6 0.75 0 0.75 1 0.75 1 0\n";
+  std::vector<std::string> warnings;
+  const Scene scene = load_mesh(write("a.ply", text), &warnings);
+  EXPECT_TRUE(warnings.empty()) << warnings[0];
+  ASSERT_EQ(scene.triangles.size(), 2U);
+  for (const std::size_t face : {0U, 1U})
+    for (const std::uint32_t vertex : scene.triangles[face])
+      EXPECT_EQ(scene.uvs[vertex].x(), face == 0 ? 0.25F : 0.75F);
+  EXPECT_EQ(scene.positions_m[scene.triangles[1][2]], Eigen::Vector3f(0, 1, 0));
+  EXPECT_EQ(scene.colors[scene.triangles[1][2]], (Rgb8{6, 6, 6}));
+  EXPECT_FALSE(scene.materials[0].texture.empty());
+  for (const std::size_t cut : {20U, 60U})
+    EXPECT_NE(error_of([&] { load_mesh(write("b.ply", text.substr(0, text.size() - cut))); }), "");
+  std::string beyond = text;
+  beyond.replace(beyond.find("3 0 2 3"), 7, "3 0 2 4");
+  EXPECT_TRUE(names(error_of([&] { load_mesh(write("b.ply", beyond)); }),
+                    {"b.ply", "face 1 names vertex 4 of 4"}));
+}
+
+TEST_F(PlyFile, ColorsOfFacesAreWarnedOf) {
+  std::vector<std::string> warnings;
+  load_mesh(write("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n" + kPoint +
+                               "element face 1\n" + kList +
+                               "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                               "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9 9\n"),
+            &warnings);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(names(warnings[0], {"a.ply", "colors of its faces are not read"}));
+}
+
 }  // namespace
 }  // namespace mh

@@ -69,6 +69,7 @@ constexpr Extension kExtensions[] = {
     {"EXT_mesh_primitive_edge_visibility"},
     {"EXT_structural_metadata"},
     {"FB_geometry_metadata"},
+    {"FB_ngon_encoding"},
     {"GODOT_single_root"},
     {"GRIFFEL_bim_data"},
     {"KHR_collision_shapes"},

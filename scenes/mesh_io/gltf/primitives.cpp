@@ -22,9 +22,25 @@ class Mender {
     primitive.erase("targets");
     place_uvs(primitive, mesh, attributes);
     make_floats(attributes);
+    check_indices(primitive, mesh, attributes);
   }
 
  private:
+  /// Assimp leaves out faces of vertices that are not there, without a word.
+  void check_indices(const Json& primitive, const Json& mesh, const Json& attributes) {
+    const std::size_t indices = index_in(primitive, "indices", kNone),
+                      position = index_in(attributes, "POSITION", kNone);
+    if (indices == kNone || position == kNone) return;
+    const std::size_t vertices = data_.values(position).count();
+    const std::vector<float> numbers = data_.values(indices).numbers;
+    const auto beyond = std::ranges::count_if(
+        numbers, [&](float index) { return index >= static_cast<float>(vertices); });
+    if (beyond > 0)
+      warnings_.push_back(fmt::format(
+          "mesh {}: {} of {} indices {} beyond its {} vertices: their faces are left out",
+          mesh.value("name", ""), beyond, numbers.size(), beyond == 1 ? "is" : "are", vertices));
+  }
+
   void apply_targets(Json& primitive, Json& mesh, Json& attributes) {
     const std::span<Json> targets = list_of(primitive, "targets"),
                           weights = list_of(mesh, "weights");

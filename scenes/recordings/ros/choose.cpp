@@ -30,8 +30,12 @@ bool is_one_of(const auto& encodings, const std::string& encoding) {
 bool is_ours(const ImageTopic& topic) {
   return topic.name.ends_with("/labels/image") || topic.name.ends_with("/instances/image");
 }
+/// By image_transport's compressedDepth, or by its `compressed`, whose format begins with the
+/// encoding: "16UC1; png compressed".
 bool has_compressed_depth(const ImageTopic& topic) {
-  return topic.compressed && is_compressed_depth(topic.encoding);
+  const std::string encoding = topic.encoding.substr(0, topic.encoding.find(';'));
+  return topic.compressed &&
+         (is_compressed_depth(topic.encoding) || is_one_of(kDepthEncodings, encoding));
 }
 bool is_depth(const ImageTopic& topic) {
   return !is_ours(topic) && (has_compressed_depth(topic) ||

@@ -304,6 +304,22 @@ TEST_P(RosRecording, DepthOf8BitsIsNotRead) {
             std::string::npos);
 }
 
+// As `rosbag record` of RealSense's compressed topics has it: depth as an ordinary PNG.
+TEST_P(RosRecording, DepthMayBeAnOrdinaryCompressedImage) {
+  Foreign robot(wire());
+  robot.info("/color/camera_info");
+  const std::string color = encode_jpeg(Grid2d<Rgb8>(2, 1, Rgb8{80, 80, 80}), 95),
+                    depth = encode_png(Grid2d<std::uint16_t>(2, 1, std::uint16_t{1500}));
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    robot.add("/color/image_raw/compressed", i,
+              ros::CompressedImage{robot.header(i), "rgb8; jpeg compressed bgr8", color});
+    robot.add("/aligned_depth_to_color/image_raw/compressed", i,
+              ros::CompressedImage{robot.header(i), "16UC1; png compressed ", depth});
+  }
+  robot.write(writer());
+  EXPECT_EQ(open().sequence->frame(0, RandomStream(0)).depth_m(1, 0), 1.5F);
+}
+
 TEST_P(RosRecording, AnotherCalibrationMidwayIsTold) {
   Foreign robot(wire());
   robot.camera();

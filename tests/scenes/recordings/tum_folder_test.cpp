@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "bench/suite/recorded_camera.hpp"
 #include "scenes/image_file.hpp"
@@ -353,6 +354,32 @@ TEST_F(TumFolder, OfEth3dBringsItsCalibration) {
     std::ofstream(folder_ / "calibration.txt") << bad;
     EXPECT_THROW(open(), InputError) << bad;
   }
+}
+
+// As people write them: other names of the list of pairs, ROS' stamps, gray cameras, simulators'
+// images with opacity.
+TEST_F(TumFolder, IsReadAsPeopleWriteIt) {
+  TumWriter writer(folder_, camera_);
+  writer.add(frame(100'000'000));
+  writer.finish();
+  const std::string pair = " rgb/0.100000000.png ";
+  const auto open = [&] { return open_sequence("tum:" + folder_.string(), {}); };
+  for (const char* name : {"camera.yaml", "camera_info.yaml", "rgb.txt", "associations.txt"})
+    fs::remove(folder_ / name);
+  std::ofstream(folder_ / "calibration.txt") << "7.5 7.25 3.5 2.5\n";
+  for (const char* name : {"association.txt", "associate.txt"}) {
+    std::ofstream(folder_ / name) << "1600000000123456789" << pair
+                                  << "1600000000123456789 depth/0.100000000.png\n";
+    EXPECT_EQ(open().sequence->stamp_ns(0), 1'600'000'000'123'456'789) << name;
+    fs::remove(folder_ / name);
+  }
+  std::ofstream(folder_ / "rgb.txt") << "0.1" << pair << "\n";
+  const cv::Mat gray(6, 8, CV_8UC1, cv::Scalar(9)),
+      with_opacity(6, 8, CV_8UC4, cv::Scalar(3, 2, 1, 77));
+  write_image(folder_ / "rgb/0.100000000.png", gray);
+  EXPECT_EQ(open().sequence->frame(0, RandomStream()).color(4, 3), (Rgb8{9, 9, 9}));
+  cv::imwrite(folder_ / "rgb/0.100000000.png", with_opacity);
+  EXPECT_EQ(open().sequence->frame(0, RandomStream()).color(4, 3), (Rgb8{1, 2, 3}));
 }
 
 TEST_F(TumFolder, AScaleOfDepthThatGivesWayIsTold) {

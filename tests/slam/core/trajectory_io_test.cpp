@@ -224,6 +224,18 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
             "f.csv:1: its positions are in 'mm', not in m");
 }
 
+// PlotJuggler's names begin with _ and /, and it sorts them: without its names, the quaternion
+// would be taken for the position.
+TEST(Poses, AreFoundByNamesThatBeginWithASign) {
+  const TimedPose pose = parse_trajectory(
+      "__time,/odom/orientation/w,/odom/orientation/x,/odom/orientation/y,/odom/orientation/z,"
+      "/odom/position/x,/odom/position/y,/odom/position/z\n1.5,0.8,0.6,0,0,1,2,3\n",
+      "f.csv")[0];
+  EXPECT_EQ(pose.stamp_ns, 1'500'000'000);
+  EXPECT_EQ(pose.world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_NEAR(pose.world_from_camera.quaternion().x(), 0.6, 1e-15);
+}
+
 TEST(Poses, HaveStampsInTheUnitThatIsNamedOrThatTheirSizeTells) {
   const auto stamp_of = [](const std::string& text, std::vector<std::string>& notes) {
     return parse_trajectory(text, "f", &notes).back().stamp_ns;
@@ -296,8 +308,10 @@ TEST(Poses, ThatAreOutOfOrderAreSorted) {
 TEST(Poses, OfAnotherKindOfFileAreRefusedRatherThanLeftOut) {
   std::vector<std::string> notes;
   const std::string kitti = "1 0 0 0 0 1 0 0 0 0 1 0\n";
-  EXPECT_EQ(refusal_of([&] { parse_trajectory(kitti + kitti, "k", &notes); }),
-            "k:1: pose: 12 values, expected 8 (stamp tx ty tz qx qy qz qw)");
+  EXPECT_EQ(
+      refusal_of([&] { parse_trajectory(kitti + kitti, "k", &notes); }),
+      "k:1: pose: 12 values, expected 8 (stamp tx ty tz qx qy qz qw); matrices without stamps "
+      "are KITTI's: `evaluate --format kitti`");
   EXPECT_EQ(refusal_of([&] {
               parse_trajectory("1 0 0 0 0 0 0 1\n2 0 0 0 1 1 0 0\n3 0 0 0 1 1 0 0\n", "f", &notes);
             }),
@@ -306,6 +320,13 @@ TEST(Poses, OfAnotherKindOfFileAreRefusedRatherThanLeftOut) {
   EXPECT_EQ(refusal_of([&] { parse_trajectory(lost, "f", &notes); }),
             "f: contains no poses; line 1: quaternion: norm 0, expected 1");
   EXPECT_TRUE(parse_valid_poses(lost, "f", notes).empty());
+}
+
+TEST(Poses, OfNoTextOrWithDecimalCommasAreRefused) {
+  EXPECT_EQ(tum_error(std::string("#ROSBAG V2.0\n\x02\0\0", 16)),
+            "f.txt: is not text, as files of poses are");
+  // A decimal comma, between semicolons.
+  EXPECT_EQ(tum_error("1;0,5;0;0;1;0;0;0\n"), "f.txt:1: tx: '0,5' is not a number");
 }
 
 TEST(Poses, OfTheWholeEarthKeepTheirDigits) {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/detect/heads.hpp"
 #include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 namespace mh {
@@ -35,6 +39,19 @@ TEST(RecognizeHead, GoesByTheOutputsShape) {
   EXPECT_EQ(of(Made({96, 8}), true), Head::kDarknet);
   EXPECT_EQ(of(Made({1, 1000})), Head::kAuto);
   EXPECT_EQ(of(Made({1, 41, 8})), Head::kAuto);
+}
+
+// Yolo-FastestV2's 22 x 22 x 95 were read as 22 classes, and YOLOv4's raw scales as 255.
+TEST(RecognizeHead, TakesNoDetectorsScalesForSegmentation) {
+  const auto of = [](const std::vector<Made>& made) {
+    std::vector<Tensor> tensors;
+    for (const Made& output : made) tensors.push_back(output.tensor());
+    return recognize_head(tensors, kInput, false);
+  };
+  EXPECT_EQ(of({Made({1, 2, 4, 95}), Made({1, 1, 2, 95})}), Head::kAuto);
+  EXPECT_EQ(of({Made({1, 255, 4, 8}), Made({1, 255, 2, 4})}), Head::kAuto);
+  EXPECT_EQ(of({Made({1, 21, 4, 8}), Made({1, 19, 4, 8})}), Head::kSegmentation);
+  EXPECT_EQ(of({Made({1, 21, 5, 9})}), Head::kSegmentation) << "up to a cell";
 }
 
 TEST(RecognizeHead, TellsDecodedBoxesByTheirPlaces) {
@@ -265,6 +282,32 @@ TEST(ReadClassNames, TakesWhatPythonPrints) {
        {"", "{}", "[]", "chair", "{0: 'chair'", "{0: 'chair', 2: 'table'}", "{0: 'a', 0: 'b'}",
         "{0: chair}", "['chair' 'table']", "{0: 'chair'} and more", "{-1: 'chair'}", "['chair"})
     EXPECT_FALSE(read_class_names(wrong)) << wrong;
+}
+
+TEST(LoadClassNames, TakesLinesJsonAndYamlOfUltralytics) {
+  const auto file = std::filesystem::path(testing::TempDir()) /
+                    fmt::format("mh_classes_{}", static_cast<int>(getpid()));
+  const auto names = [&](const char* ending, const std::string& text) {
+    const std::filesystem::path named = file.string() + ending;
+    write_atomically(named, text);
+    std::vector<std::string> read;
+    try {
+      read = load_class_names(named).names;
+    } catch (const InputError& error) {
+      read = {std::string(error.what()).substr(named.string().size())};
+    }
+    std::filesystem::remove(named);
+    return read;
+  };
+  const std::vector<std::string> expected{"chair", "dining table"};
+  EXPECT_EQ(names(".names", "chair\r\ndining table\r\n\r\n"), expected);
+  EXPECT_EQ(names(".json", "[\"chair\",\n \"dining table\"]\n"), expected);
+  EXPECT_EQ(names(".yaml", "train: ../images\nnc: 2\nnames: ['chair', 'dining table']\n"),
+            expected);
+  EXPECT_EQ(names(".yml", "path: x\nnames:\n  0: chair\n  1: dining table  # a comment\n"),
+            expected);
+  EXPECT_EQ(names(".yaml", "names:\n  1: chair\n  2: table\n")[0],
+            ":3: names.2: '2' is not an index from 0 to 1");
 }
 
 TEST(ClassNames, OfCocoFallOnOurs) {

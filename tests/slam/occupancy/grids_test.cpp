@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -269,6 +270,8 @@ TEST(MapServer, RefusesWhatItCannotRead) {
            "\norigin: " + origin + "\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n";
   };
   const std::string good = yaml("0.05", "[0, 0, 0]");
+  std::filesystem::remove(pgm);
+  expect_map_refused(good, ".yaml:1: image: " + pgm + ": no such file");
   write_atomically(pgm, "P5\n3 2\n255\nab");
   expect_map_refused(good, "truncated");
   write_atomically(pgm, "P5\n65536 65536\n255\nab");  // 4 GB that are not there

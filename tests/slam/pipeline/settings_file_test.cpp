@@ -238,6 +238,9 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
             std::string::npos);
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.type: \"PinHole\"\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
+  // Of ORB-SLAM3 before 1.0, as its RealSense_D435i.yaml has it.
+  EXPECT_EQ(parse_settings(std::string(kTum1) + "InsertKFsWhenLost: 0\n", "s.yaml").camera,
+            parse_settings(kTum1, "s.yaml").camera);
 
   // As the original's other files have them: a key twice with one value, a matrix without blanks.
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.width: 640\nCamera.bFishEye: 0\n" +
@@ -367,6 +370,53 @@ TEST(Settings, RosCalibrationsAreReadStrictly) {
   bad.replace(bad.find("525, 0, 320"), 11, "525, 9, 320");
   EXPECT_NE(complaint(bad).find("s.yaml:7: camera_matrix.data: is not a matrix [fx, 0, cx"),
             std::string::npos)
+      << complaint(bad);
+}
+
+// Of one camera, as four programs write it.
+TEST(Settings, CalibrationsOfOtherProgramsAreReadAsTheyAre) {
+  const std::string opencv =
+      "%YAML:1.0\n---\ncalibration_time: \"Tue 12 May 2020\"\nnr_of_frames: 20\nimage_width: "
+      "752\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+      "   data: [ 458., 0., 367., 0., 457.,\n       248., 0., 0., 1. ]\n"
+      "distortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n"
+      "   data: [ -0.25, 0.07, 1e-3, 2e-3 ]\navg_reprojection_error: 0.19\n";
+  const std::string driver =
+      "image_width: 752\nimage_height: 480\ncamera_model: plumb_bob\ncamera_matrix: [458, 0, 367, "
+      "0, "
+      "457, 248, 0, 0, 1]\ndistortion_coefficients: [-0.25, 0.07, 1e-3, 2e-3]\n";
+  const std::string message =
+      "header:\n  seq: 131\n  frame_id: \"optical\"\nheight: 480\nwidth: 752\n"
+      "distortion_model: \"plumb_bob\"\nD: [-0.25, 0.07, 1e-3, 2e-3, 0.0]\n"
+      "K: [458, 0.0, 367, 0.0, 457, 248, 0.0, 0.0, 1.0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+      "binning_x: 0\nroi:\n  do_rectify: False\n---\n";
+  std::string message2 = message;
+  message2.replace(message2.find("D:"), 2, "d:");
+  message2.replace(message2.find("K:"), 2, "k:");
+  message2.replace(message2.find("R:"), 2, "r:");
+  const std::string kalibr =
+      "cam0:\n  cam_overlaps: [1]\n  camera_model: pinhole\n  distortion_coeffs: [-0.25, 0.07, "
+      "1e-3, "
+      "2e-3]\n  distortion_model: radtan\n  intrinsics: [458, 457, 367, 248]\n"
+      "  resolution: [752, 480]\n  rostopic: /cam0/image_raw\ncam1:\n  camera_model: pinhole\n";
+  Camera expected;
+  expected.width_px = 752;
+  expected.fx_px = 458, expected.fy_px = 457, expected.cx_px = 367, expected.cy_px = 248;
+  expected.distortion = {.k1 = -0.25, .k2 = 0.07, .p1 = 1e-3, .p2 = 2e-3};
+  for (const std::string& text : {opencv, driver, message, message2, kalibr}) {
+    const Settings s = parse_settings(text, "s.yaml");
+    EXPECT_EQ(s.camera, expected) << text;
+    EXPECT_TRUE(s.has_camera);
+  }
+  std::string bad = kalibr;
+  bad.replace(bad.find("radtan"), 6, "equidistant");
+  EXPECT_EQ(complaint(bad), "s.yaml:5: cam0.distortion_model: 'equidistant' is not radtan");
+  bad = message;
+  bad.replace(bad.find("binning_x: 0"), 12, "binning_x: 2");
+  EXPECT_EQ(complaint(bad), "s.yaml:10: binning_x: 2 is outside [0, 1]");
+  bad = message;
+  bad.replace(bad.find("D:"), 2, "Dist:");
+  EXPECT_NE(complaint(bad).find("s.yaml:7: unknown key 'Dist'"), std::string::npos)
       << complaint(bad);
 }
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace cv {
+class Mat;
+}
+
+namespace mh {
+
+/// Decodes a Truevision TGA, which OpenCV does not read and models in Collada and OBJ often name:
+/// gray, color, with a palette, run-length encoded or not. Its kind has no signature: try the other
+/// kinds before.
+/// @returns 1, 3 or 4 channels of 8 bits in OpenCV's order; empty if the bytes are no whole TGA
+cv::Mat decode_tga(std::string_view bytes);
+
+}  // namespace mh
