@@ -23,12 +23,12 @@ constexpr std::uint16_t kLastNyu40InPly = 40;
 constexpr std::uint32_t kLastObjectInPly = 65534;  // its instance is the largest 16-bit id
 
 /// Object names from a file next to the mesh.
-using Names = std::map<std::uint32_t, std::string>;
+using NamesById = std::map<std::uint32_t, std::string>;
 
 /// Reads {list: [{id: 3, name: "chair"}, ...]}; empty if none of the files exists.
-Names read_names(std::initializer_list<fs::path> files, const char* list, const char* id,
-                 const char* name) {
-  Names names;
+NamesById read_names(std::initializer_list<fs::path> files, const char* list, const char* id,
+                     const char* name) {
+  NamesById names;
   for (const fs::path& file : files) {
     if (!is_file(file)) continue;
     try {
@@ -54,7 +54,7 @@ class Labeler {
 
   void by_face(const std::vector<std::uint32_t>& objects) {
     const fs::path folder = file_.parent_path();
-    const Names names =
+    const NamesById names =
         read_names({folder / "info_semantic.json", folder / "habitat" / "info_semantic.json"},
                    "objects", "id", "class_name");
     if (names.empty()) warn("has objects, but no info_semantic.json beside it tells their classes");
@@ -70,10 +70,10 @@ class Labeler {
   void by_vertex(const std::vector<std::uint16_t>& nyu40,
                  const std::vector<std::uint32_t>& objects) {
     const fs::path folder = file_.parent_path();
-    const Names names = objects.empty()
-                            ? Names{}
-                            : read_names({folder / "semseg.v2.json", folder / "semseg.json"},
-                                         "segGroups", "objectId", "label");
+    const NamesById names = objects.empty()
+                                ? NamesById{}
+                                : read_names({folder / "semseg.v2.json", folder / "semseg.json"},
+                                             "segGroups", "objectId", "label");
     for (std::size_t face = 0; face < scene_.triangles.size(); ++face) {
       const auto& [a, b, c] = scene_.triangles[face];
       if (!nyu40.empty())
@@ -85,7 +85,7 @@ class Labeler {
       if (const auto named = names.find(most_have); named != names.end())
         refine(scene_.class_of[face], named->second);
     }
-    Names shifted;
+    NamesById shifted;
     for (const auto& [id, name] : names)
       if (id > 0) shifted[id - 1] = name;
     enter_objects(shifted);
@@ -131,7 +131,7 @@ class Labeler {
   }
 
   /// The objects that have faces; each has the class of its first.
-  void enter_objects(const Names& names) {
+  void enter_objects(const NamesById& names) {
     std::map<InstanceId, ClassId> found;
     for (std::size_t face = 0; face < scene_.triangles.size(); ++face)
       if (scene_.instance_of[face] != 0)
