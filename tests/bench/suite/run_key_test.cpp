@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 /// What a run would read if each of its sources were one file, of whatever content.
 std::vector<InputDigest> inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of_program(spec.system);
-  const auto add = [&](const char* name, const std::optional<fs::path>& source) {
+  const auto add = [&](const std::string& name, const std::optional<fs::path>& source) {
     if (source && !source->empty())
       noted(inputs, name, *source, [&] { return read_file(*source); });
   };
@@ -53,6 +53,11 @@ std::vector<InputDigest> inputs_of(const RunSpec& spec) {
                                      {"boxes", detector->boxes}})
       add(name, file);
   if (!e.is_recorded()) add("level", spec.level);
+  if (spec.episodes)
+    for (const EpisodeVariant& variant : spec.episodes->variants)
+      sources(variant, [&](const WorldSource& source, const std::optional<fs::path>& path) {
+        add(input_name(variant, source), path);
+      });
   add("vocabulary", spec.vocabulary);
   return inputs;
 }
@@ -92,6 +97,9 @@ class RunKey : public testing::Test {
              .points = {SemanticConfig{}, SemanticConfig{.gamma = 0.5}},
              .protocol = {},
              .graded = GradedSpec{.distance_m = {0, 0.5, 2}, .angle_deg = {0, 60}},
+             .episodes = EpisodesSpec{.goals = {"bed"},
+                                      .variants = {{.name = "moved", .scene = file("moved.yaml")}}},
+             .map_labels = LabelMode::kExact,
              .max_frames = 100};
     theirs_ = library_ = recorded_ = dosed_ = detected_ = ours_;
     theirs_.system = {SystemKind::kOutside, "vo",
@@ -188,7 +196,7 @@ class RunKey : public testing::Test {
 };
 
 const std::set<std::string> kNames = {"/name", "/environment/name", "/environment/category",
-                                      "/labels/called"};
+                                      "/labels/called", "/map_labels/called"};
 
 /// Gives every value another one, however deep, and optional ones and lists one that they lacked.
 template <class T>
@@ -234,6 +242,8 @@ TEST(RunDescription, KeepsEveryField) {
   EXPECT_EQ(back.points, spec.points);
   EXPECT_EQ(back.protocol, spec.protocol);
   EXPECT_EQ(back.graded, spec.graded);
+  EXPECT_EQ(back.episodes, spec.episodes);
+  EXPECT_EQ(back.map_labels, spec.map_labels);
 }
 
 TEST(RunDescription, RefusesOneWithoutAFieldOrWithAWordOfNone) {
@@ -305,7 +315,10 @@ TEST_F(RunKey, OfAMapLeavesOutWhatOnlyItsQueriesDependOn) {
                "/protocol/correct_distance_m", "/protocol/correct_angle_deg", "/protocol/truth"});
   const Json places = to_json(ours_).flatten();
   for (const auto& [place, value] : places.items())
-    if (place.starts_with("/points/") || place.starts_with("/graded/")) free.insert(place);
+    if (place.starts_with("/points/") || place.starts_with("/graded/") ||
+        (place.starts_with("/episodes/") && place != "/episodes/ticks_per_frame" &&
+         !value.is_null()))
+      free.insert(place);
   EXPECT_EQ(free_places(ours_, map_key_of), free);
 }
 
