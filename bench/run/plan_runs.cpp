@@ -231,7 +231,7 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
     };
     note(e.scene, e.mapping_tour, e.pedestrian);
     note(e.scene, e.kidnapped_tour);
-    note(e.queried_scene(), e.query_tour);
+    note(e.queried_scene(), e.query_tour, e.query_pedestrian);
     if (spec.episodes && with_goals.insert(e.name).second) {
       say(fmt::format("checking the goals in {}", e.name));
       require_goals(spec);

@@ -84,8 +84,10 @@ std::vector<Environment> read_entry(YamlReader node, const SuitePaths& paths,
   });
   if (!given.contains("scene")) node.at("scene");  // reports that it is missing
   if (!default_robot && !given.contains("robot")) node.at("robot");
-  if (given.contains("query_scene") && !given.contains("query_tour"))
-    given.at("query_scene").fail("needs a query_tour");
+  sources(kNowhere, [&](const WorldSource& source, const auto&) {
+    if (source.of_queries && given.contains(source.key) && !given.contains("query_tour"))
+      given.at(source.key).fail("needs a query_tour");
+  });
   const SceneFrame frame = read_scene_frame(node);
   node.finish();
 

@@ -26,6 +26,7 @@ struct Environment {
   std::optional<std::filesystem::path> kidnapped_tour = {};
   std::optional<std::filesystem::path> sensors = {};
   std::optional<std::filesystem::path> pedestrian = {};
+  std::optional<std::filesystem::path> query_pedestrian = {};
   /// A recording ("tum:FOLDER", scenes/recordings/open_sequence.hpp) in place of all of the above
   /// except name and category; empty: a scene.
   std::string sequence = {};
@@ -104,6 +105,8 @@ void sources(E& e, Visit&& visit) {
       e.sensors);
   visit(WorldSource{"pedestrian", kPedestrian, "walks while the robot maps", false, true},
         e.pedestrian);
+  visit(WorldSource{"query_pedestrian", kPedestrian, "walks during the second tour", true, true},
+        e.query_pedestrian);
 }
 
 template <MaybeConst<Environment> E, class Visit>

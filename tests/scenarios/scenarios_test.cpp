@@ -4,12 +4,15 @@
 // run without the fault passes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bench/results/gate/from_runs.hpp"
 #include "bench/results/gate/gate.hpp"
 #include "bench/results/gate/report.hpp"
 #include "bench/run/run_one.hpp"
 #include "bench/systems/builtin.hpp"
 #include "slam/config/slam.hpp"
+#include "slam/core/labels.hpp"
 #include "source_dir.hpp"
 
 namespace mh {
@@ -145,6 +148,26 @@ TEST(Scenario, WalkingPersonCatchesThatOutliersAreNotRejected) {
       judge("walking_person",
             {.settings = [](SlamConfig& c) { c.pose.chi2_mono = c.pose.chi2_stereo = 1e6; }});
   EXPECT_FALSE(result.passed());
+}
+
+TEST(Scenario, APedestrianOfTheQueriesWalksInTheSecondTourAlone) {
+  RunSpec spec = first_run("walking_person", SystemKind::kSemantic);
+  Environment& e = spec.environment;
+  e.query_tour = e.mapping_tour;
+  std::swap(e.query_pedestrian, e.pedestrian);
+  spec.max_frames = 90;
+  const World world = build_world(spec, 1, Cache(MH_TEST_CACHE), [](std::string_view) {});
+  const auto frames_with_a_person = [](const Sequence& sequence) {
+    const ClassId person = class_by_name("person").value();
+    int count = 0;
+    for (std::size_t i = 0; i < sequence.size(); i += 5) {
+      const Grid2d<ClassId> seen = class_image(sequence.frame(i, RandomStream(1)).semantics);
+      count += std::find(seen.begin(), seen.end(), person) != seen.end() ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(frames_with_a_person(*world.mapping), 0);
+  EXPECT_GT(frames_with_a_person(*world.second), 3);
 }
 
 }  // namespace

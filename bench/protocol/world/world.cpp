@@ -97,8 +97,8 @@ void simulate(World& world, LabelMode labels, const SharedImages& images) {
   };
   world.mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene);
   if (p.second)
-    world.second =
-        sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second, nullptr);
+    world.second = sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second,
+                            p.second_pedestrian_scene);
   if (!p.graded.list.empty())
     world.graded =
         std::make_shared<GradedSequence>(p.second_renderer ? p.second_renderer : p.renderer,
@@ -198,10 +198,13 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   if (environment.kidnapped_tour)
     input("kidnapped_tour", *environment.kidnapped_tour,
           [&] { return load_tour(*environment.kidnapped_tour); });
-  std::optional<Pedestrian> pedestrian;
-  if (environment.pedestrian)
-    pedestrian = input("pedestrian", *environment.pedestrian,
-                       [&] { return load_pedestrian(*environment.pedestrian); });
+  const auto walker = [&](const char* name, const std::optional<std::filesystem::path>& file) {
+    return file ? std::optional(input(name, *file, [&] { return load_pedestrian(*file); }))
+                : std::nullopt;
+  };
+  const std::optional<Pedestrian> pedestrian = walker("pedestrian", environment.pedestrian),
+                                  query_pedestrian =
+                                      walker("query_pedestrian", environment.query_pedestrian);
 
   const auto lit_scene = [&](const char* name, const std::filesystem::path& file) {
     Scene scene = input(name, file, [&] { return load_scene(file, nullptr, environment.frame); });
@@ -249,9 +252,15 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   }
   if (spec.graded) world.graded = graded_queries(spec, world);
   if (!environment.query_tour) return built;
-  world.second = input("query_tour", *environment.query_tour, [&] {
-    return along(world.second_scene ? *world.second_scene : *scene, *environment.query_tour);
-  });
+  const Scene& queried = world.second_scene ? *world.second_scene : *scene;
+  std::vector<MovingObstacle> met;
+  if (query_pedestrian) {
+    met.push_back(as_obstacle(queried, *query_pedestrian));
+    world.second_pedestrian_scene = make_pedestrian_scene(
+        queried, world.second_renderer ? world.second_renderer : world.renderer, *query_pedestrian);
+  }
+  world.second = input("query_tour", *environment.query_tour,
+                       [&] { return along(queried, *environment.query_tour, met); });
   lose_frames(*world.second);
   shorten(*world.second);
   return built;

@@ -39,8 +39,9 @@ struct SimulatedPlace {
   std::shared_ptr<const Renderer> second_renderer;  ///< of that scene; null: the same renderer
   std::shared_ptr<const PedestrianScene>
       pedestrian_scene;  ///< with the pedestrians that are present during the mapping; or null
-  SensorConfig sensors;  ///< the level
-  GradedQueries graded;  ///< empty if the run has none
+  std::shared_ptr<const PedestrianScene> second_pedestrian_scene;  ///< during the second tour
+  SensorConfig sensors;                                            ///< the level
+  GradedQueries graded;                                            ///< empty if the run has none
 };
 
 /// The environment of one run, built once and then only read.

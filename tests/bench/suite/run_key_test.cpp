@@ -84,7 +84,8 @@ class RunKey : public testing::Test {
                                   .query_scene = file("query_scene.yaml"),
                                   .kidnapped_tour = file("kidnapped_tour.yaml"),
                                   .sensors = file("sensors.yaml"),
-                                  .pedestrian = file("pedestrian.yaml")};
+                                  .pedestrian = file("pedestrian.yaml"),
+                                  .query_pedestrian = file("query_pedestrian.yaml")};
     ours_ = {.name = "semantic-exact-pepper-0",
              .environment = environment,
              .level = file("pepper.yaml"),
@@ -311,8 +312,9 @@ TEST_F(RunKey, ChangesWithEveryFieldOfARecordingAndOfLabels) {
 TEST_F(RunKey, OfAMapLeavesOutWhatOnlyItsQueriesDependOn) {
   std::set<std::string> free = kNames;
   free.insert({"/trial", "/system/name", "/environment/query_tour", "/environment/query_scene",
-               "/protocol/query_attempts", "/protocol/attempts", "/protocol/max_blank_frames",
-               "/protocol/correct_distance_m", "/protocol/correct_angle_deg", "/protocol/truth"});
+               "/environment/query_pedestrian", "/protocol/query_attempts", "/protocol/attempts",
+               "/protocol/max_blank_frames", "/protocol/correct_distance_m",
+               "/protocol/correct_angle_deg", "/protocol/truth"});
   const Json places = to_json(ours_).flatten();
   for (const auto& [place, value] : places.items())
     if (place.starts_with("/points/") || place.starts_with("/graded/") ||
