@@ -43,6 +43,7 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   score.scored = static_cast<double>(e.pairs);
   score.completeness = offered == 0 ? 0 : score.tracked / score.offered;
   score.ate_rmse_m = rmse(e.ape_translation_m);
+  if (score.ate_rmse_m) score.ate_median_m = e.ape_translation_m.median;
   if (score.ate_rmse_m &&
       turn_is_determined(match_by_stamp(truth, estimate).truth, *score.ate_rmse_m))
     score.ate_rmse_deg = rmse(e.ape_rotation_deg);

@@ -13,6 +13,7 @@ struct TrajectoryScore {
   double tracked = 0;                       ///< frames with a pose at the end
   double scored = 0;                        ///< of these, those with a true one: ATE is over them
   std::optional<double> ate_rmse_m;         ///< after SE(3) alignment without scale
+  std::optional<double> ate_median_m;       ///< the middle of the errors behind it
   std::optional<double> ate_rmse_deg;       ///< of orientations, after the same alignment
   std::optional<double> ate_first_pose_m;   ///< in the frame of dock_from_estimate
   std::optional<double> rpe_frame_rmse_m;   ///< translation error per frame step
@@ -23,12 +24,13 @@ struct TrajectoryScore {
 template <MaybeConst<TrajectoryScore> S, class Visit>
 void fields(S& score, Visit& v) {
   using enum Better;
-  auto& [offered, tracked, scored, ate_rmse_m, ate_rmse_deg, ate_first_pose_m, rpe_frame_rmse_m,
-         rpe_second_rmse_m, completeness] = score;
+  auto& [offered, tracked, scored, ate_rmse_m, ate_median_m, ate_rmse_deg, ate_first_pose_m,
+         rpe_frame_rmse_m, rpe_second_rmse_m, completeness] = score;
   v(Metric{.name = "offered"}, offered);
   v(Metric{.name = "tracked"}, tracked);
   v(Metric{.name = "scored"}, scored);
   v(Metric{"ate_rmse_m", "ATE m", "m", 4, kLess, "", true}, ate_rmse_m);
+  v(Metric{"ate_median_m", "ATE median", "m", 4, kLess}, ate_median_m);
   v(Metric{"ate_rmse_deg", "ATE deg", "deg", 3, kLess}, ate_rmse_deg);
   v(Metric{"ate_first_pose_m", "first pose m", "m", 4, kLess}, ate_first_pose_m);
   v(Metric{"rpe_frame_rmse_m", "RPE m/fr", "m", 5, kLess, "", true}, rpe_frame_rmse_m);

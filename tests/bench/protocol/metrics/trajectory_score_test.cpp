@@ -67,5 +67,17 @@ TEST(ScoreTrajectory, APathThatIsNearlyALineHasNoAngle) {
   EXPECT_TRUE(corridor(0.02, 0.01).ate_rmse_m);
 }
 
+// One pose of forty is 8 m off its place: the root mean square says so, the median does not.
+TEST(ScoreTrajectory, TheMedianErrorForgivesAFewBadPoses) {
+  Trajectory off = arc(0, 40);
+  off[20].world_from_camera =
+      SE3(off[20].world_from_camera.rotation(),
+          off[20].world_from_camera.translation() + Eigen::Vector3d(0, 0, 8));
+  const TrajectoryScore score = score_trajectory(off, arc(0, 40), 40);
+  EXPECT_GT(score.ate_rmse_m.value(), 1.0);
+  EXPECT_LT(score.ate_median_m.value(), 0.5);
+  EXPECT_FALSE(score_trajectory({}, arc(0, 40), 40).ate_median_m);
+}
+
 }  // namespace
 }  // namespace mh
