@@ -33,6 +33,8 @@ inline constexpr Table2Column kTable2Columns[] = {
      [](const QuerySummary& s) { return s.distance_mean_m; }, &PublishedRow::distance_mean_m,
      "Average distance (m)"},
     {"distance_median_m", "median distance", "m", 4,
-     [](const QuerySummary& s) { return s.distance_median_m; }}};
+     [](const QuerySummary& s) { return s.distance_median_m; }},
+    {"attempts", "attempts", "", 2,
+     [](const QuerySummary& s) { return std::optional(s.attempts); }}};
 
 }  // namespace mh
