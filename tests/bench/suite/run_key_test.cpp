@@ -151,17 +151,29 @@ class RunKey : public testing::Test {
   RunSpec with_another(const RunSpec& spec, const Pointer& place) const {
     const Json json = to_json(spec);
     const Json& old = json[place];
-    std::vector<Json> others = {other_,         "conversation",
-                                "boxes",        "plain",
-                                "words",        "map",
-                                "interpolated", "z",
-                                "continue",     "orb_slam2",
-                                "as_released",  "new_noise",
-                                "side_by_side", "same_label",
-                                "exact",        "all",
-                                "yolov5",       "center",
-                                "unit",         "rgb",
-                                "foreground",   7};
+    std::vector<Json> others = {other_,
+                                "conversation",
+                                "trajectory",
+                                "boxes",
+                                "plain",
+                                "words",
+                                "map",
+                                "interpolated",
+                                "z",
+                                "continue",
+                                "orb_slam2",
+                                "as_released",
+                                "new_noise",
+                                "side_by_side",
+                                "same_label",
+                                "exact",
+                                "all",
+                                "yolov5",
+                                "center",
+                                "unit",
+                                "rgb",
+                                "foreground",
+                                7};
     if (old.is_boolean()) others = {!old.get<bool>()};
     if (old.is_number_integer()) others = {old.get<int>() + 1};
     if (old.is_number_float()) others = {old.get<double>() + 0.125};
