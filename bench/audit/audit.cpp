@@ -295,7 +295,7 @@ void require_auditable(const RunSpec& spec) {
 RunResult run_with_map(const RunSpec& spec, const World& world, RunTools tools, SlamState& frozen) {
   tools.system = [&](const RunSpec& of, const World& in) {
     frozen = make_slam(in.mapping->camera(), of.slam, in.vocabulary);
-    return make_builtin_system(frozen, BuiltinOptions{});
+    return make_builtin_system(frozen, {.points = of.points});
   };
   return run_one(spec, world, tools);
 }

@@ -108,7 +108,7 @@ class BuiltinSystem : public System {
   BuiltinSystem(SlamState own, std::vector<SemanticConfig> points)
       : own_(std::make_unique<SlamState>(std::move(own))),
         state_(*own_),
-        points_(std::move(points)) {}
+        options_{.points = std::move(points)} {}
   BuiltinSystem(SlamState& state, const BuiltinOptions& options)
       : state_(state), options_(options), found_(!state.tracked_frames.empty()) {}
 
@@ -126,7 +126,7 @@ class BuiltinSystem : public System {
   void freeze() override { frozen_ = true; }
   void use_point(std::size_t point) override {
     assert(frozen_);
-    if (!points_.empty()) set_query_settings(state_, points_.at(point));
+    if (!options_.points.empty()) set_query_settings(state_, options_.points.at(point));
   }
   std::string save() const override {
     assert(frozen_);
@@ -171,7 +171,6 @@ class BuiltinSystem : public System {
 
   std::unique_ptr<SlamState> own_;
   SlamState& state_;
-  std::vector<SemanticConfig> points_;
   BuiltinOptions options_;
   using QuerySettings = std::tuple<double, double, double, double, Overlap, bool>;
   /// Under NeighborScores::kAsReleased sessions do share this: they depend on their order.

@@ -22,6 +22,7 @@ struct BuiltinOptions {
   /// frame that can start another, as the original ORB-SLAM2 does: such a map is soon rebuilt, and
   /// a place seen briefly may never be seen again. 0: never.
   int small_map = 0;
+  std::vector<SemanticConfig> points = {};  ///< as above
 };
 
 /// The same on a state that the caller owns and that outlives the system: a map that was loaded or

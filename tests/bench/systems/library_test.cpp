@@ -208,8 +208,10 @@ TEST_F(LibrarySystems, ThatMisbehaveFailWithOneLine) {
   EXPECT_EQ(error("candidates"),
             "gave candidates of 2 after 1: a step cannot leave more than the one before it, "
             "replying to relocalize (request 5)");
-  EXPECT_EQ(error("trajectory twice"),
-            "gave two poses at 0.000000007 in its trajectory, replying to freeze (request 3)");
+  EXPECT_EQ(
+      error("trajectory twice"),
+      "gave a bad trajectory: trajectory:2: stamp: 0.000000007 does not come after 0.000000007, "
+      "replying to freeze (request 3)");
   EXPECT_EQ(error("trajectory unseen"),
             "gave a pose at 0.000000099 in its trajectory, a frame that it never saw, replying to "
             "freeze (request 3)");
