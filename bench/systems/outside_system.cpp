@@ -108,11 +108,10 @@ void OutsideSystem::freeze() {
 void OutsideSystem::take(const Trajectory& finished) {
   std::map<Stamp, SE3> poses;
   for (const TimedPose& pose : finished) {
-    const std::string at = format_stamp(pose.stamp_ns);
     if (!shown_.contains(pose.stamp_ns))
-      fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw", at));
-    if (!poses.emplace(pose.stamp_ns, pose.world_from_camera).second)
-      fail(fmt::format("gave two poses at {} in its trajectory", at));
+      fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw",
+                       format_stamp(pose.stamp_ns)));
+    poses.emplace(pose.stamp_ns, pose.world_from_camera);
   }
   poses_ = std::move(poses);
 }
