@@ -4,7 +4,7 @@
 #include "bench/audit/query_audit.hpp"
 #include "bench/protocol/run_result.hpp"
 #include "bench/protocol/world/world.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_one.hpp"
 #include "bench/suite/runs.hpp"
 #include "slam/pipeline/slam.hpp"
 

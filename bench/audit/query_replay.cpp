@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bench/protocol/usable_frame.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_streams.hpp"
 #include "slam/pipeline/locate.hpp"
 
 namespace mh {

@@ -4,7 +4,7 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/to_parent.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/execute_run.hpp"
 #include "bench/run/run_process.hpp"
 
 namespace mh::cli {

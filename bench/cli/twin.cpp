@@ -18,7 +18,7 @@
 #include "bench/report/drawing/contact_sheet.hpp"
 #include "bench/report/figures_json.hpp"
 #include "bench/results/summary.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_one.hpp"
 #include "bench/suite/recorded_camera.hpp"
 #include "bench/suite/shipped.hpp"
 #include "scenes/load.hpp"

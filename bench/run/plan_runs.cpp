@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/protocol/world/variant.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_streams.hpp"
 #include "bench/run/shard.hpp"
 #include "bench/suite/check_labels.hpp"
 #include "bench/suite/find_program.hpp"

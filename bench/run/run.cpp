@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run/run.hpp"
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "bench/protocol/world/world.hpp"
 #include "bench/report/write.hpp"
 #include "bench/run/plan_runs.hpp"
-#include "bench/run/run_one.hpp"
 #include "bench/suite/cache.hpp"
 #include "bench/suite/inputs.hpp"
-#include "bench/suite/run_key.hpp"
-#include "bench/suite/spec_json.hpp"
-#include "bench/systems/timed.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
@@ -78,31 +69,6 @@ void forget_outdated_runs(Store& store, const std::vector<Job>& jobs, const fs::
     else
       remove_run(folder);
   }
-}
-
-/// Load average of the last minute, per processor; 0 if unknown.
-double load_per_processor() {
-  double load = 0;
-  if (getloadavg(&load, 1) != 1) return 0;
-  return load / std::max(1.0, static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
-}
-
-/// @param wall_s wall time of this process so far, matching its cpu_s
-/// @param world_s, products_s  CPU time in addition to what `run` recorded
-RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
-                             const SingleRunOptions& order) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return {.wall_s = wall_s,
-          .cpu_s = processor_time_s(),
-          .slam_s = run.times.processor_s,
-          .frames_s = world_s + run.frames_s,
-          .products_s = products_s + run.products_s,
-          .max_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0,
-          .circumstances = {.host = {},
-                            .session_start = order.session_start,
-                            .jobs = order.jobs,
-                            .load = load_per_processor()}};
 }
 
 /// Keeps the jobs of this machine's share.
@@ -219,49 +185,6 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   BenchResults made = load_results(store, suite, plan);
   if (!options.metrics_only) warn_missing_outputs(suite, made, options);
   return made;
-}
-
-void execute_run(const SingleRunOptions& order) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
-  const RunSpec spec = run_spec_from_json(json);
-  double world_s = 0, products_s = 0;
-  const World world = [&] {
-    const ProcessorTimer timer(world_s);
-    const auto baked = [&](double share) {
-      order.status(fmt::format("light {:.0f} %", 100 * share));
-    };
-    SharedImages images = order.images;
-    if (order.share_noise) images.noises = shared_noises(spec);
-    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, images);
-  }();
-  require_key(spec, world.inputs, order.key);
-  const fs::path folder = order.folder / spec.name;
-  const fs::path ended = folder / "episodes";
-  make_output_folder(folder);
-  if (!order.metrics_only) remove_run(folder);
-  const RunResult run = run_one(spec, world,
-                                {.folder = folder,
-                                 .hidden = {order.folder, order.cache},
-                                 .progress = order.progress,
-                                 .status = order.status,
-                                 .system = {},
-                                 .tamper = {},
-                                 .occupancy = !order.metrics_only,
-                                 .maps = Cache(order.maps),
-                                 .episodes = {.ended = Cache(ended), .key = order.key}});
-  if (!order.metrics_only) {
-    const ProcessorTimer timer(products_s);
-    write_run(folder, world, run, order.key);
-    // One process makes the contact sheet; if two start it, both write the same bytes.
-    if (world.simulated) write_views(order.folder / order.views, world, spec);
-  }
-  const double wall_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  Store(order.store)
-      .put(order.key, run, cost_of_this_process(run, wall_s, world_s, products_s, order));
-  std::error_code no_matter;
-  fs::remove_all(ended, no_matter);
 }
 
 }  // namespace mh

@@ -28,7 +28,7 @@ CHANGES = {  # a file, and the keys that it changes
     "bench/protocol/query.cpp": {"RUN"},
     "bench/protocol/summarize.cpp": {"RUN"},
     "bench/systems/hiding.cpp": {"RUN"},
-    "bench/run/run_one.cpp": {"RUN"},
+    "bench/run/one/run_one.cpp": {"RUN"},
     "bench/protocol/episodes/judge.cpp": {"RUN"},
     "bench/audit/trials.cpp": {"AUDIT"},
     "include/modelhouse/system.h": {"RUN"},

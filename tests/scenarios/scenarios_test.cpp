@@ -9,7 +9,7 @@
 #include "bench/results/gate/from_runs.hpp"
 #include "bench/results/gate/gate.hpp"
 #include "bench/results/gate/report.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_one.hpp"
 #include "bench/systems/builtin.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/core/labels.hpp"

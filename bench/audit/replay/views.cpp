@@ -11,7 +11,7 @@
 #include "bench/audit/true_map.hpp"
 #include "bench/protocol/usable_frame.hpp"
 #include "bench/report/packed.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_streams.hpp"
 #include "sim/sensors/lens.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kidnappings from start to end, in a small room.
-#include "bench/run/ask_episodes.hpp"
+#include "bench/run/one/ask_episodes.hpp"
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/report/episode_record.hpp"
+#include "bench/run/one/run_one.hpp"
 #include "bench/run/plan_runs.hpp"
-#include "bench/run/run_one.hpp"
 #include "bench/suite/json_fields.hpp"
 #include "bench/suite/run_key.hpp"
 #include "bench/suite/spec_json.hpp"

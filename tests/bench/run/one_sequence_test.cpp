@@ -13,7 +13,7 @@
 
 #include "bench/protocol/metrics/evaluate.hpp"
 #include "bench/run/frame_log.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_one.hpp"
 #include "bench/suite/recorded_camera.hpp"
 #include "bench/systems/builtin.hpp"
 #include "bench/systems/stage_clock.hpp"

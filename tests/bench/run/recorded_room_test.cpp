@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_one.hpp"
 #include "bench/suite/suite.hpp"
 #include "scenes/recordings/class_map.hpp"
 #include "scenes/recordings/frame_files.hpp"

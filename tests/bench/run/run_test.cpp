@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bench around a scripted system in a small make-believe world: no SLAM, no ray tracing.
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_one.hpp"
 
 #include <unistd.h>
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/results/summary.hpp"
-#include "bench/run/run_one.hpp"
+#include "bench/run/one/run_one.hpp"
 #include "bench/suite/runs.hpp"
 #include "slam/core/digest.hpp"
 #include "source_dir.hpp"

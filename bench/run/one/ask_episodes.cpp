@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/ask_episodes.hpp"
+#include "bench/run/one/ask_episodes.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

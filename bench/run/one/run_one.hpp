@@ -10,7 +10,7 @@
 #include "bench/protocol/run_result.hpp"
 #include "bench/protocol/system.hpp"
 #include "bench/protocol/world/world.hpp"
-#include "bench/run/ask_episodes.hpp"
+#include "bench/run/one/ask_episodes.hpp"
 
 namespace mh {
 
@@ -33,16 +33,6 @@ inline constexpr const char* kOutsideLog = "outside.log";
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder,
                                     const std::vector<std::filesystem::path>& hidden = {});
-
-/// The stream that mapping draws from (bench/protocol/mapping.hpp).
-RandomStream mapping_stream(const RunSpec& spec);
-
-/// The noises that the mapping frames of a trial's runs have in common: at first, and after each of
-/// its first restarts. With more restarts, runs hardly have frames in common.
-std::vector<RandomStream> shared_noises(const RunSpec& spec);
-
-/// The stream that the queries of a set draw from (bench/protocol/query.hpp).
-RandomStream query_stream(const RunSpec& spec, QuerySet set);
 
 /// What a run receives in addition to its spec and world; only `system`, `tamper`, `occupancy` and
 /// `episodes.only` can change a result.

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/run/one/ask_queries.hpp"
+
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "bench/protocol/placed.hpp"
+#include "bench/protocol/query.hpp"
+#include "bench/protocol/score.hpp"
+#include "bench/protocol/usable_frame.hpp"
+#include "bench/run/one/run_streams.hpp"
+
+namespace mh {
+namespace {
+
+/// The recording that answers a set of queries; empty: they are simulated.
+std::string recording_of(const Environment& environment, QuerySet set) {
+  return set == QuerySet::kSecondTour ? environment.queries.value_or("") : environment.sequence;
+}
+
+/// The frames of a set of queries.
+std::vector<std::size_t> asked_frames(QuerySet set, const Sequence& sequence,
+                                      const ProtocolConfig& config) {
+  if (set != QuerySet::kGraded) return test_frames(sequence.size(), config);
+  std::vector<std::size_t> all(sequence.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+/// One set of queries.
+class QueryRound {
+ public:
+  QueryRound(const RunSpec& spec, QuerySet set, const World& world, const FilesAsKeyed& files,
+             const WatchedFrames::Tamper& tamper, RunResult& run)
+      : spec_(spec),
+        set_(set),
+        world_(world),
+        frames_(*sequence_of(world, set), recording_of(spec.environment, set), shows_labels(spec),
+                files, tamper, run.frames_s),
+        has_stamp_(increasing_stamps(frames_)),
+        run_(run),
+        stream_(query_stream(spec, set)) {}
+  QuerySet set() const { return set_; }
+
+  /// Makes each query under the points first .. end - 1; `scores[p]` receives the answers under
+  /// point p.
+  void put(System& frozen, std::size_t first, std::size_t end,
+           const std::vector<std::vector<QueryScore>*>& scores,
+           const std::function<void()>& done) const {
+    for (const std::size_t index : asked_frames(set_, frames_, spec_.protocol)) {
+      if (!has_stamp_[index]) {
+        if (first == 0) run_.mapping.skipped.add(stamp_fault(frames_, index));
+        continue;
+      }
+      const Trajectory* truth = run_.truth.empty() ? nullptr : frames_.truth();
+      const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
+      // If there is a truth, skip frames without one: no answer to them could be judged.
+      if (truth != nullptr && !moment.true_world_from_camera) continue;
+      const auto anchor =
+          find_anchor(run_.estimate, run_.truth, moment, nearest_by(set_), spec_.protocol);
+      const bool once = end - first == 1;  // nothing to share
+      const FramesMadeOnce shared(frames_);
+      const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
+      const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
+      for (std::size_t p = first; p < end; ++p) {
+        if (!once) frozen.use_point(p);
+        try {
+          const QueryAnswer answer =
+              query(frozen, index, frames, spec_.protocol, stream_, memo.get());
+          scores[p]->push_back(
+              score(answer, moment, anchor, run_.frames.truth_from_estimate, spec_.protocol));
+          if (set_ == QuerySet::kGraded)
+            scores[p]->back().grade = world_.simulated->graded.list[index].grade;
+        } catch (const UnusableFrame& error) {
+          if (p == 0) run_.mapping.skipped.add(error.what());
+        }
+        done();
+      }
+    }
+  }
+
+ private:
+  const RunSpec& spec_;
+  QuerySet set_;
+  const World& world_;
+  WatchedFrames frames_;
+  std::vector<bool> has_stamp_;
+  RunResult& run_;
+  RandomStream stream_;
+};
+
+/// Returns the end of the points from `first` on that describe keyframes identically (equation 1),
+/// so that switching between them costs nothing.
+std::size_t end_of_alike(const std::vector<SemanticConfig>& points, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < points.size() && points[end].gamma == points[first].gamma &&
+         points[end].label_mass == points[first].label_mass &&
+         points[end].void_is_a_label == points[first].void_is_a_label)
+    ++end;
+  return end;
+}
+
+std::vector<std::vector<QueryScore>*> lists(RunResult& run, QuerySet set) {
+  std::vector<std::vector<QueryScore>*> all;
+  for (PointResult& point : run.points) all.push_back(&of_query_set(point, set));
+  return all;
+}
+
+}  // namespace
+
+/// Whether the system is shown the labels that the frames have.
+bool shows_labels(const RunSpec& spec) {
+  return !spec.episodes || spec.labels != Labels();
+}
+
+std::size_t count_queries(const RunSpec& spec, const World& world) {
+  std::size_t queries = 0;
+  for (const QuerySet set : kQuerySets)
+    if (const Sequence* sequence = sequence_of(world, set))
+      queries += asked_frames(set, *sequence, spec.protocol).size();
+  return queries;
+}
+
+void ask_queries(const RunSpec& spec, const World& world, System& frozen, const FilesAsKeyed& files,
+                 const WatchedFrames::Tamper& tamper, RunResult& run,
+                 const std::function<void()>& done) {
+  run.points.resize(spec.points.size());
+  std::vector<QueryRound> rounds;
+  for (const QuerySet set : kQuerySets)
+    if (sequence_of(world, set) != nullptr)
+      rounds.emplace_back(spec, set, world, files, tamper, run);
+  for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
+    const std::size_t end = end_of_alike(spec.points, p);
+    frozen.use_point(p);
+    for (const QueryRound& round : rounds) round.put(frozen, p, end, lists(run, round.set()), done);
+  }
+}
+
+}  // namespace mh

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "bench/protocol/run_result.hpp"
+#include "bench/protocol/system.hpp"
+#include "bench/protocol/world/world.hpp"
+#include "bench/run/one/watched_frames.hpp"
+
+namespace mh {
+
+/// Whether the system is shown the labels that the frames have.
+bool shows_labels(const RunSpec& spec);
+
+/// How many frames are asked, over all sets, under each parameter point.
+std::size_t count_queries(const RunSpec& spec, const World& world);
+
+/// Puts each set of queries to a frozen system, under each parameter point, and scores the answers
+/// into run.points.
+/// @param run   with the mapping, its trajectory and frames
+/// @param done  called after each query and point
+void ask_queries(const RunSpec& spec, const World& world, System& frozen, const FilesAsKeyed& files,
+                 const WatchedFrames::Tamper& tamper, RunResult& run,
+                 const std::function<void()>& done);
+
+}  // namespace mh

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "slam/core/sequence.hpp"
+#include "slam/io/read_record.hpp"
+
+namespace mh {
+
+/// Forwards another sequence's frames, so that they can be observed.
+class SequenceView : public Sequence {
+ public:
+  explicit SequenceView(const Sequence& inner) : inner_(inner) {}
+  const Camera& camera() const override { return inner_.camera(); }
+  std::size_t size() const override { return inner_.size(); }
+  Stamp stamp_ns(std::size_t i) const override { return inner_.stamp_ns(i); }
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override {
+    return inner_.frame(i, noise);
+  }
+  const Trajectory* truth() const override { return inner_.truth(); }
+
+ private:
+  const Sequence& inner_;
+};
+
+/// The state of a world's files when its key was made.
+class FilesAsKeyed {
+ public:
+  explicit FilesAsKeyed(const ReadRecord& held);
+  /// @throws InputChanged if any file that was just read differs, even if it was restored since
+  void require(const ReadRecord& now) const;
+
+ private:
+  std::map<std::filesystem::path, FileObservation> of_;
+};
+
+/// The frames as a run sees them: their files match its key, the CPU time spent on making them is
+/// counted, and tests may change them.
+class WatchedFrames : public SequenceView {
+ public:
+  using Tamper = std::function<void(std::size_t index, RgbdFrame&)>;
+  /// @param recording  where they come from; empty: they are simulated
+  /// @param labeled  false: they are shown without labels
+  /// @param tamper   as in RunTamper; may be empty
+  /// @param spent_s  grows by the time spent
+  WatchedFrames(const Sequence& inner, std::string recording, bool labeled,
+                const FilesAsKeyed& files, Tamper tamper, double& spent_s);
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override;
+
+ private:
+  RgbdFrame checked(std::size_t i, RandomStream noise) const;
+
+  const std::string recording_;
+  const bool labeled_;
+  const FilesAsKeyed& files_;
+  const Tamper tamper_;
+  double& spent_s_;
+};
+
+/// Frames of one query, made once for all parameter points.
+class FramesMadeOnce : public SequenceView {
+ public:
+  using SequenceView::SequenceView;
+  RgbdFrame frame(std::size_t i, RandomStream noise) const override;
+
+ private:
+  mutable std::map<std::uint64_t, RgbdFrame> made_;
+};
+
+}  // namespace mh
