@@ -112,8 +112,8 @@ void sources(E& e, Visit&& visit) {
 template <MaybeConst<Environment> E, class Visit>
 void fields(E& e, Visit& v) {
   auto& [name, category, scene, robot, mapping_tour, frame, query_tour, query_scene, kidnapped_tour,
-         sensors, pedestrian, sequence, queries, settings, classes, topics, suite_states_readout] =
-      e;
+         sensors, pedestrian, query_pedestrian, sequence, queries, settings, classes, topics,
+         suite_states_readout] = e;
   v("name", name);
   v("category", category);
   sources(e, [&](const WorldSource& source, auto& path) { v(source.key, path); });

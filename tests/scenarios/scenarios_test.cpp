@@ -11,6 +11,7 @@
 #include "bench/results/gate/report.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/systems/builtin.hpp"
+#include "scenes/recordings/frame_files.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/core/labels.hpp"
 #include "source_dir.hpp"
