@@ -30,9 +30,12 @@ std::optional<TruePoint> true_landmark(const Landmark& landmark,
 
 std::shared_ptr<const Renderer> scene_at(const SimulatedPlace& place, QuerySet set,
                                          Stamp stamp_ns) {
-  if (set != QuerySet::kHeldOut)
-    return place.second_renderer ? place.second_renderer : place.renderer;
-  return place.pedestrian_scene ? place.pedestrian_scene->at(stamp_ns) : place.renderer;
+  const auto& walked_in = set == QuerySet::kHeldOut      ? place.pedestrian_scene
+                          : set == QuerySet::kSecondTour ? place.second_pedestrian_scene
+                                                         : nullptr;
+  if (walked_in) return walked_in->at(stamp_ns);
+  return set != QuerySet::kHeldOut && place.second_renderer ? place.second_renderer
+                                                            : place.renderer;
 }
 
 TrueMap true_map(const Map& map, const World& world, const TrueCamera& camera) {

@@ -43,12 +43,12 @@ std::string title(QuerySet set) {
                                         : "graded by distance and angle";
 }
 
-/// A row of the paper's Table 2: of each of its columns value(column).
+/// A row of Table 2 in text: of each of its columns value(column).
 template <class Value>
 std::vector<std::string> paper_row(std::string_view title, const Value& value) {
   std::vector<std::string> cells{fmt::format("  {}", title)};
   for (const Table2Column& column : kTable2Columns) {
-    if (column.published == nullptr) continue;
+    if (column.text_heading.empty()) continue;
     const std::optional<double> number = value(column);
     cells.push_back(
         number ? fmt::format("{:.{}f}", (column.unit == "%" ? 100 : 1) * *number, column.decimals)
@@ -60,7 +60,7 @@ std::vector<std::string> paper_row(std::string_view title, const Value& value) {
 std::vector<std::string> paper_headings() {
   std::vector<std::string> headings{""};
   for (const Table2Column& column : kTable2Columns)
-    if (column.published != nullptr) headings.emplace_back(column.published_heading);
+    if (!column.text_heading.empty()) headings.emplace_back(column.text_heading);
   return headings;
 }
 
@@ -95,7 +95,7 @@ std::string paper_table(const Block& block) {
         "published, other data (the paper's Table 2: a real house of 60 m2, YOLOv3 boxes)");
     for (const PublishedRow& row : published)
       table.add(paper_row(row.system, [&](const Table2Column& column) {
-        return std::optional(row.*column.published);
+        return column.published != nullptr ? std::optional(row.*column.published) : std::nullopt;
       }));
     table.add_line("  (as released, ORB-SLAM2's answers depend on the order of its queries)");
   }

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// A column of Table 2, relocalization, wherever it is shown: text has those of the paper's own
-/// table under its headings; pages, their data and figures have all.
+/// A column of Table 2, relocalization, wherever it is shown: text has those with a heading for it;
+/// pages, their data and figures have all.
 struct Table2Column {
   std::string_view key;
   std::string_view title;
@@ -18,7 +18,7 @@ struct Table2Column {
   int decimals = 0;
   std::optional<double> (*measured)(const QuerySummary&);
   double PublishedRow::*published = nullptr;  ///< null: the paper's table does not have it
-  std::string_view published_heading = {};
+  std::string_view text_heading = {};         ///< the paper's words where it has the column
 };
 
 inline constexpr Table2Column kTable2Columns[] = {
@@ -26,7 +26,8 @@ inline constexpr Table2Column kTable2Columns[] = {
      [](const QuerySummary& s) { return std::optional(s.queries); }},
     {"success", "success", "%", 2, [](const QuerySummary& s) { return std::optional(s.success); },
      &PublishedRow::success, "Reloc. success (%)"},
-    {"correct", "correct", "%", 2, [](const QuerySummary& s) { return s.correct; }},
+    {"correct", "correct", "%", 2, [](const QuerySummary& s) { return s.correct; }, nullptr,
+     "Correct (%)"},
     {"false_positive", "false pos.", "%", 2,
      [](const QuerySummary& s) { return s.false_positive; }},
     {"distance_mean_m", "mean distance", "m", 4,

@@ -20,8 +20,8 @@ namespace {
 constexpr int kFewJobs = 1, kManyJobs = 4;
 
 /// The stage at which one presentation of a frame differs; empty if none does.
-template <class VisibleSurface>
-std::string stage_of_difference(const VisibleSurface& a, const VisibleSurface& b) {
+template <class Presented>
+std::string stage_of_difference(const Presented& a, const Presented& b) {
   if (a.index != b.index) return "order";
   if (a.image_digest != b.image_digest) return "image";
   if (a.matching_digest != b.matching_digest) return "matching";

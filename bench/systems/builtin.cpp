@@ -2,6 +2,7 @@
 #include "bench/systems/builtin.hpp"
 
 #include <cassert>
+#include <list>
 #include <map>
 #include <optional>
 #include <utility>
@@ -151,11 +152,11 @@ class BuiltinSystem : public System {
   /// What the queries so far left under these settings; null if the settings do not use it.
   StaleScores* released() const {
     if (state_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return nullptr;
-    const SemanticConfig& s = state_.config.semantics;
-    const auto [place, is_new] =
-        released_.try_emplace({s.gamma, s.xi, s.alpha, s.beta, s.overlap, s.void_is_a_label});
-    if (is_new) place->second = state_.tracker.stale_scores;  // as mapping left them
-    return &place->second;
+    const SemanticConfig& settings = state_.config.semantics;
+    for (auto& [of, scores] : released_)
+      if (of == settings) return &scores;
+    // At first as mapping left them.
+    return &released_.emplace_back(settings, state_.tracker.stale_scores).second;
   }
 
   /// Starts a new map in place of this one, if the frame can initialize it.
@@ -172,9 +173,9 @@ class BuiltinSystem : public System {
   std::unique_ptr<SlamState> own_;
   SlamState& state_;
   BuiltinOptions options_;
-  using QuerySettings = std::tuple<double, double, double, double, Overlap, bool>;
-  /// Under NeighborScores::kAsReleased sessions do share this: they depend on their order.
-  mutable std::map<QuerySettings, StaleScores> released_;
+  /// Under NeighborScores::kAsReleased sessions do share this, by the settings of the queries: they
+  /// depend on their order. Sessions hold pointers into it.
+  mutable std::list<std::pair<SemanticConfig, StaleScores>> released_;
   bool found_ = false;  ///< a frame was tracked in this map
   bool frozen_ = false;
 };
