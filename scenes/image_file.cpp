@@ -144,8 +144,8 @@ std::string without_remarks(std::string_view bytes) {
 }
 
 bool claims_too_much(std::string_view bytes) {
-  // Limits for an image of one color: deflate expands by at most 1032, a JPEG's blocks of 256
-  // pixels take a few bytes.
+  // An image of one color is the extreme case: a byte of deflate holds at most 1032, and a JPEG's
+  // block of 256 pixels takes a few bytes.
   constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048, kMostBytes = 1U << 30;
   const auto size = announced_size(bytes);
   if (!size) return false;

@@ -41,8 +41,8 @@ inline constexpr std::size_t kHopeless = 10;
 /// camera's.
 RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noise);
 
-/// Which frames can be shown by their stamps: the largest subset whose stamps increase, the earlier
-/// of equal ones. So a clock that jumps for one frame costs only that frame.
+/// Marks the most frames whose stamps strictly increase; of frames with equal stamps, the first. A
+/// clock that jumps for one frame costs only that frame.
 std::vector<bool> increasing_stamps(const Sequence& sequence);
 
 /// Why increasing_stamps() leaves out frame i.

@@ -76,7 +76,8 @@ struct WorldSource {
 };
 
 /// Lists the sources of an environment in a scene: visit(WorldSource, path or optional path). A new
-/// one needs its line here and its use in build_world() (bench/protocol/world/world.cpp).
+/// one needs its member, its name in fields(), its line here, and its use in build_world()
+/// (bench/protocol/world/world.cpp).
 template <MaybeConst<Environment> E, class Visit>
 void sources(E& e, Visit&& visit) {
   using enum SourceKind;

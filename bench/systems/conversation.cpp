@@ -71,7 +71,7 @@ std::string host_command(const OutsideProgram& program, std::uint64_t seed) {
   return command;
 }
 
-/// The exchange of lines: numbers requests and checks replies.
+/// Sends numbered requests and checks that each reply matches.
 class Conversation {
  public:
   Conversation(const OutsideProgram& program, const Camera& camera, std::uint64_t seed,

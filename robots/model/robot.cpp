@@ -160,8 +160,7 @@ class EquipmentReader {
     return base_from(link, link.as_string());
   }
 
-  /// The joint between a wheel and the base that turns the wheel's axle over the floor, as of PR2's
-  /// casters; "" if there is none.
+  /// The joint that steers a wheel, as in PR2's casters; "" if there is none.
   std::string steered_by(const Joint& wheel) const {
     constexpr double kUpright = 0.5;
     std::string link = wheel.parent;

@@ -28,7 +28,7 @@ struct ReadMesh {
 };
 
 /// Collects the meshes of a file's nodes into one scene, with their objects and classes (see
-/// load_mesh). The scene's materials are converted elsewhere, one to one.
+/// load_mesh). It does not convert materials: the scene has one for each of the file.
 /// @throws InputError naming the file: positions that are not finite, too many objects or
 /// materials.
 void gather(const ReadMesh& mesh, Scene& scene);

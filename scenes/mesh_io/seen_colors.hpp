@@ -15,7 +15,7 @@ Eigen::Vector3f sample_texture(const Grid2d<Rgb8>& texture, const Eigen::Vector2
 Scene split_for_colors(const Scene& scene, float max_edge_m);
 
 /// The visible color at each vertex, sRGB: texture x base color x vertex color x baked light, plus
-/// emission. Where a vertex joins several materials, the first face's.
+/// emission. A vertex with several materials takes that of its first face.
 std::vector<Rgb8> seen_colors(const Scene& scene);
 
 }  // namespace mh

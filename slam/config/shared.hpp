@@ -9,8 +9,8 @@ namespace mh {
 
 struct SlamConfig;
 
-/// All settings of SLAM as an immutable value that is cheap to copy. A header that contains one
-/// does not depend on every setting: include slam/config/slam.hpp where they are read.
+/// All settings of SLAM as an immutable value that is cheap to copy. A header with a
+/// member of this type need not include every setting: slam/config/slam.hpp, where they are read.
 class SharedSlamConfig {
  public:
   SharedSlamConfig();                                      ///< the defaults

@@ -110,8 +110,8 @@ std::string section_of(const std::string& key) {
   return lower_case(key.substr(0, key.find('.')));
 }
 
-/// Keys outside of sections and in sections that are read must be known: a typo would silently drop
-/// the camera's distortion. Other sections belong to other programs.
+/// Unknown keys are errors, at the top and in every section that is read: a typo would silently
+/// drop the camera's distortion. Other sections belong to other programs.
 void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   const std::vector<std::string> known = keys.all();
   std::set<std::string> read_sections{"camera"};

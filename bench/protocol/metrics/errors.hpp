@@ -63,8 +63,8 @@ std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& e
                                                              const RpeDelta& delta);
 
 /// Relative pose error of each pair: E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) with truth Q and estimate P
-/// (Sturm et al., equation 1); its translation norm (m) and its angle (deg). An alignment by SE(3)
-/// changes neither.
+/// (Sturm et al., equation 1); its translation norm (m) and its angle (deg). Moving a
+/// trajectory as a whole by an SE(3) changes neither.
 struct RelativeErrors {
   std::vector<double> translation_m;
   std::vector<double> rotation_deg;

@@ -24,9 +24,9 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs);
 /// consistent
 std::string gate_suite_digest(const Suite& suite, InputReader& inputs);
 
-/// What a change to the program may alter along with it: the section `slam`, systems' own settings,
-/// the digests of the vocabulary and of the files of outside programs. If these differ, different
-/// bits are expected.
+/// Settings that may change in the same commit as the program: the section `slam`, systems' own
+/// settings, the digests of the vocabulary and of the files of outside programs. If these differ,
+/// different bits are expected.
 nlohmann::ordered_json gate_settings(const Suite& suite, InputReader& inputs);
 
 /// Program and machine: digest of the executable, processor and the CPU features by which libraries

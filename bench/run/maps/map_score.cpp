@@ -93,7 +93,7 @@ ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scen
       score.objects[t].found = true;
       used[f] = true;
     }
-  // A found object is right whatever the size of the true one: a voxel's side makes some larger.
+  // Matched before small ones are left out: voxels can enlarge an object beyond that limit.
   std::erase_if(score.objects, [&](const TrueObject& o) { return o.size_m.maxCoeff() < least_m; });
   for (const TrueObject& object : score.objects) score.recall.add(object.found);
   for (std::size_t f = 0; f < found.size(); ++f)
