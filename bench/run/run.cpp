@@ -12,6 +12,7 @@
 
 #include "bench/report/write.hpp"
 #include "bench/run/plan_runs.hpp"
+#include "bench/run/reuse.hpp"
 #include "bench/suite/cache.hpp"
 #include "bench/suite/inputs.hpp"
 #include "slam/io/counted.hpp"
@@ -46,14 +47,6 @@ void warn_missing_outputs(const Suite& suite, const BenchResults& results,
       "warning: {} of finished runs and {} of images are missing from {}; their results are kept, "
       "use another --out to rebuild them",
       counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
-}
-
-/// Whether a run is still to be done, or to be done again.
-bool is_to_do(const Store& store, const Job& job, const BenchOptions& options) {
-  const auto status = store.status(job.key);
-  if (status == RunStatus::kFailed) return options.retry_failed;
-  return !status ||
-         (!options.metrics_only && shows_another_run(options.out / job.spec.name, job.key));
 }
 
 /// If a scene was changed and changed back, the existing files are from the run in between: they
@@ -122,7 +115,9 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   if (fs::exists(results)) {
     const Store before(results);
     before.check();
-    std::erase_if(unfinished, [&](const Job& job) { return !is_to_do(before, job, options); });
+    const Reuse reuse{.failures = !options.retry_failed, .files = !options.metrics_only};
+    std::erase_if(unfinished,
+                  [&](const Job& job) { return is_reused(before, job, options.out, reuse); });
   }
   validate_inputs(unfinished, inputs, options.say);  // bad input leaves no file
   inputs.forget_scene();
@@ -135,7 +130,8 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
   if (options.retry_failed)
     for (const Job& job : mine) store.forget_failure(job.key);
   if (!options.metrics_only) forget_outdated_runs(store, mine, options.out);
-  std::erase_if(mine, [&](const Job& job) { return store.status(job.key).has_value(); });
+  const Reuse reuse{.files = !options.metrics_only};
+  std::erase_if(mine, [&](const Job& job) { return is_reused(store, job, options.out, reuse); });
   limit_sharing(mine, options);
   options.say(fmt::format("{}, {} of them to do", counted(plan.size(), "run"), mine.size()));
 

@@ -12,6 +12,7 @@
 #include "bench/report/write.hpp"
 #include "bench/run/merge_parts.hpp"
 #include "bench/run/plan_runs.hpp"
+#include "bench/run/reuse.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/inputs.hpp"
@@ -26,14 +27,6 @@ namespace fs = std::filesystem;
 
 constexpr int kPollSlurm_ms = 200;
 constexpr int kNotFound = 127;  // exit code of a shell that does not find a program
-
-/// Whether a folder holds the result of a run, and the files of no other run of its name.
-bool holds(const fs::path& folder, const std::optional<Store>& store, const Job& job, bool failed) {
-  if (!store) return false;
-  const auto status = store->status(job.key);
-  return status && (failed || *status == RunStatus::kDone) &&
-         !shows_another_run(folder / job.spec.name, job.key);
-}
 
 std::optional<Store> store_in(const fs::path& folder) {
   if (!fs::exists(folder / "results.sqlite")) return std::nullopt;
@@ -51,7 +44,10 @@ std::vector<std::size_t> unfinished(const std::vector<Job>& jobs,
     const fs::path folder = share_folder(out, i + 1);
     const std::optional<Store> part = store_in(folder);
     const auto is_open = [&](const Job& job) {
-      return !holds(out, all, job, failed) && !holds(folder, part, job, failed);
+      const auto holds = [&](const fs::path& in, const std::optional<Store>& store) {
+        return store && is_reused(*store, job, in, {.failures = failed});
+      };
+      return !holds(out, all) && !holds(folder, part);
     };
     if (std::any_of(jobs.begin() + static_cast<std::ptrdiff_t>(shares[i].begin),
                     jobs.begin() + static_cast<std::ptrdiff_t>(shares[i].end), is_open))
