@@ -113,9 +113,10 @@ std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
       continue;
     }
     sources(e, [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
-      text += path ? content(source.key, *path,
-                             *std::ranges::find(inputs, source.key, &InputDigest::name))
-                   : fmt::format("{}=none;", source.key);
+      // A source that is absent says nothing: suites of before a new one keep their baselines.
+      if (path)
+        text +=
+            content(source.key, *path, *std::ranges::find(inputs, source.key, &InputDigest::name));
     });
     if (e.frame != SceneFrame{}) text += fmt::format("frame={};", json_of(e.frame).dump());
   }
