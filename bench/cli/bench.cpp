@@ -17,6 +17,7 @@
 #include "bench/cli/progress.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/set_option.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/cli/write_audit.hpp"
 #include "bench/run/run.hpp"
 #include "bench/run/signal_watch.hpp"
@@ -53,13 +54,6 @@ struct BenchArguments {
   double images_limit_gb = BenchOptions{}.images_limit_gb;
   bool json = false;
 };
-
-std::optional<std::filesystem::path> cache_folder(const BenchArguments& options) {
-  if (options.no_cache) return std::nullopt;
-  if (!options.cache.empty()) return std::filesystem::absolute(options.cache);
-  const std::filesystem::path usual = Cache::default_folder();
-  return usual.empty() ? std::nullopt : std::optional(usual);
-}
 
 void print_settings() {
   SettingsWriter writer(true);
@@ -130,7 +124,7 @@ void run(BenchArguments options) {
   bench.out = options.out.empty() ? usual_folder(suite, !overrides.vary.empty())
                                   : std::filesystem::path(options.out);
   bench.jobs = options.jobs;
-  bench.cache = cache_folder(options);
+  bench.cache = cache_folder(options.cache, options.no_cache);
   bench.time_limit_s = options.time_limit_s;
   bench.memory_limit_mb = options.memory_limit_mb;
   bench.images_limit_gb = options.images_limit_gb;

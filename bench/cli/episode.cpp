@@ -11,6 +11,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/set_option.hpp"
+#include "bench/cli/usual_cache.hpp"
 #include "bench/report/episode_record.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/run/plan_runs.hpp"
@@ -31,13 +32,6 @@ struct EpisodeArguments {
   std::size_t start = 0;
   bool no_cache = false, json = false;
 };
-
-std::optional<std::filesystem::path> episode_cache(const EpisodeArguments& options) {
-  if (options.no_cache) return std::nullopt;
-  if (!options.cache.empty()) return std::filesystem::absolute(options.cache);
-  const std::filesystem::path usual = Cache::default_folder();
-  return usual.empty() ? std::nullopt : std::optional(usual);
-}
 
 /// The run that the options name, by default the first, with the one variant and the starts up to
 /// the one that they name.
@@ -83,7 +77,8 @@ void run(EpisodeArguments options) {
   const OutputFolder folder(out, "episode", {"log.txt", "strip.png", "episode.json", kOutsideLog});
 
   Progress progress("episode");
-  const Cache cache(episode_cache(options).value_or(std::filesystem::path()));
+  const Cache cache(
+      cache_folder(options.cache, options.no_cache).value_or(std::filesystem::path()));
   const World world =
       build_world(chosen, 1, cache, [&](std::string_view stage) { progress.say(stage); });
   std::optional<EpisodeRecord> record;

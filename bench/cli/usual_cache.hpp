@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "bench/suite/cache.hpp"
@@ -12,6 +13,12 @@ namespace mh::cli {
 /// everything that decides an entry, so commands can use one another's entries.
 inline Cache usual_cache(const std::string& folder = {}) {
   return Cache(folder.empty() ? Cache::default_folder() : std::filesystem::absolute(folder));
+}
+
+/// The folder of that cache for a command with --no-cache; nullopt: nothing is kept.
+inline std::optional<std::filesystem::path> cache_folder(const std::string& folder, bool none) {
+  const std::filesystem::path used = none ? std::filesystem::path() : usual_cache(folder).folder();
+  return used.empty() ? std::nullopt : std::optional(used);
 }
 
 }  // namespace mh::cli

@@ -18,9 +18,6 @@ namespace {
 using ply::Element;
 using ply::Property;
 
-constexpr std::array<const char*, 8> kTypeNames = {"char", "uchar", "short", "ushort",
-                                                   "int",  "uint",  "float", "double"};
-
 /// Texture coordinates of vertices, which those of corners replace.
 bool is_uv(const Property& property) {
   constexpr std::array<std::string_view, 8> kNames = {"s",  "t",  "u",         "v",
@@ -72,8 +69,7 @@ class Splitter {
                                    comments, corner_count_);
     for (const Property& property : vertices_->properties)
       if (!is_uv(property))
-        text += fmt::format("property {} {}\n", kTypeNames[static_cast<std::size_t>(property.type)],
-                            property.name);
+        text += fmt::format("property {} {}\n", ply::name_of(property.type), property.name);
     text += fmt::format(
         "property float s\nproperty float t\nelement face {}\nproperty list uint uint "
         "vertex_indices\nend_header\n",

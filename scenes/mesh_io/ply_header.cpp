@@ -12,14 +12,16 @@ namespace mh::ply {
 
 namespace {
 
+/// The first name of a type is the format's own.
+constexpr std::pair<std::string_view, Type> kNames[] = {
+    {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
+    {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
+    {"ushort", Type::kUint16}, {"uint16", Type::kUint16}, {"int", Type::kInt32},
+    {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
+    {"float", Type::kFloat},   {"float32", Type::kFloat}, {"double", Type::kDouble},
+    {"float64", Type::kDouble}};
+
 std::optional<Type> type_by_name(std::string_view name) {
-  constexpr std::pair<std::string_view, Type> kNames[] = {
-      {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
-      {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
-      {"ushort", Type::kUint16}, {"uint16", Type::kUint16}, {"int", Type::kInt32},
-      {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
-      {"float", Type::kFloat},   {"float32", Type::kFloat}, {"double", Type::kDouble},
-      {"float64", Type::kDouble}};
   for (const auto& [known, type] : kNames)
     if (known == name) return type;
   return std::nullopt;
@@ -127,6 +129,10 @@ class HeaderParser {
 };
 
 }  // namespace
+
+std::string_view name_of(Type type) {
+  return std::ranges::find(kNames, type, [](const auto& named) { return named.second; })->first;
+}
 
 std::size_t size_of(Type type) {
   switch (type) {

@@ -13,6 +13,9 @@ namespace mh::ply {
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
+/// As files write it: "uchar".
+std::string_view name_of(Type type);
+
 /// Size of a value, bytes.
 std::size_t size_of(Type type);
 

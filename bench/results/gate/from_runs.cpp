@@ -46,6 +46,21 @@ std::string content(std::string_view what, const std::filesystem::path& source,
   return text;
 }
 
+/// What the sources of an environment or variant hold. One that is absent says nothing: suites of
+/// before a new one keep their baselines.
+/// @param input_of  the name among the inputs
+template <class Of, class InputOf>
+std::string contents(const Of& of, const std::vector<InputDigest>& inputs,
+                     const InputOf& input_of) {
+  std::string text;
+  sources(of, [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
+    if (path)
+      text += content(source.key, *path,
+                      *std::ranges::find(inputs, input_of(source), &InputDigest::name));
+  });
+  return text;
+}
+
 /// Settings of episodes, and what their variants are made of.
 std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
   nlohmann::ordered_json json = json_of(episodes);
@@ -54,13 +69,8 @@ std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
   const std::vector<InputDigest> inputs = reader.inputs_of(episodes);
   for (const EpisodeVariant& variant : episodes.variants) {
     text += fmt::format("variant={};", variant.name);
-    sources(variant,
-            [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
-              if (path)
-                text += content(
-                    source.key, *path,
-                    *std::ranges::find(inputs, input_name(variant, source), &InputDigest::name));
-            });
+    text += contents(variant, inputs,
+                     [&](const WorldSource& source) { return input_name(variant, source); });
   }
   return text;
 }
@@ -112,12 +122,7 @@ std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
         text += fmt::format("{}={};", input.name, hex(input.digest));
       continue;
     }
-    sources(e, [&](const WorldSource& source, const std::optional<std::filesystem::path>& path) {
-      // A source that is absent says nothing: suites of before a new one keep their baselines.
-      if (path)
-        text +=
-            content(source.key, *path, *std::ranges::find(inputs, source.key, &InputDigest::name));
-    });
+    text += contents(e, inputs, [](const WorldSource& source) { return source.key; });
     if (e.frame != SceneFrame{}) text += fmt::format("frame={};", json_of(e.frame).dump());
   }
   return hex(digest_bytes(text.data(), text.size()));
