@@ -204,7 +204,7 @@ class RunAuditor {
   bool is_correct(const Asked& asked, const SE3& world_from_camera) const {
     QueryAnswer answer;
     answer.world_from_camera = world_from_camera;
-    return score(answer, asked.moment, asked.anchor, run_.frames.truth_from_estimate,
+    return score(answer, asked.moment, asked.anchor, run_.alignment.truth_from_estimate,
                  spec_.protocol)
         .correct;
   }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/audit/summary.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 
 namespace mh {
 

@@ -11,7 +11,7 @@ namespace mh {
 
 void QueryReplay::begin(const SemanticConfig& point) {
   set_query_settings(frozen_, point);
-  released_ = mapped_scores_;
+  stale_scores_ = mapped_scores_;
 }
 
 Presentation QueryReplay::first(QuerySet set, std::size_t index) const {
@@ -29,10 +29,10 @@ PreparedFrame QueryReplay::prepared(const RgbdFrame& frame) const {
 
 std::vector<KeyframeId> QueryReplay::candidates(PreparedFrame& frame) const {
   const Query query = with_words(frame, frozen_, StepObservers());
-  StaleScores released = released_;
+  StaleScores stale_scores = stale_scores_;
   std::vector<KeyframeId> chosen;
   for (const auto& candidate :
-       choose_candidates(frozen_.map, query, frozen_.config, &released).candidates)
+       choose_candidates(frozen_.map, query, frozen_.config, &stale_scores).candidates)
     chosen.push_back(candidate.keyframe);
   return chosen;
 }
@@ -40,10 +40,10 @@ std::vector<KeyframeId> QueryReplay::candidates(PreparedFrame& frame) const {
 AnswerAgain QueryReplay::ask(PreparedFrame& frame, RandomStream draws,
                              const StepObservers& observers) {
   Tracker lost;
-  lost.stale_scores = std::move(released_);
+  lost.stale_scores = std::move(stale_scores_);
   StepReport report;
   const auto located = locate(frozen_, lost, frame, draws, observers, report);
-  released_ = std::move(lost.stale_scores);
+  stale_scores_ = std::move(lost.stale_scores);
   AnswerAgain answer;
   answer.stage = report.relocalization;
   if (located) answer.world_from_camera = located->tracked.camera_from_world.inverse();

@@ -30,7 +30,7 @@ class QueryReplay {
         world_(world),
         frozen_(frozen),
         mapped_scores_(frozen.tracker.stale_scores),
-        released_(mapped_scores_) {}
+        stale_scores_(mapped_scores_) {}
 
   /// Switches to one of the run's parameter points, starting at its first query.
   void begin(const SemanticConfig& point);
@@ -49,7 +49,7 @@ class QueryReplay {
   const RunSpec& spec_;
   const World& world_;
   SlamState& frozen_;
-  StaleScores mapped_scores_, released_;
+  StaleScores mapped_scores_, stale_scores_;
 };
 
 }  // namespace mh

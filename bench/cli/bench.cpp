@@ -19,7 +19,7 @@
 #include "bench/cli/set_option.hpp"
 #include "bench/cli/usual_cache.hpp"
 #include "bench/cli/write_audit.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/run/slurm.hpp"
 #include "bench/suite/cache.hpp"

@@ -13,7 +13,7 @@
 #include "bench/results/gate/baseline.hpp"
 #include "bench/results/gate/from_runs.hpp"
 #include "bench/results/gate/report.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/cache.hpp"
 #include "slam/core/digest.hpp"

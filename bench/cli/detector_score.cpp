@@ -27,7 +27,7 @@
 #include "scenes/recordings/images/write_image.hpp"
 #include "sim/sensors/config.hpp"
 #include "sim/world/lit_scene.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"

@@ -6,7 +6,7 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/report/export.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 #include "slam/io/files.hpp"
 
 namespace mh::cli {

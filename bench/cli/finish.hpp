@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/cli/progress.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 
 namespace mh::cli {
 

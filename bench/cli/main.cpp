@@ -18,8 +18,8 @@
 
 #include "bench/cli/commands.hpp"
 #include "bench/cli/declarations.hpp"
-#include "bench/run/run.hpp"
 #include "bench/run/run_process.hpp"
+#include "bench/run/run_suite.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/file_errors.hpp"

@@ -7,7 +7,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/cli/finish.hpp"
 #include "bench/run/merge_parts.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 
 namespace mh::cli {
 namespace {

@@ -17,7 +17,7 @@
 #include "scenes/load.hpp"
 #include "scenes/recordings/tum_folder.hpp"
 #include "sim/world/lit_scene.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"

@@ -28,7 +28,7 @@
 #include "scenes/scannet/scene_info.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "sim/world/lit_scene.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"

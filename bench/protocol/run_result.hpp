@@ -42,7 +42,7 @@ struct RunResult {
   MappingOutcome mapping;
   Trajectory estimate;
   TrajectoryScore trajectory;
-  EstimateFrames frames;
+  EstimateAlignment alignment;
   std::vector<PointResult> points;          ///< as in spec.points
   std::vector<EpisodeScore> episodes = {};  ///< by variant as in spec.episodes, then by start
   std::shared_ptr<const VoxelMap> volume;   ///< keyframe depth at its final poses, dock frame

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "bench/protocol/report.hpp"
+#include "bench/protocol/system_report.hpp"
 
 namespace mh {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "bench/protocol/report.hpp"
+#include "bench/protocol/system_report.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/trajectory.hpp"

@@ -338,12 +338,13 @@ cv::Mat draw_topdown(const World& world, const RunResult& run, QuerySet set) {
   draw_slice(canvas, view, walls, kWall, 2.2);
   draw_room_names(canvas, view, *world.simulated->scene, marks(view, world, run, set, furniture));
   draw_path(canvas, view, world.simulated->mapping.camera, SE3(), kTruth, kTruthWidth);
-  draw_path(canvas, view, run.estimate, run.frames.dock_from_estimate, kEstimate, kEstimateWidth);
-  draw_queries(canvas, view, queries(run.points.front(), set), run.frames.dock_from_estimate);
+  draw_path(canvas, view, run.estimate, run.alignment.dock_from_estimate, kEstimate,
+            kEstimateWidth);
+  draw_queries(canvas, view, queries(run.points.front(), set), run.alignment.dock_from_estimate);
   draw_header(canvas, world, run, set);
   const double legend_y = kHeader + plan_height + 36;
   const auto apart_m = farthest_apart_m(world.simulated->mapping.camera, run.estimate,
-                                        run.frames.dock_from_estimate);
+                                        run.alignment.dock_from_estimate);
   draw_legend(canvas, legend_y,
               apart_m ? fmt::format(", at most {:.3f} m off", *apart_m) : std::string(),
               !queries(run.points.front(), set).empty(), !run.grid.cells.empty());

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 
 namespace mh {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 
 namespace mh {
 

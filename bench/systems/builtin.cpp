@@ -50,22 +50,22 @@ SystemReport as_report(const StepReport& step, const SlamState& state) {
 
 class BuiltinSession : public RelocalizationSession {
  public:
-  /// @param released  what earlier sessions left, and this one leaves to the next; may be null
+  /// @param stale_scores  what earlier sessions left, and this one leaves to the next; may be null
   BuiltinSession(const SlamState& frozen, const StepObservers& observers,
-                 StaleScores* released = nullptr)
-      : frozen_(frozen), observers_(observers), released_(released) {
-    if (released_ != nullptr) tracker_.stale_scores = *released_;
+                 StaleScores* stale_scores = nullptr)
+      : frozen_(frozen), observers_(observers), stale_scores_(stale_scores) {
+    if (stale_scores_ != nullptr) tracker_.stale_scores = *stale_scores_;
   }
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
     const StepReport report = localize(frozen_, tracker_, frame, stream, observers_);
-    if (released_ != nullptr) *released_ = tracker_.stale_scores;
+    if (stale_scores_ != nullptr) *stale_scores_ = tracker_.stale_scores;
     return as_report(report, frozen_);
   }
 
  private:
   const SlamState& frozen_;  // the system that opened the session outlives it, like the observers
   const StepObservers& observers_;
-  StaleScores* released_;
+  StaleScores* stale_scores_;
   Tracker tracker_;
 };
 
@@ -140,23 +140,24 @@ class BuiltinSystem : public System {
   std::unique_ptr<QueryMemo> make_memo() const override { return std::make_unique<BuiltinMemo>(); }
   std::unique_ptr<RelocalizationSession> open_session() const override {
     assert(frozen_);
-    return std::make_unique<BuiltinSession>(state_, options_.observers, released());
+    return std::make_unique<BuiltinSession>(state_, options_.observers, stale_scores());
   }
   std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
     assert(frozen_);
-    if (released() != nullptr) return open_session();  // answers depend on earlier ones: no memo
+    if (stale_scores() != nullptr)
+      return open_session();  // answers depend on earlier ones: no memo
     return std::make_unique<RememberingSession>(state_, static_cast<BuiltinMemo&>(memo));
   }
 
  private:
   /// What the queries so far left under these settings; null if the settings do not use it.
-  StaleScores* released() const {
+  StaleScores* stale_scores() const {
     if (state_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return nullptr;
     const SemanticConfig& settings = state_.config.semantics;
-    for (auto& [of, scores] : released_)
+    for (auto& [of, scores] : stale_scores_)
       if (of == settings) return &scores;
     // At first as mapping left them.
-    return &released_.emplace_back(settings, state_.tracker.stale_scores).second;
+    return &stale_scores_.emplace_back(settings, state_.tracker.stale_scores).second;
   }
 
   /// Starts a new map in place of this one, if the frame can initialize it.
@@ -175,7 +176,7 @@ class BuiltinSystem : public System {
   BuiltinOptions options_;
   /// Under NeighborScores::kAsReleased sessions do share this, by the settings of the queries: they
   /// depend on their order. Sessions hold pointers into it.
-  mutable std::list<std::pair<SemanticConfig, StaleScores>> released_;
+  mutable std::list<std::pair<SemanticConfig, StaleScores>> stale_scores_;
   bool found_ = false;  ///< a frame was tracked in this map
   bool frozen_ = false;
 };

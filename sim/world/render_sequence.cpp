@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scenes/recordings/frame_files.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 
 namespace mh {
 

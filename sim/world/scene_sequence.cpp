@@ -4,7 +4,7 @@
 #include "scenes/load.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 
 namespace mh {

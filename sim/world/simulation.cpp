@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "sim/motion/start.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/io/error.hpp"
 

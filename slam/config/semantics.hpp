@@ -45,8 +45,8 @@ constexpr std::array<std::pair<std::string_view, WiderSearch>, 3> words(WiderSea
            {"all", WiderSearch::kAll}}};
 }
 
-/// The paper's parameters, and rules beyond it (slam/relocalize/rules.hpp): `label_mass`, and
-/// `candidates` and everything after it.
+/// The paper's parameters, and rules beyond it (slam/relocalize/beyond_paper.hpp): `label_mass`,
+/// and `candidates` and everything after it.
 struct SemanticConfig {
   double gamma = 1.0;
   double label_mass = 0.0;

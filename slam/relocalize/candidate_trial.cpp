@@ -9,7 +9,7 @@
 #include "slam/config/slam.hpp"
 #include "slam/match/expect.hpp"
 #include "slam/optimize/epnp.hpp"
-#include "slam/relocalize/rules.hpp"
+#include "slam/relocalize/beyond_paper.hpp"
 
 namespace mh {
 namespace {

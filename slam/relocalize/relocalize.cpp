@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "slam/config/slam.hpp"
-#include "slam/relocalize/rules.hpp"
+#include "slam/relocalize/beyond_paper.hpp"
 
 namespace mh {
 namespace {
@@ -42,19 +42,19 @@ namespace {
 
 /// Stores the similarities of the keyframes that pass equation 4, as ORB-SLAM2 does for each query.
 void store(const std::vector<InvertedIndex::Score>& scores, Overlap what, double alpha,
-           StaleScores& released) {
-  ++released.queries;
+           StaleScores& stale_scores) {
+  ++stale_scores.queries;
   int most = 0;
   for (const InvertedIndex::Score& score : scores) most = std::max(most, overlap(score, what));
   for (const InvertedIndex::Score& score : scores)
     if (overlap(score, what) > alpha * most)
-      released.of[score.keyframe.value] = {score.similarity, released.queries};
+      stale_scores.of[score.keyframe.value] = {score.similarity, stale_scores.queries};
 }
 
 }  // namespace
 
 KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
-                                   const SemanticConfig& config, StaleScores* released) {
+                                   const SemanticConfig& config, StaleScores* stale_scores) {
   // Keyframes that share nothing fail equation 3 and can be skipped.
   const std::vector<InvertedIndex::Score> scores = map.sharing(query);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
@@ -64,24 +64,25 @@ KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
     keyframes.push_back(score.keyframe);
     of[score.keyframe.value] = &score;
   }
-  if (released != nullptr) {
-    released->of.resize(map.keyframes().size());
-    store(scores, what, config.alpha, *released);
+  if (stale_scores != nullptr) {
+    stale_scores->of.resize(map.keyframes().size());
+    store(scores, what, config.alpha, *stale_scores);
   }
   SummedScores summed;
   const auto similarity = [&](KeyframeId k) {
     if (of[k.value] == nullptr) return 0.0;
-    const StaleScores::Score score =
-        released != nullptr ? released->of[k.value] : StaleScores::Score{of[k.value]->similarity};
+    const StaleScores::Score score = stale_scores != nullptr
+                                         ? stale_scores->of[k.value]
+                                         : StaleScores::Score{of[k.value]->similarity};
     ++summed.terms;
     summed.weight += score.similarity;
-    if (released == nullptr || score.query == released->queries) return score.similarity;
+    if (stale_scores == nullptr || score.query == stale_scores->queries) return score.similarity;
     if (score.query == 0) {
       ++summed.unscored;
     } else {
       ++summed.stale;
       summed.stale_weight += score.similarity;
-      summed.stale_age += released->queries - score.query;
+      summed.stale_age += stale_scores->queries - score.query;
     }
     return score.similarity;
   };
@@ -145,13 +146,13 @@ void prefer_near(std::vector<Candidate<KeyframeId>>& candidates, const Map& map,
 }  // namespace
 
 KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,
-                                    StaleScores* released) {
+                                    StaleScores* stale_scores) {
   const NeighborScores neighbors = config.relocalize.neighbor_scores;
   StaleScores cleared;
   if (neighbors != NeighborScores::kAsReleased)
-    released = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
+    stale_scores = neighbors == NeighborScores::kCleared ? &cleared : nullptr;
   const SemanticConfig& rules = config.semantics;
-  KeyframeSelection selection = select_keyframes(map, query.words.vector, rules, released);
+  KeyframeSelection selection = select_keyframes(map, query.words.vector, rules, stale_scores);
   const auto prefer = [&](std::vector<Candidate<KeyframeId>>& candidates) {
     if (rules.nearness > 0) prefer_near(candidates, map, query.features, rules.nearness);
   };
@@ -173,9 +174,9 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 }
 
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo, StaleScores* released) {
+                                AttemptMemo* memo, StaleScores* stale_scores) {
   const SlamConfig& config = context.config;
-  const auto selection = choose_candidates(context.map, query, config, released);
+  const auto selection = choose_candidates(context.map, query, config, stale_scores);
   std::vector<KeyframeId> candidates;
   for (const auto& candidate : selection.candidates) candidates.push_back(candidate.keyframe);
   const Camera camera = lenient(context.camera, config.relocalize);

@@ -38,10 +38,11 @@ struct KeyframeSelection : CandidateSelection<KeyframeId> {
 
 /// Algorithm 1 over the whole map. If the query's vector holds no label, equation 3 counts words,
 /// whatever `overlap` says.
-/// @param released  first receives this query's similarities, then supplies those of equation 5;
-/// null: each similarity is computed for this query
+/// @param stale_scores  first receives this query's similarities, then supplies those of equation
+/// 5; null: each similarity is computed for this query
 KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
-                                   const SemanticConfig& config, StaleScores* released = nullptr);
+                                   const SemanticConfig& config,
+                                   StaleScores* stale_scores = nullptr);
 
 /// The attempts at one query so far, by candidate, under one stream and one trial_key(). Searches
 /// that differ only in which candidates they choose can reuse them.
@@ -56,10 +57,10 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 
 /// Chooses the candidates that relocalize() tries: select_keyframes(), with neighbors scored as
 /// RelocalizeConfig::neighbor_scores says, then `nearness` and `candidates` of SemanticConfig.
-/// @param released  of earlier queries. Read and updated only under NeighborScores::kAsReleased,
-/// and must then not be null
+/// @param stale_scores  of earlier queries. Read and updated only under
+/// NeighborScores::kAsReleased, and must then not be null
 KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,
-                                    StaleScores* released);
+                                    StaleScores* stale_scores);
 
 /// Tries one keyframe as relocalize() tries its candidates.
 CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamContext& context,
@@ -69,9 +70,9 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 /// order of score. With acceptance `ours`, candidates are tried at
 /// RelocalizeConfig::disparity_sigma_px or the camera's own sigma, whichever is larger. The pose is
 /// provisional: the caller must confirm it in the local map, at the camera's own sigma.
-/// @param released  of earlier queries. Read and updated only under NeighborScores::kAsReleased,
-/// and must then not be null
+/// @param stale_scores  of earlier queries. Read and updated only under
+/// NeighborScores::kAsReleased, and must then not be null
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo = nullptr, StaleScores* released = nullptr);
+                                AttemptMemo* memo = nullptr, StaleScores* stale_scores = nullptr);
 
 }  // namespace mh

@@ -149,7 +149,7 @@ Replay make_replay(const RunResult& result, const ReplayTools& tools) {
   SlamState frozen;
   tools.say(fmt::format("{}: runs again", spec.name));
   const RunResult run = run_with_map(spec, world, {.maps = tools.cache}, frozen);
-  const SE3& to_dock = run.frames.dock_from_estimate;
+  const SE3& to_dock = run.alignment.dock_from_estimate;
   const auto is_same = [](const TimedPose& a, const TimedPose& b) {
     return a.stamp_ns == b.stamp_ns &&
            a.world_from_camera.translation() == b.world_from_camera.translation();

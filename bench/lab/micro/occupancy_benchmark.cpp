@@ -18,7 +18,7 @@
 #include "robots/navigation/plan.hpp"
 #include "scenes/load.hpp"
 #include "sim/sensors/sensors.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/io/error.hpp"
 #include "slam/occupancy/objects.hpp"

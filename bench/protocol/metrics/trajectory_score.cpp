@@ -55,16 +55,16 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   return score;
 }
 
-EstimateFrames frames_of(const Trajectory& estimate, const Trajectory& truth) {
-  EstimateFrames frames;
+EstimateAlignment align_estimate(const Trajectory& estimate, const Trajectory& truth) {
+  EstimateAlignment alignment;
   const MatchedTrajectories matched = match_by_stamp(truth, estimate);
-  if (matched.size() == 0) return frames;
-  frames.dock_from_estimate = matched.truth.front().world_from_camera *
-                              matched.estimate.front().world_from_camera.inverse();
+  if (matched.size() == 0) return alignment;
+  alignment.dock_from_estimate = matched.truth.front().world_from_camera *
+                                 matched.estimate.front().world_from_camera.inverse();
   const std::optional<Similarity> aligned = align(matched, Alignment::kSe3);
-  frames.truth_from_estimate =
-      aligned ? SE3(aligned->rotation, aligned->translation_m) : frames.dock_from_estimate;
-  return frames;
+  alignment.truth_from_estimate =
+      aligned ? SE3(aligned->rotation, aligned->translation_m) : alignment.dock_from_estimate;
+  return alignment;
 }
 
 }  // namespace mh

@@ -45,7 +45,7 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
                                  std::size_t offered);
 
 /// Where an estimate's world is in the true one.
-struct EstimateFrames {
+struct EstimateAlignment {
   /// By least squares over all positions. A path that determines no alignment (too short, on a
   /// line) is aligned by its first pose.
   SE3 truth_from_estimate;
@@ -53,6 +53,6 @@ struct EstimateFrames {
   /// The frame of the occupancy map and of the images.
   SE3 dock_from_estimate;
 };
-EstimateFrames frames_of(const Trajectory& estimate, const Trajectory& truth);
+EstimateAlignment align_estimate(const Trajectory& estimate, const Trajectory& truth);
 
 }  // namespace mh

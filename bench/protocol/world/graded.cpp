@@ -14,7 +14,7 @@
 #include "scenes/floor.hpp"
 #include "sim/motion/by_hand.hpp"
 #include "sim/motion/floor_grid.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "slam/core/random.hpp"
 #include "slam/io/error.hpp"
 

@@ -16,7 +16,7 @@
 #include "scenes/load.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/core/interpolate.hpp"

@@ -55,7 +55,7 @@ std::vector<Sum> window_errors(const RunResult& run) {
     const auto truth = interpolated_pose(run.truth, run.estimate[i].stamp_ns, kMaxTruthGap_ns);
     if (!truth) continue;
     const Eigen::Vector3d at =
-        run.frames.truth_from_estimate * run.estimate[i].world_from_camera.translation();
+        run.alignment.truth_from_estimate * run.estimate[i].world_from_camera.translation();
     const std::size_t window = frames[i] / kWindow;
     if (windows.size() <= window) windows.resize(window + 1);
     windows[window].add((at - truth->translation()).norm());

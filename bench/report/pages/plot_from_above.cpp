@@ -47,7 +47,7 @@ std::string plot_from_above(const PagesSource& source, const PlotOrder& order,
                                   : fmt::format("{}: holds no run '{}'{}", source.name, order.run,
                                                 hint(order.run, names)));
   }
-  const SE3& to_dock = run->frames.dock_from_estimate;
+  const SE3& to_dock = run->alignment.dock_from_estimate;
   const auto place = [](const Eigen::Vector3d& at) {
     return fmt::format("{} {}\n", at.x(), at.y());
   };

@@ -93,23 +93,24 @@ Json run_page_json(const PagesSource& source, const RunResult& run, std::size_t 
   for (const InputDigest& input : run.place.inputs) inputs[input.name] = hex(input.digest);
   const bool has_settings = run.spec.system.takes_settings();
   const auto grid = grid_of(source, run);
-  return {{"name", run.spec.name},
-          {"scene", run.place.scene},
-          {"robot", run.place.robot},
-          {"length_m", json_of(run.place.mapping.length_m)},
-          {"frames", run.place.mapping.frames},
-          {"cut", run.place.cut},
-          {"truth", path_json(run.truth, SE3(), start_ns, moments)},
-          {"estimate", path_json(run.estimate, run.frames.dock_from_estimate, start_ns, moments)},
-          {"calls", calls_page_json(run.mapping, start_ns, moments)},
-          {"loops", run.mapping.loops.size()},
-          {"skipped", json_of(run.mapping.skipped)},
-          {"grid", grid_json(grid)},
-          {"grid_damaged", !grid && is_file(source.folder / run.spec.name / "map.yaml")},
-          {"inputs", inputs},
-          {"trajectory_digest", hex(digest(run.estimate))},
-          {"seed", run.spec.seed},
-          {"settings", has_settings ? json_of(run.spec.slam) : Json()}};
+  return {
+      {"name", run.spec.name},
+      {"scene", run.place.scene},
+      {"robot", run.place.robot},
+      {"length_m", json_of(run.place.mapping.length_m)},
+      {"frames", run.place.mapping.frames},
+      {"cut", run.place.cut},
+      {"truth", path_json(run.truth, SE3(), start_ns, moments)},
+      {"estimate", path_json(run.estimate, run.alignment.dock_from_estimate, start_ns, moments)},
+      {"calls", calls_page_json(run.mapping, start_ns, moments)},
+      {"loops", run.mapping.loops.size()},
+      {"skipped", json_of(run.mapping.skipped)},
+      {"grid", grid_json(grid)},
+      {"grid_damaged", !grid && is_file(source.folder / run.spec.name / "map.yaml")},
+      {"inputs", inputs},
+      {"trajectory_digest", hex(digest(run.estimate))},
+      {"seed", run.spec.seed},
+      {"settings", has_settings ? json_of(run.spec.slam) : Json()}};
 }
 
 }  // namespace mh

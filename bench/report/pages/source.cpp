@@ -85,7 +85,7 @@ PagesSource read_source(const fs::path& path) {
     // A store holds no alignments: they follow from both paths.
     for (RunResult& run : source.results.runs)
       if (!run.truth.empty() && !run.estimate.empty())
-        run.frames = frames_of(run.estimate, run.truth);
+        run.alignment = align_estimate(run.estimate, run.truth);
     read_costs(store, source);
   } catch (const InputError& error) {
     source.suite.reset();

@@ -70,7 +70,7 @@ class QueryRound {
           const QueryAnswer answer =
               query(frozen, index, frames, spec_.protocol, stream_, memo.get());
           scores[p]->push_back(
-              score(answer, moment, anchor, run_.frames.truth_from_estimate, spec_.protocol));
+              score(answer, moment, anchor, run_.alignment.truth_from_estimate, spec_.protocol));
           if (set_ == QuerySet::kGraded)
             scores[p]->back().grade = world_.simulated->graded.list[index].grade;
         } catch (const UnusableFrame& error) {

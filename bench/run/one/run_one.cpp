@@ -121,7 +121,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
     if (!tools.occupancy) return;
-    mapper.update(run.estimate, run.frames.dock_from_estimate);
+    mapper.update(run.estimate, run.alignment.dock_from_estimate);
     mapper.associate_detections();
     run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
@@ -140,7 +140,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
     run.estimate = run_recorded(spec, world, frames, tools, work, run.mapping.skipped);
     run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
-    run.frames = frames_of(run.estimate, run.truth);
+    run.alignment = align_estimate(run.estimate, run.truth);
     integrate();
     run.points.resize(spec.points.size());
   } else {
@@ -150,7 +150,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       system.freeze();
       run.estimate = system.trajectory();
       run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
-      run.frames = frames_of(run.estimate, run.truth);
+      run.alignment = align_estimate(run.estimate, run.truth);
     };
     const auto map_now = [&] {
       run.mapping = map_sequence(
@@ -197,8 +197,9 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
       };
       episodes.status = tools.status;
       episodes.done = [&] { work.more(kFramesOfEpisode); };
-      run.episodes = ask_episodes(spec, world, system, run.estimate, run.frames.truth_from_estimate,
-                                  mapping_noise(mapping_stream(spec), 0), episodes);
+      run.episodes =
+          ask_episodes(spec, world, system, run.estimate, run.alignment.truth_from_estimate,
+                       mapping_noise(mapping_stream(spec), 0), episodes);
     }
     system.finish();
     run.times = system.times();

@@ -18,7 +18,7 @@
 #include "bench/results/summary.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/run/plan_runs.hpp"
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 #include "bench/store/store.hpp"
 #include "bench/suite/inputs.hpp"
 #include "bench/suite/run_key.hpp"

@@ -644,7 +644,7 @@ TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
           here.translation());
   EXPECT_GT(cv::norm(image, drawn(answered, turned)), 0) << "no heading";
   run.estimate = place.world.simulated->mapping.camera;  // a path that is just right
-  run.frames.dock_from_estimate = SE3();
+  run.alignment.dock_from_estimate = SE3();
   const cv::Mat both = drawn(answered, failed);
   EXPECT_GT(pixels_of(both, {165, 205, 150}), 50) << "the true path is hidden";
   EXPECT_GT(pixels_of(both, {10, 84, 196}), 50) << "the estimated path is hidden";
@@ -683,7 +683,7 @@ TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
 TEST(Topdown, TheLegendTellsHowFarThePathsAreApart) {
   Place place;
   RunResult run = place.run()[0];
-  run.frames.dock_from_estimate = SE3();
+  run.alignment.dock_from_estimate = SE3();
   const auto legend = [&](const Eigen::Vector3d& first_off, const Eigen::Vector3d& others_off) {
     run.estimate = place.world.simulated->mapping.camera;
     for (TimedPose& pose : run.estimate) {

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "slam/io/error.hpp"
 #include "tests/sim/scene_builder.hpp"
 

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/world/sequence.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "slam/io/temporary_folder.hpp"
 #include "tests/sim/scene_builder.hpp"
 

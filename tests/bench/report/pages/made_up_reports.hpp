@@ -40,7 +40,7 @@ inline void put_paths(RunResult& run, std::size_t frames, double drift_m) {
     call.keyframe_added = i % 25 == 0;
     run.mapping.calls.push_back(call);
   }
-  run.frames = frames_of(run.estimate, run.truth);
+  run.alignment = align_estimate(run.estimate, run.truth);
   run.place.mapping.frames = frames;
   run.place.mapping.length_m = 11.05;
 }

@@ -342,7 +342,7 @@ TEST_F(Reports, Figure4OfARecordingIsOverTruthAtOtherMomentsThanItsFrames) {
     for (std::size_t i = 0; i + 1 < frames.size(); ++i)
       for (const int k : {1, 11, 21})
         run.truth.push_back({frames[i].stamp_ns + k * 1'000'000, frames[i].world_from_camera});
-    run.frames = frames_of(run.estimate, frames);
+    run.alignment = align_estimate(run.estimate, frames);
   }
   write_pages(out(), std::array{source});
   const Json curve = piece(out(), "0/figures").at("by_frame");
@@ -428,7 +428,7 @@ TEST_F(Reports, DrawAnswersAsFarFromTheTruthAsTheyWereScored) {
   const auto anchor = find_anchor(run.estimate, run.truth, moment, NearestBy::kPlace, {});
   QueryAnswer answered;
   answered.world_from_camera = answer;
-  const QueryScore q = score(answered, moment, anchor, run.frames.truth_from_estimate, {});
+  const QueryScore q = score(answered, moment, anchor, run.alignment.truth_from_estimate, {});
   const auto drawn = answer_in_truth(run, QuerySet::kSecondTour, q);
   ASSERT_TRUE(drawn);
   EXPECT_NEAR((drawn->translation() - run.truth[45].world_from_camera.translation()).norm(),

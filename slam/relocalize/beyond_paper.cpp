@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/relocalize/rules.hpp"
+#include "slam/relocalize/beyond_paper.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/run.hpp"
+#include "bench/run/run_suite.hpp"
 
 #include <unistd.h>
 
