@@ -20,8 +20,9 @@ struct PublishedRow {
 inline constexpr PublishedRow kTable2[] = {{"the paper's semantic system", 0.7925, 0.0512},
                                            {"ORB-SLAM2", 0.7143, 0.0945}};
 
-/// Its section 3.3.3: keyframes left after equations 3, 4 and 5, as shares of the map; after
-/// equation 6, their number, and the share of queries with exactly one.
+/// Its section 3.3.3: keyframes left after its three steps, as shares of the map, their number
+/// after all, and the share of queries with exactly one. Its section 2.3 calls equations 3 to 5 the
+/// steps; the third share may be that after equation 6.
 struct PublishedCandidates {
   std::string_view system;
   double c1 = 0, c2 = 0, c3 = 0, final = 0, single = 0;

@@ -155,7 +155,8 @@ Json episodes_page_json(const Suite& suite, std::span<const RunResult> runs) {
 
 Json candidates_json(const Suite& suite, std::span<const CategoryRow> rows) {
   PageTable table("Section 3.3.3: candidates left after each step of Algorithm 1",
-                  "Shares of the map's keyframes: ratios of means over queries.");
+                  "Shares of the map's keyframes: ratios of means over queries. The paper gives "
+                  "shares after three steps: the third may be that after equation 6.");
   const PageColumn keyframes{"keyframes", "keyframes", "", 1}, c1{"c1", "sharing (eq. 3)", "%", 2},
       c2{"c2", "sharing enough (eq. 4)", "%", 2}, c3{"c3", "neighborhoods (eq. 5)", "%", 2},
       left{"final", "candidates (eq. 6)", "", 2}, single{"single", "exactly one left", "%", 2},
