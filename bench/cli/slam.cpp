@@ -62,7 +62,9 @@ SlamState first_state(const SlamArguments& options,
     state = make_slam(settings.camera, settings.slam, vocabulary);
   } else {
     state = load_slam(options.map, vocabulary);
-    if (state.camera != settings.camera)
+    Camera made_by = state.camera;  // without what it learned
+    if (!made_by.disparity_sigma_is_given) made_by.disparity_sigma_px = Camera{}.disparity_sigma_px;
+    if (made_by != settings.camera)
       throw InputError(fmt::format("{}: was made with another camera", options.map));
     if (!options.settings.empty()) apply_settings(options, state.config, settings.notes);
     if (!options.resume) {  // the map's frames are from another sequence

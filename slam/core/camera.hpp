@@ -51,11 +51,11 @@ struct Camera {
   /// Baseline of the depth sensor's triangulation: a depth z has disparity fx * b / z, whose error
   /// determines how much the depth weighs. 0.075 m: Khoshelham and Elberink, Sensors 2012.
   double baseline_m = 0.075;
-  /// Standard deviation of the measured disparity. The keypoint's own uncertainty is added to it
-  /// (1 px at octave 0, more at higher octaves), because a misplaced keypoint reads its depth at
-  /// the wrong pixel. 0.1 px: a Kinect's 0.0019 z^2 m (Nguyen et al., 3DIMPVT 2012) is 0.08 px at
-  /// fx = 577 px, rounded up.
-  double disparity_sigma_px = 0.1;
+  /// Standard deviation of the disparity at a keypoint of octave 0; at higher octaves it grows like
+  /// the keypoint's own, which reads its depth at the wrong pixel. If none is given, SLAM begins
+  /// with this one and learns it (slam/optimize/depth_trust.hpp).
+  double disparity_sigma_px = 0.3;
+  bool disparity_sigma_is_given = false;
 
   /// Projects a point to its (undistorted) pixel. @pre z is positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point_in_camera) const {

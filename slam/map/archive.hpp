@@ -224,9 +224,9 @@ void fields(A& a, T& distortion) {
 template <class A, MaybeConst<Camera> T>
 void fields(A& a, T& camera) {
   auto& [width_px, height_px, fx_px, fy_px, cx_px, cy_px, distortion, rate_hz, baseline_m,
-         disparity_sigma_px] = camera;
+         disparity_sigma_px, disparity_sigma_is_given] = camera;
   a(width_px, height_px, fx_px, fy_px, cx_px, cy_px, distortion, rate_hz, baseline_m,
-    disparity_sigma_px);
+    disparity_sigma_px, disparity_sigma_is_given);
 }
 
 /// Writes the map itself.

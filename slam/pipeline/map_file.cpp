@@ -149,10 +149,10 @@ SlamConfig parse_config(const std::string& text, const std::string& name) {
 
 std::string encode_slam(const SlamState& state) {
   using namespace archive;
-  const auto& [camera, config, vocabulary, map, tracker, loop_memory, tracked_frames,
+  const auto& [camera, depth_frames, config, vocabulary, map, tracker, loop_memory, tracked_frames,
                last_stamp_ns] = state;
   Writer content;
-  content(format_slam_config(config), camera);
+  content(format_slam_config(config), camera, depth_frames);
   write_map(content, map);
   content(tracker, loop_memory);
   write_tracked_frames(content, tracked_frames);
@@ -175,8 +175,11 @@ SlamState decode_slam(const std::string& bytes, const std::string& name,
   Reader content(checked_content(bytes, name, vocabulary->digest()), name);
   std::string settings;
   Camera camera;
-  content(settings, camera);
+  int depth_frames = 0;
+  content(settings, camera, depth_frames);
+  content.require(depth_frames >= 0, "the number of frames that taught the depth's sigma");
   SlamState state = make_slam(camera, parse_config(settings, name), std::move(vocabulary));
+  state.depth_frames = depth_frames;
   state.map = read_map(content, camera, state.config.features.levels, state.vocabulary->size());
   content(state.tracker, state.loop_memory);
   check(content, state.tracker, state.map);

@@ -48,7 +48,10 @@ void read_camera(YamlReader& yaml, Settings& settings) {
   c.cy_px = camera.number("cy_px", 0, c.height_px - 1);
   c.rate_hz = camera.number_or("rate_hz", c.rate_hz, 1e-3, kMost);
   c.baseline_m = camera.number_or("baseline_m", c.baseline_m, 1e-6, kMost);
-  c.disparity_sigma_px = camera.number_or("disparity_sigma_px", c.disparity_sigma_px, 1e-6, kMost);
+  if (auto sigma = camera.find("disparity_sigma_px"); sigma && sigma->as_string() != "learned") {
+    c.disparity_sigma_px = sigma->as_double(1e-6, kMost);
+    c.disparity_sigma_is_given = true;
+  }
   auto distortion = camera.find("distortion");
   if (distortion) {
     read_distortion(*distortion, "", c);
@@ -223,7 +226,8 @@ std::string format_settings(const Settings& settings) {
              "  rate_hz: {}\n  baseline_m: {}\n  disparity_sigma_px: {}\n"
              "images:\n  depth_per_meter: {}\n  exchange_red_blue: {}\n",
              c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px,
-             text_of(c.distortion, ": "), c.rate_hz, c.baseline_m, c.disparity_sigma_px,
+             text_of(c.distortion, ": "), c.rate_hz, c.baseline_m,
+             c.disparity_sigma_is_given ? fmt::format("{}", c.disparity_sigma_px) : "learned",
              settings.depth_per_meter, settings.exchange_red_blue) +
          format_slam_config(settings.slam);
 }

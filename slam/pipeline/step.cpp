@@ -2,11 +2,15 @@
 // The whole system on one page: observe, locate, decide on a keyframe, map, look for loops,
 // remember.
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "slam/io/error.hpp"
+#include "slam/match/expect.hpp"
+#include "slam/optimize/depth_trust.hpp"
 #include "slam/pipeline/add_keyframe.hpp"
 #include "slam/pipeline/locate.hpp"
 #include "slam/pipeline/slam.hpp"
@@ -38,6 +42,27 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
 bool is_keyframe(const Map& map, Stamp stamp_ns) {
   return std::any_of(map.keyframes().begin(), map.keyframes().end(),
                      [&](const Keyframe& k) { return !k.erased && k.stamp_ns == stamp_ns; });
+}
+
+/// Learns from a tracked frame how far its depth can be trusted, by landmarks of three keyframes or
+/// more: others are where a single depth says.
+void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Features& features) {
+  if (state.camera.disparity_sigma_is_given) return;
+  std::vector<PoseObservation> seen;
+  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
+    if (!tracked.landmarks[i].valid()) continue;
+    const Landmark& landmark = state.map.at(tracked.landmarks[i]);
+    if (landmark.observations.size() >= 3)
+      seen.push_back(observe(landmark.position_in_world, features.keypoints[i], state.camera,
+                             state.config.features));
+  }
+  const auto disagreement = depth_disagreement(seen, tracked.camera_from_world, state.camera);
+  if (!disagreement) return;
+  state.camera.disparity_sigma_px = learned_disparity_sigma_px(state.camera.disparity_sigma_px,
+                                                               state.depth_frames++, *disagreement);
+  if (std::getenv("MH_TRUST") && state.depth_frames % 100 == 0)
+    std::fprintf(stderr, "TRUST %d %.3f %.2f\n", state.depth_frames,
+                 state.camera.disparity_sigma_px, *disagreement);
 }
 
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
@@ -82,6 +107,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   TrackedPose& tracked = located->tracked;
   report.inliers = tracked.inliers;
   count_sightings(state.map, *located);
+  if (report.status == TrackStatus::kTracked) learn_depth_trust(state, tracked, frame.features);
   update_velocity(state.tracker, stamp_ns, tracked.camera_from_world);
 
   KeyframeId reference = located->reference;

@@ -90,6 +90,8 @@ class Layout {
     const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = s.camera.distortion;
     put<double>(s.camera.fx_px, s.camera.fy_px, s.camera.cx_px, s.camera.cy_px, k1, k2, p1, p2, k3,
                 k4, k5, k6, s.camera.rate_hz, s.camera.baseline_m, s.camera.disparity_sigma_px);
+    put<std::uint8_t>(s.camera.disparity_sigma_is_given);
+    put<std::int32_t>(s.depth_frames);
     put<std::uint64_t>(keyframes.size());
     for (const Keyframe& k : keyframes) keyframe(k);
     put<std::uint64_t>(landmarks.size());

@@ -84,6 +84,24 @@ TEST(Settings, TellsTheCameraAndLeavesTheRestAsItIs) {
   EXPECT_EQ(format_slam_config(s.slam), format_slam_config(expected));
 }
 
+TEST(Settings, ASigmaOfDisparityIsGivenOrLearned) {
+  const auto camera = [](const std::string& line) {
+    return parse_settings(
+               "camera:\n  fx_px: 290\n  fy_px: 289\n  cx_px: 320\n  cy_px: 240\n" + line, "s.yaml")
+        .camera;
+  };
+  EXPECT_FALSE(camera("").disparity_sigma_is_given);
+  EXPECT_EQ(camera("  disparity_sigma_px: learned\n"), camera(""));
+  const Camera given = camera("  disparity_sigma_px: 0.1\n");
+  EXPECT_TRUE(given.disparity_sigma_is_given);
+  EXPECT_EQ(given.disparity_sigma_px, 0.1);
+  for (const Camera& c : {given, camera("")}) {
+    Settings written;
+    written.camera = c;
+    EXPECT_EQ(parse_settings(format_settings(written), "written.yaml").camera, c);
+  }
+}
+
 TEST(Settings, AWholeFileReadsBackBitForBit) {
   Settings s = parse_settings(kSettingsCamera + format_slam_config(unusual()), "s.yaml");
   s.depth_per_meter = 1000.0 / 3.0;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "slam/io/error.hpp"
+#include "slam/pipeline/map_file.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
@@ -567,6 +568,21 @@ TEST(Step, RefusesStampsThatDoNotGrowAndFramesOfAnotherSize) {
   RgbdFrame small = frame(2);
   small.color = Grid2d<Rgb8>(100, 100);
   EXPECT_THROW(step(state, small, RandomStream(0)), InputError);
+}
+
+TEST(Step, HowFarDepthIsTrustedIsLearnedUnlessItIsGiven) {
+  for (const bool given : {false, true}) {
+    Camera camera = BoxRoom::camera();
+    camera.disparity_sigma_px = 0.3;
+    camera.disparity_sigma_is_given = given;
+    SlamState state = make_slam(camera, settings({}), vocabulary());
+    for (int i = 0; i < 60; ++i) step(state, frame(i), RandomStream(7).fork(i));
+    EXPECT_EQ(state.camera.disparity_sigma_px != 0.3, !given);
+    EXPECT_EQ(state.depth_frames > 20, !given);
+    const SlamState loaded = decode_slam(encode_slam(state), "map", vocabulary());
+    EXPECT_EQ(loaded.camera, state.camera);
+    EXPECT_EQ(loaded.depth_frames, state.depth_frames);
+  }
 }
 
 TEST(MakeSlam, RefusesParametersOutOfRange) {

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/optimize/depth_trust.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "slam/optimize/reprojection.hpp"
+
+namespace mh {
+namespace {
+
+constexpr int kLeastDepths = 30;
+constexpr double kQuartile = 0.25;
+constexpr double kQuartileChi2 = 3.4546;  // of chi-square with 6 degrees of freedom
+/// Directions that the depths determine less than this share of the best are left out.
+constexpr double kLeastInformation = 1e-6;
+
+}  // namespace
+
+std::optional<double> depth_disagreement(std::span<const PoseObservation> observations,
+                                         const SE3& camera_from_world, const Camera& camera) {
+  Matrix6d of_depth = Matrix6d::Zero(), of_all = Matrix6d::Zero();
+  Vector6d pull = Vector6d::Zero();
+  int depths = 0;
+  for (const PoseObservation& o : observations) {
+    const Eigen::Vector3d p = camera_from_world * o.point_in_world;
+    if (p.z() < kMinimumDepth_m) continue;
+    const ImageMeasurement measured{
+        .u_px = o.u_px, .v_px = o.v_px, .disparity_px = o.disparity_px, .sigma_px = o.sigma_px};
+    const Eigen::Matrix<double, 3, 6> jacobian =
+        reprojection_jacobian(p, measured, camera) * perturbation_jacobian(p);
+    of_all.noalias() += jacobian.transpose() * jacobian;
+    if (!measured.has_depth()) continue;
+    ++depths;
+    of_depth.noalias() += jacobian.row(2).transpose() * jacobian.row(2);
+    pull += jacobian.row(2).transpose() * reprojection_residual(p, measured, camera).z();
+  }
+  if (depths < kLeastDepths) return std::nullopt;
+  const Matrix6d covariance = of_depth - of_depth * of_all.ldlt().solve(of_depth);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(covariance);
+  const Vector6d along = axes.eigenvectors().transpose() * pull;
+  const double least = kLeastInformation * axes.eigenvalues().maxCoeff();
+  double chi2 = 0;
+  int directions = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (!(axes.eigenvalues()[i] > least)) continue;
+    chi2 += along[i] * along[i] / axes.eigenvalues()[i];
+    ++directions;
+  }
+  if (directions == 0) return std::nullopt;
+  return chi2 * 6 / directions / kQuartileChi2;
+}
+
+double learned_disparity_sigma_px(double disparity_sigma_px, int frames, double disagreement) {
+  static const double kQ = std::getenv("MH_Q") ? atof(std::getenv("MH_Q")) : kQuartile;
+  static const double kC = std::getenv("MH_C") ? atof(std::getenv("MH_C")) : 8;
+  static const double kT = std::getenv("MH_T") ? atof(std::getenv("MH_T")) : 1;
+  constexpr double kFirstFrames = 20;
+  const double step = kC / (frames + kFirstFrames);
+  const double by = disagreement > kT ? kQ * step : (kQ - 1) * step;
+  return std::clamp(disparity_sigma_px * std::exp(by), 0.03, 10.0);
+}
+
+}  // namespace mh

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slam/optimize/depth_trust.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "synthetic.hpp"
+
+namespace mh {
+namespace {
+
+constexpr int kPoints = 200;
+
+/// Adds white noise to pixels (of their sigma) and to disparities.
+std::vector<PoseObservation> noisy(const SE3& pose, const Camera& camera, double disparity_sigma_px,
+                                   RandomStream stream) {
+  auto seen = testing::observe(kPoints, pose, camera, stream.fork(0));
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const RandomStream s = stream.fork(1).fork(i);
+    seen[i].u_px += seen[i].sigma_px * s.normal(0);
+    seen[i].v_px += seen[i].sigma_px * s.normal(1);
+    if (seen[i].disparity_px >= 0)
+      seen[i].disparity_px += disparity_sigma_px * seen[i].sigma_px * s.normal(2);
+  }
+  return seen;
+}
+
+/// Disparities that are wrong by up to so much, by where they are in the image.
+void bend(std::vector<PoseObservation>& seen, const Camera& camera, double by_px) {
+  for (PoseObservation& o : seen) {
+    if (o.disparity_px < 0) continue;
+    const double x = 2 * o.u_px / camera.width_px - 1, y = 2 * o.v_px / camera.height_px - 1;
+    o.disparity_px += by_px * (x * x + y * y - 0.5 + 0.5 * x);
+  }
+}
+
+/// Gates that keep every observation: which ones fit is another question.
+PoseConfig open_gates() {
+  PoseConfig config;
+  config.chi2_mono = config.chi2_stereo = 1e9;
+  return config;
+}
+
+double disagreement_of(const std::vector<PoseObservation>& seen, const SE3& near,
+                       const Camera& camera) {
+  const auto estimate = estimate_pose(seen, near, camera, open_gates());
+  EXPECT_TRUE(estimate);
+  return depth_disagreement(seen, estimate->camera_from_world, camera).value();
+}
+
+/// What is learned from frames whose depths err by `disparity_sigma_px` each, and alike by `bent`.
+double learned_from(int frames, double disparity_sigma_px, double bent_px = 0) {
+  Camera camera;
+  const SE3 pose = testing::true_pose();
+  for (int i = 0; i < frames; ++i) {
+    auto seen = noisy(pose, camera, disparity_sigma_px,
+                      RandomStream(7).fork(static_cast<std::uint64_t>(i)));
+    bend(seen, camera, bent_px);
+    camera.disparity_sigma_px = learned_disparity_sigma_px(camera.disparity_sigma_px, i,
+                                                           disagreement_of(seen, pose, camera));
+  }
+  return camera.disparity_sigma_px;
+}
+
+TEST(DepthDisagreement, IsChiSquareOverItsQuartileIfErrorsAreWhite) {
+  Camera camera;
+  camera.disparity_sigma_px = 0.5;
+  const SE3 pose = testing::true_pose();
+  int below = 0;
+  double sum = 0;
+  constexpr int kFrames = 1000;
+  for (int i = 0; i < kFrames; ++i) {
+    const auto seen = noisy(pose, camera, 0.5, RandomStream(3).fork(static_cast<std::uint64_t>(i)));
+    const double d = disagreement_of(seen, pose, camera);
+    below += d < 1;
+    sum += d;
+  }
+  EXPECT_NEAR(below / double(kFrames), 0.25, 0.04);  // three standard deviations
+  EXPECT_NEAR(sum / kFrames * 3.4546, 6, 0.35);      // chi-square's mean
+}
+
+TEST(DepthDisagreement, NeedsDepth) {
+  const Camera camera;
+  auto seen = testing::observe(60, testing::true_pose(), camera, RandomStream(1));
+  EXPECT_TRUE(depth_disagreement(seen, testing::true_pose(), camera));  // 40 with depth
+  seen.resize(44);                                                      // 29
+  EXPECT_FALSE(depth_disagreement(seen, testing::true_pose(), camera));
+}
+
+TEST(LearnedDisparitySigma, IsThatOfWhiteErrors) {
+  for (const double sigma_px : {0.1, 0.5, 2.0})
+    EXPECT_NEAR(std::log(learned_from(1000, sigma_px) / sigma_px), 0, 0.15) << sigma_px;
+}
+
+// 0.1 px by itself and 0.5 px alike: 0.3 px in a single reading, but the pose suffers from it all.
+TEST(LearnedDisparitySigma, IsLargerIfErrorsAreAlike) {
+  EXPECT_GT(learned_from(400, 0.1, 0.5), 1.0);
+}
+
+}  // namespace
+}  // namespace mh
