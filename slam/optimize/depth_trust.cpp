@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -56,13 +55,13 @@ std::optional<double> depth_disagreement(std::span<const PoseObservation> observ
 }
 
 double learned_disparity_sigma_px(double disparity_sigma_px, int frames, double disagreement) {
-  static const double kQ = std::getenv("MH_Q") ? atof(std::getenv("MH_Q")) : kQuartile;
-  static const double kC = std::getenv("MH_C") ? atof(std::getenv("MH_C")) : 8;
-  static const double kT = std::getenv("MH_T") ? atof(std::getenv("MH_T")) : 1;
-  constexpr double kFirstFrames = 20;
-  const double step = kC / (frames + kFirstFrames);
-  const double by = disagreement > kT ? kQ * step : (kQ - 1) * step;
-  return std::clamp(disparity_sigma_px * std::exp(by), 0.03, 10.0);
+  // Steps whose sum grows without bound, but not that of their squares. The first ones are large
+  // enough to cross the range in some hundred frames.
+  constexpr double kGain = 8, kFirstFrames = 20;
+  constexpr double kLeast_px = 0.03, kMost_px = 10;
+  const double step = kGain / (frames + kFirstFrames);
+  const double by = disagreement > 1 ? kQuartile * step : (kQuartile - 1) * step;
+  return std::clamp(disparity_sigma_px * std::exp(by), kLeast_px, kMost_px);
 }
 
 }  // namespace mh

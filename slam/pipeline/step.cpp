@@ -2,8 +2,6 @@
 // The whole system on one page: observe, locate, decide on a keyframe, map, look for loops,
 // remember.
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
@@ -60,9 +58,6 @@ void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Featu
   if (!disagreement) return;
   state.camera.disparity_sigma_px = learned_disparity_sigma_px(state.camera.disparity_sigma_px,
                                                                state.depth_frames++, *disagreement);
-  if (std::getenv("MH_TRUST") && state.depth_frames % 100 == 0)
-    std::fprintf(stderr, "TRUST %d %.3f %.2f\n", state.depth_frames,
-                 state.camera.disparity_sigma_px, *disagreement);
 }
 
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
