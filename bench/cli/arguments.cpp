@@ -2,10 +2,12 @@
 #include "bench/cli/arguments.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -81,6 +83,14 @@ void resolve(std::string& word, Shipped what) {
 
 namespace {
 
+/// What files begin with that are written here, by their ending.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeads = {
+    {{".png", "\x89PNG"},
+     {".pdf", "%PDF"},
+     {".glb", "glTF"},
+     {".ply", "ply"},
+     {".mhvoc", "MHVOCAB"}}};
+
 void require_other_file(const fs::path& file, const fs::path& input) {
   std::error_code error;
   if (fs::equivalent(file, input, error) && !error)
@@ -101,6 +111,15 @@ void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
                                  fs::is_directory(file, error) ? "a folder" : "no file"));
   for (const fs::path& input : read) require_other_file(file, input);
+  for (const auto& [ending, head] : kHeads)
+    if (file.extension() == ending) {
+      std::string start(head.size(), '\0');
+      std::ifstream in(file, std::ios::binary);
+      in.read(start.data(), static_cast<std::streamsize>(start.size()));
+      if (in.gcount() > 0 && start != head)
+        throw InputError(fmt::format("{}: is there already, and no file of this kind: name another",
+                                     file.string()));
+    }
   make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 

@@ -33,7 +33,8 @@ CLI::Validator not_empty();
 /// alone.
 void resolve(std::string& word, Shipped what);
 
-/// Checks before any work is done that a file can be written there; creates its folder.
+/// Checks before any work is done that a file can be written there, and that one which is there
+/// already is of the kind that its ending tells; creates its folder.
 /// @param read  what the command reads; none of it may be overwritten
 /// @throws InputError naming file or folder; DiskFullError.
 void require_writable(const std::filesystem::path& file,

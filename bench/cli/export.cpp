@@ -17,18 +17,19 @@ struct ExportArguments {
 };
 
 void run(const ExportArguments& options) {
-  if (!options.out.empty())
-    require_writable(options.out,
-                     {options.store, std::filesystem::path(options.store) / "results.sqlite"});
   const Store store = Store::open_to_read(options.store);
   load_results(store, store.planned_suite());  // so that a damaged row is not exported
   const std::string text = options.format == "csv"    ? export_csv(store)
                            : options.format == "json" ? export_json(store)
                                                       : export_latex(store);
-  if (options.out.empty())
+  if (options.out.empty()) {
     fmt::print("{}", text);
-  else
-    write_atomically(options.out, text);
+    return;
+  }
+  constexpr std::size_t kHead = 16;  // of the format's first line
+  require_replaceable(options.out, std::string_view(text).substr(0, kHead), "`modelhouse export`",
+                      {options.store, std::filesystem::path(options.store) / "results.sqlite"});
+  write_atomically(options.out, text);
 }
 
 }  // namespace

@@ -51,12 +51,14 @@ struct RenderArguments {
   bool json = false;
 };
 
-std::string digest_of_file(const std::string& file) {
-  return file.empty() ? "" : hex(digest_file(file));
+/// The digest of an input as it was when it was read; empty if there is none of that name.
+std::string digest_of(const std::vector<InputDigest>& inputs, std::string_view name) {
+  const auto input = std::ranges::find(inputs, name, &InputDigest::name);
+  return input == inputs.end() ? "" : hex(input->digest);
 }
 
 /// Everything that determines the images: a folder is resumed only if none of it changed.
-/// @param inputs  all files read for the robot, including its URDF, and for the detector, if any
+/// @param inputs  what was read for robot (with its URDF), level, pedestrian and detector
 std::string settings_of(const RenderArguments& o, const Scene& scene, const Trajectory& path,
                         const std::vector<InputDigest>& inputs) {
   nlohmann::ordered_json json = {{"scene", o.scene},
@@ -64,12 +66,12 @@ std::string settings_of(const RenderArguments& o, const Scene& scene, const Traj
                                  {"motion", o.motion.text()},
                                  {"path_digest", hex(digest(path))},
                                  {"robot", o.robot},
-                                 {"robot_digest", hex(inputs.front().digest)},
+                                 {"robot_digest", digest_of(inputs, "robot")},
                                  {"camera", o.camera},
                                  {"level", o.level},
-                                 {"level_digest", digest_of_file(o.level)},
+                                 {"level_digest", digest_of(inputs, "level")},
                                  {"pedestrian", o.pedestrian},
-                                 {"pedestrian_digest", digest_of_file(o.pedestrian)},
+                                 {"pedestrian_digest", digest_of(inputs, "pedestrian")},
                                  {"format", o.format},
                                  {"renderer", o.renderer},
                                  {"every", o.sequence.every},
@@ -78,7 +80,7 @@ std::string settings_of(const RenderArguments& o, const Scene& scene, const Traj
   if (is_ros_format(o.format)) json["chunk_compression"] = o.ros.compression;
   if (const auto spec = o.detector.spec()) {
     json["detector"] = source_of(*spec).filename().string();
-    json["detector_digest"] = hex(inputs.back().digest);
+    json["detector_digest"] = digest_of(inputs, "detector");
     json["detector_settings"] = format_detector_settings(spec->settings, false);
   }
   if (o.png_compression) json["png_compression"] = *o.png_compression;
@@ -192,9 +194,13 @@ void run(RenderArguments options) {
   }
   const MountedCamera* const mounted = find_camera(options, robot);
   SensorConfig sensors = exact_sensors();
-  if (!options.level.empty()) sensors = load_sensor_config(options.level);
+  if (!options.level.empty())
+    sensors =
+        noted(inputs, "level", options.level, [&] { return load_sensor_config(options.level); });
   std::optional<Pedestrian> pedestrian;
-  if (!options.pedestrian.empty()) pedestrian = load_pedestrian(options.pedestrian);
+  if (!options.pedestrian.empty())
+    pedestrian = noted(inputs, "pedestrian", options.pedestrian,
+                       [&] { return load_pedestrian(options.pedestrian); });
 
   Progress progress("render");
   progress.say(fmt::format("scene {}", options.scene));

@@ -275,10 +275,15 @@ void make(const SceneArguments& options) {
                to_string(reference), plan.room, plan.floor_area_m2, counted(plan.objects, "object"),
                plan.objects_per_10_m2(), 100 * plan.free_share);
   if (options.out.empty()) return;
-  if (fs::path(options.out).extension() == ".yaml")
-    write_atomically(options.out, with_detail(plan));
-  else
-    write_mesh(build_house(with_detail(plan), plan.name), options.out, options.scan_look);
+  if (fs::path(options.out).extension() == ".yaml") {
+    const std::string text = with_detail(plan);
+    if (is_file(options.out) && read_file(options.out) != text)  // plans are edited by hand
+      throw InputError(
+          fmt::format("{}: is there already, and differs: name another file", options.out));
+    write_atomically(options.out, text);
+    return;
+  }
+  write_mesh(build_house(with_detail(plan), plan.name), options.out, options.scan_look);
 }
 
 /// Lists every environment of every category, and how many are in each group of the paper's Figure

@@ -18,9 +18,11 @@
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/spec_json.hpp"
+#include "bench/systems/program_folder.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/files.hpp"
+#include "slam/io/temporary_folder.hpp"
 
 namespace mh {
 namespace {
@@ -85,6 +87,7 @@ class Pool {
     std::vector<std::string> keys;
     for (const Running& r : running_) keys.push_back(r.what.job.key);
     running_.clear();  // waits for them
+    remove_abandoned_folders(ProgramFolder::place());
     for (const std::string& key : keys) store_.release(key);
   }
 

@@ -23,6 +23,26 @@ InputError made_otherwise(const fs::path& file, const std::string& run, const fs
                   file.string(), run, than_in.string()));
 }
 
+/// Checks that runs which both files have finished have the same results; their times may differ.
+void require_same_results(SQLite::Database& db, const fs::path& other, const fs::path& file) {
+  std::string differs = "a.result <> b.result";
+  for (const std::string_view table : kTablesOfRuns)
+    if (table != "times")
+      differs += fmt::format(
+          " OR EXISTS (SELECT * FROM main.{0} WHERE key = a.key EXCEPT SELECT * FROM other.{0} "
+          "WHERE key = a.key)",
+          table);
+  SQLite::Statement found(
+      db, fmt::format("SELECT a.name FROM runs a JOIN other.runs b ON a.key = b.key WHERE "
+                      "a.status = 'done' AND b.status = 'done' AND ({}) ORDER BY a.name LIMIT 1",
+                      differs));
+  if (found.executeStep())
+    throw InputError(fmt::format(
+        "{}: run '{}' has another result than in {}, though all that decides it is the same: its "
+        "program does not repeat, or one of them is wrong; leave one out",
+        other.string(), found.getColumn(0).getString(), file.string()));
+}
+
 }  // namespace
 
 void Store::check_mergeable(const std::vector<fs::path>& files) {
@@ -78,6 +98,7 @@ std::size_t Store::merge(const fs::path& other) {
                               "WHERE a.key <> b.key LIMIT 1");
       if (clash.executeStep()) throw made_otherwise(other, clash.getColumn(0).getString(), file_);
       clash.reset();
+      require_same_results(*database_, other, file_);
       database_->exec("INSERT OR IGNORE INTO suite SELECT * FROM other.suite");
       // Finished results here stay; a failure is replaced by a result.
       database_->exec(

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -58,6 +59,8 @@ class Scanner {
     end_word();
     return std::move(tokens_);
   }
+  /// The environment variables that were met, with their values; absent: not set.
+  const std::map<std::string, std::optional<std::string>>& variables() const { return variables_; }
 
  private:
   void begin_word() {
@@ -164,11 +167,11 @@ class Scanner {
       add(*value);
   }
 
-  std::optional<std::string> value_of(const std::string& name) const {
-    if (assigned_.contains(name)) return std::nullopt;
+  std::optional<std::string> value_of(const std::string& name) {
+    if (name.empty() || assigned_.contains(name)) return std::nullopt;
     if (name == "PWD") return fs::absolute(folder_).lexically_normal().string();
-    const char* value = std::getenv(name.c_str());
-    return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+    const char* found = std::getenv(name.c_str());
+    return variables_[name] = found == nullptr ? std::nullopt : std::optional<std::string>(found);
   }
 
   const std::string& command_;
@@ -177,6 +180,7 @@ class Scanner {
   bool in_word_ = false;
   std::optional<std::string> text_;
   std::set<std::string> assigned_;
+  std::map<std::string, std::optional<std::string>> variables_;
   std::vector<Token> tokens_;
 };
 
@@ -299,6 +303,12 @@ std::vector<ProgramFile> files_of(const OutsideProgram& program) {
     if (!file.empty()) add(file, program.folder / file);
   for (const std::string& input : program.inputs) add(input, program.folder / input);
   return files;
+}
+
+std::map<std::string, std::optional<std::string>> variables_of(const OutsideProgram& program) {
+  Scanner scanner(program.command, program.folder);
+  scanner.tokens();
+  return scanner.variables();
 }
 
 std::string unseen_program(const OutsideProgram& program) {

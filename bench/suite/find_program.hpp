@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,10 @@ struct ProgramFile {
 /// > or tee writes to, relative words after a `cd`, and words with a placeholder, a pattern, a
 /// substitution or a variable that the command sets.
 std::vector<ProgramFile> files_of(const OutsideProgram& program);
+
+/// The environment variables that the command names, with their values; absent: not set. Those that
+/// it sets itself, and PWD, are left out.
+std::map<std::string, std::optional<std::string>> variables_of(const OutsideProgram& program);
 
 /// Returns a warning if a command that names no inputs starts a program that is not among its
 /// files: cached results would survive a change of the program. Empty otherwise.

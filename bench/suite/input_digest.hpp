@@ -27,8 +27,8 @@ void fields(F& file_digest, Visit& v) {
 
 /// Something that the results depend on.
 struct InputDigest {
-  /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" for a file that an
-  /// outside program's command names.
+  /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" for a file or a
+  /// variable that an outside program's command names.
   std::string name;
   /// Of everything that was read for it, and of what was looked for but not found
   /// (bench/suite/inputs.hpp).

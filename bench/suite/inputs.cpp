@@ -67,6 +67,10 @@ std::vector<InputDigest> inputs_of_program(const SystemSpec& system) {
     const std::uint64_t content = digest_file(file.file);
     inputs.push_back({fmt::format("{}: {}", system.name, file.word), content, {}});
   }
+  for (const auto& [name, value] : variables_of(*system.outside))
+    inputs.push_back({fmt::format("{}: ${}", system.name, name),
+                      value ? digest_bytes(value->data(), value->size()) : 0,
+                      {}});
   return inputs;
 }
 

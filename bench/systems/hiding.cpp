@@ -50,9 +50,12 @@ int enter_namespace(const std::string& user_map, const std::string& group_map) {
   return mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) == 0 ? 0 : errno;
 }
 
-/// Gives this process a shared memory with nothing in it but one folder.
+/// Gives this process a shared memory with nothing in it but one folder, or nothing at all.
 /// @returns 0, or errno of the call that failed: then nothing has changed
-int make_memory_private(const char* own) {
+int make_memory_private(const std::string& of_own) {
+  if (of_own.empty())
+    return mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, "mode=1777") == 0 ? 0 : errno;
+  const char* const own = of_own.c_str();
   // Opened here, since a folder of the outer namespace cannot be mounted in this one.
   const int folder = open(own, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (folder < 0) return errno;
@@ -105,6 +108,11 @@ Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> neede
       group_map_(fmt::format("{0} {0} 1\n", getegid())) {
   std::error_code error;
   if (lies_in(own, kMemory)) own_ = own.string();
+  memory_ =
+      fs::is_directory(kMemory, error) && std::ranges::none_of(needed, [&](const fs::path& one) {
+        const fs::path real = fs::weakly_canonical(one, error);
+        return lies_in(real, kMemory) && !lies_in(real, own);
+      });
   std::set<fs::path> all;  // a folder before its contents
   for (const fs::path& path : hidden)
     if (const fs::path real = fs::canonical(path, error); !error) all.insert(real);
@@ -134,7 +142,7 @@ Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> neede
 }
 
 void Hiding::apply() const {
-  if (folders_.empty() && files_.empty() && left_.empty() && own_.empty()) return;
+  if (folders_.empty() && files_.empty() && left_.empty() && !memory_) return;
   int error = why_not(user_map_, group_map_);
   if (error == 0) error = enter_namespace(user_map_, group_map_);
   if (error != 0) {
@@ -144,13 +152,13 @@ void Hiding::apply() const {
     return;
   }
   std::string_view uncovered;
-  if (!own_.empty() && make_memory_private(own_.c_str()) != 0) uncovered = kMemory;
+  if (memory_ && make_memory_private(own_) != 0) uncovered = kMemory;
   for (const std::string& folder : folders_)
     if (cover(folder.c_str()) != 0) uncovered = folder;
   for (const std::string& file : files_)
     if (mount("/dev/null", file.c_str(), nullptr, MS_BIND, nullptr) != 0) uncovered = file;
   say({"modelhouse: hidden from the program by a mount namespace: ", done_,
-       own_.empty()    ? ""
+       !memory_        ? ""
        : done_.empty() ? "what others have in shared memory"
                        : ", what others have in shared memory",
        left_, uncovered.empty() ? "" : "; could not be hidden: ", uncovered, "\n"});

@@ -28,7 +28,8 @@ class Hiding {
 
  private:
   std::vector<std::string> folders_, files_;
-  std::string own_;  ///< in shared memory; empty: elsewhere
+  bool memory_ = false;  ///< what others have in shared memory is hidden
+  std::string own_;      ///< in shared memory; empty: elsewhere
   std::string user_map_, group_map_;
   std::string done_, left_;  ///< for the line
 };

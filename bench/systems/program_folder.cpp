@@ -86,13 +86,6 @@ void move_folder(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Where a program's folder is made: not below one that holds results, and with room for images.
-fs::path place_of_folders() {
-  const fs::path large = "/var/tmp";  // less often in memory than /tmp
-  const bool usable = std::getenv("TMPDIR") == nullptr && access(large.c_str(), W_OK | X_OK) == 0;
-  return usable ? large : fs::temp_directory_path();
-}
-
 /// Whether a name is inside the folder, not through a link.
 bool leads_within(const fs::path& folder, const fs::path& name) {
   if (name.empty() || name.is_absolute()) return false;
@@ -142,9 +135,15 @@ fs::path made(const fs::path& folder) {
 
 }  // namespace
 
+fs::path ProgramFolder::place() {
+  const fs::path large = "/var/tmp";  // less often in memory than /tmp
+  const bool usable = std::getenv("TMPDIR") == nullptr && access(large.c_str(), W_OK | X_OK) == 0;
+  return usable ? large : fs::temp_directory_path();
+}
+
 ProgramFolder::ProgramFolder(const fs::path& run)
     : run_(fs::absolute(run).lexically_normal()),
-      work_(place_of_folders()),
+      work_(place()),
       path_(made(work_.path() / "run")),
       identity_(identity_of(path_)) {}
 

@@ -28,6 +28,9 @@ class ProgramFolder {
   ProgramFolder(const ProgramFolder&) = delete;
   ProgramFolder& operator=(const ProgramFolder&) = delete;
 
+  /// Where such folders are made: not below one that holds results, and with room for images.
+  static std::filesystem::path place();
+
   const std::filesystem::path& path() const { return path_; }
   void move_to_run();
 

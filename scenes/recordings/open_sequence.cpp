@@ -160,7 +160,7 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
   ReadScope::report(
       {FileObservation::Kind::kRead, path / fmt::format("{} recording", reader.name), all});
   for (FileObservation& file : held.observations) {
-    if (file.kind != FileObservation::Kind::kRead) continue;
+    if (!is_of_a_state(file)) continue;
     file.kind = FileObservation::Kind::kHeld;
     ReadScope::report(file);
   }

@@ -55,7 +55,10 @@ FileObservation::Kind look_at(const fs::path& path) {
         return FileObservation::Kind::kOther;
     }
   }();
-  ReadScope::report({kind, path});
+  if (kind == FileObservation::Kind::kAbsent)
+    report_absent(path);
+  else
+    ReadScope::report({kind, path});
   return kind;
 }
 

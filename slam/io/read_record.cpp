@@ -104,9 +104,14 @@ ReadRecord decode_read_record(std::string_view bytes) {
   return record;
 }
 
+bool is_of_a_state(const FileObservation& o) {
+  using enum FileObservation::Kind;
+  return o.kind == kRead || o.kind == kHeld || o.kind == kAbsent;
+}
+
 void require_unchanged(const ReadRecord& record) {
   for (const FileObservation& o : record.observations)
-    if (o.state.inode != 0 && state_of(o.path) != o.state)
+    if (is_of_a_state(o) && state_of(o.path) != o.state)
       throw InputChanged(fmt::format("{}: was changed while it was in use: start the command again",
                                      o.path.string()));
 }
@@ -141,7 +146,8 @@ void report_read(const std::filesystem::path& file, std::string_view content,
 }
 
 void report_absent(const std::filesystem::path& file) {
-  if (ReadScope::is_open()) ReadScope::report({FileObservation::Kind::kAbsent, file});
+  if (ReadScope::is_open())
+    ReadScope::report({FileObservation::Kind::kAbsent, file, 0, state_of(file)});
 }
 
 }  // namespace mh

@@ -29,12 +29,12 @@ struct FileObservation {
     kOther,   ///< looked for and found, but neither file nor folder: a pipe, a device
     kListed,  ///< the names in a folder that match a pattern; path = folder / pattern
     kRead,    ///< the whole content of a file
-    kHeld,    ///< a file that is read from again, on demand; no part of digests
+    kHeld,    ///< a file that is read from again, on demand, or missed again; no part of digests
   };
   Kind kind = Kind::kAbsent;
   std::filesystem::path path;  ///< as it was spelled by the caller
   std::uint64_t digest = 0;    ///< xxh3-64 of the names (kListed) or the content (kRead), else 0
-  FileState state = {};        ///< before the file was read (kRead, kHeld)
+  FileState state = {};        ///< before the file was read (kRead, kHeld), or as it is (kAbsent)
   friend bool operator==(const FileObservation& a, const FileObservation& b) {
     return a.kind == b.kind && a.path == b.path && a.digest == b.digest;
   }
@@ -53,13 +53,16 @@ struct ReadRecord {
 /// folder elsewhere has the same digest.
 std::uint64_t digest(const ReadRecord& record);
 
+/// Whether the observation tells the state of its file: read, held or absent.
+bool is_of_a_state(const FileObservation& observation);
+
 /// A file was changed while a command worked with it: results would mix its old and new states.
 struct InputChanged : InputError {
   using InputError::InputError;
 };
 
-/// Checks that no file was changed since it was read, so that what was made from several files, or
-/// from one read several times, is consistent.
+/// Checks that no file was changed since it was read, or appeared since it was missed, so that what
+/// was made from several files, or from one read several times, is consistent.
 /// @throws InputChanged naming the first that was.
 void require_unchanged(const ReadRecord& record);
 

@@ -29,18 +29,19 @@ namespace fs = std::filesystem;
 // use.
 constexpr std::string_view kMarkerText = "modelhouse works here; it removes this folder\n";
 
-OwnedFolder make_hidden(const fs::path& parent) {
+/// What the names of this host's folders begin with: another host's lock may not be visible here.
+std::string name_of_host() {
   char host[256] = {};
   gethostname(host, sizeof host - 1);
-  // Another host's lock may not be visible here.
-  const std::string ours = fmt::format(".work.{}.", host);
+  return fmt::format(".work.{}.", host);
+}
+
+OwnedFolder make_hidden(const fs::path& parent) {
   make_output_folder(parent);
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(parent, error))
-    if (entry.path().filename().string().starts_with(ours))
-      if (auto left = OwnedFolder::take(entry.path())) left->remove();
+  remove_abandoned_folders(parent);
   for (int count = 0;; ++count)
-    if (auto made = OwnedFolder::make(parent / fmt::format("{}{}.{}", ours, getpid(), count)))
+    if (auto made =
+            OwnedFolder::make(parent / fmt::format("{}{}.{}", name_of_host(), getpid(), count)))
       return *std::move(made);
 }
 
@@ -125,6 +126,14 @@ void FolderHold::join(const std::function<void()>& begin, const std::function<bo
       fmt::format("{}: another command is at work in this folder, with something else than this "
                   "one: wait for it, or name another folder",
                   folder_.string()));
+}
+
+void remove_abandoned_folders(const fs::path& parent) {
+  const std::string ours = name_of_host();
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(parent, error))
+    if (entry.path().filename().string().starts_with(ours))
+      if (auto left = OwnedFolder::take(entry.path())) left->remove();
 }
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent) : folder_(make_hidden(parent)) {}

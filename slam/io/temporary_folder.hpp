@@ -59,6 +59,9 @@ class FolderHold {
   int descriptor_ = -1;
 };
 
+/// Removes the temporary folders that killed processes of this host left in a parent folder.
+void remove_abandoned_folders(const std::filesystem::path& parent);
+
 /// A hidden folder that is removed at the end of its scope; one left behind by a killed process is
 /// removed with the next one made in the same parent by the same host.
 class TemporaryFolder {

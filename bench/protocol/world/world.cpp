@@ -128,9 +128,12 @@ namespace {
 
 std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& world) {
   if (spec.vocabulary.empty()) return nullptr;
-  return std::make_shared<const Vocabulary>(noted(world.inputs, "vocabulary", spec.vocabulary, [&] {
-    return Vocabulary::load(spec.vocabulary);
-  }));
+  const ReadScope scope;
+  const auto vocabulary =
+      std::make_shared<const Vocabulary>(noted(world.inputs, "vocabulary", spec.vocabulary,
+                                               [&] { return Vocabulary::load(spec.vocabulary); }));
+  world.held.append(scope.record());  // it is a view of its file
+  return vocabulary;
 }
 
 /// Opens the recordings of a run, with the inputs of everything except an outside program.
@@ -287,7 +290,7 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   if (spec.environment.is_recorded()) {
     const ReadScope scope;
     world = open_recordings(spec);
-    world.held = scope.record();
+    world.held = scope.record();  // the vocabulary's among it
   } else {
     world = build(spec, threads, cache, say, baked);
   }

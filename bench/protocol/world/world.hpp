@@ -58,7 +58,8 @@ struct World {
   bool cut = false;                     ///< the sequences were cut after RunSpec::max_frames
   std::vector<std::string> notes = {};  ///< PlaceFacts::notes
   std::vector<InputDigest> inputs;      ///< what was read to build it, by name
-  ReadRecord held = {};  ///< files that are read again later: a recording's, an outside program's
+  /// Files that are read again later: a recording's, the vocabulary's, an outside program's.
+  ReadRecord held = {};
 };
 
 /// The sequence that a set's queries are frames of; null if there is none.

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run/one/hidden.hpp"
 
+#include <unistd.h>
+
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "bench/suite/cache.hpp"
+#include "bench/systems/program_folder.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/io/files.hpp"
 
@@ -37,6 +42,29 @@ void add_written(const fs::path& folder, int depth, std::vector<fs::path>& writt
       add_written(it->path(), depth - 1, written);
 }
 
+/// Adds the folders that other runs have made for their programs.
+void add_of_other_runs(std::vector<fs::path>& hidden) {
+  std::error_code error;
+  const std::string own = fmt::format(".{}.", getpid());
+  for (const auto& entry : fs::directory_iterator(ProgramFolder::place(), error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(".work.") && name.find(own) == std::string::npos)
+      hidden.push_back(entry.path());
+  }
+}
+
+/// Adds what was read through links that lead out of a recording's folder.
+void add_linked(const ReadRecord& read, const fs::path& recording, std::vector<fs::path>& hidden) {
+  std::error_code error;
+  const fs::path inside = fs::canonical(recording, error);
+  for (const FileObservation& file : read.observations) {
+    const fs::path real = fs::canonical(file.path, error);
+    if (!error && file.path.lexically_relative(recording).native().substr(0, 2) != ".." &&
+        real.lexically_relative(inside).native().substr(0, 2) == "..")
+      hidden.push_back(real);
+  }
+}
+
 /// Where a run's inputs are stored, by their names; generated inputs are not stored.
 std::map<std::string, fs::path> sources_of(const RunSpec& spec) {
   const Environment& e = spec.environment;
@@ -64,6 +92,7 @@ OutsideProgram program_of(const RunSpec& spec, const World& world,
   OutsideProgram program = *spec.system.outside;
   program.hidden = of_bench;
   program.hidden.push_back(Cache::default_folder());
+  add_of_other_runs(program.hidden);
   std::set<fs::path> around = ancestors_of(program.folder);
   for (const fs::path& folder : of_bench) around.merge(ancestors_of(folder));
   for (const fs::path& folder : around) add_written(folder, 2, program.hidden);
@@ -73,6 +102,7 @@ OutsideProgram program_of(const RunSpec& spec, const World& world,
     if (source == sources.end() || source->second.empty() || is_generated(source->second)) continue;
     if (is_folder(source->second)) {
       program.hidden.push_back(source->second);
+      add_linked(world.held, source->second, program.hidden);
       continue;
     }
     const fs::path folder = fs::absolute(source->second).parent_path();

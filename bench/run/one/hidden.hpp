@@ -10,8 +10,8 @@
 namespace mh {
 
 /// The outside program of a run, with what is hidden from it: the bench's own folders, others that
-/// modelhouse wrote near these or near the suite, and the recording or scene that its frames are
-/// made from, with its tours.
+/// modelhouse wrote near these or near the suite, those of other runs' programs, and the recording
+/// or scene that its frames are made from, with its tours and what links in it lead to.
 /// @param of_bench  output folder and cache
 OutsideProgram program_of(const RunSpec& spec, const World& world,
                           const std::vector<std::filesystem::path>& of_bench);

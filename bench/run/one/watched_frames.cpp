@@ -13,14 +13,14 @@ namespace mh {
 
 FilesAsKeyed::FilesAsKeyed(const ReadRecord& held) {
   for (const FileObservation& o : held.observations)
-    if (o.state.inode != 0) of_.emplace(o.path, o);
+    if (is_of_a_state(o)) of_.emplace(o.path, o);
 }
 
 void FilesAsKeyed::require(const ReadRecord& now) const {
   for (const FileObservation& o : now.observations) {
     const auto was = of_.find(o.path);
-    using enum FileObservation::Kind;
-    if (was == of_.end() || (o.kind != kRead && o.kind != kHeld && o.kind != kAbsent)) continue;
+    if (was == of_.end() || !is_of_a_state(o)) continue;
+    constexpr auto kRead = FileObservation::Kind::kRead;
     const bool same = o.kind == kRead && was->second.kind == kRead ? o.digest == was->second.digest
                                                                    : o.state == was->second.state;
     if (!same)

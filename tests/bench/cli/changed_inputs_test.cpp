@@ -178,6 +178,56 @@ TEST_F(ChangedInputs, AProgramThatIsReplacedDuringItsRunHasNoResult) {
   }
 }
 
+// It is a view of its file: written in place, its words change under the run.
+TEST_F(ChangedInputs, AVocabularyThatIsWrittenDuringItsRunLeavesNoResult) {
+  const std::string shipped = MH_SOURCE_DIR "/assets/vocabulary.mhvoc";
+  fs::copy_file(shipped, path("words.mhvoc"));
+  test::SmallSuite{.systems = "[plain]", .labels = "[exact]"}.write(path("suite.yaml"));
+  std::string suite = content(path("suite.yaml"));
+  suite.replace(suite.find(shipped), shipped.size(), path("words.mhvoc"));
+  write_atomically(path("suite.yaml"), suite);
+  const std::string said =
+      disturbed("bench " + path("suite.yaml") + " --out " + path("out"), "frame 1", [&] {
+        std::fstream file(path("words.mhvoc"), std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(100000).write("another word", 12);
+      });
+  expect_refused(said, "words.mhvoc: was changed while it was in use");
+  EXPECT_EQ(stored("out/results.sqlite", "runs"), 0);
+}
+
+TEST_F(ChangedInputs, AVariableThatACommandNamesIsAnInput) {
+  test::SmallSuite{
+      .systems = "[{name: p, protocol: trajectory, command: 'echo $GAIN >&2; exit 3'}]",
+      .labels = "[exact]"}
+      .write(path("suite.yaml"));
+  const auto to_do = [&](const char* gain) {
+    setenv("GAIN", gain, 1);
+    run("bench " + path("suite.yaml") + " --frames 45 --out " + path("out"));
+    return content(path("out/results.sqlite")).size() > 0 ? stored("out/results.sqlite", "runs")
+                                                          : 0;
+  };
+  EXPECT_EQ(to_do("1"), 1);
+  EXPECT_EQ(to_do("1"), 1);
+  EXPECT_EQ(to_do("2"), 2) << "a key of its own";
+  unsetenv("GAIN");
+}
+
+TEST_F(ChangedInputs, ARenderingIsOfTheLevelThatWasRead) {
+  const std::string level = MH_SOURCE_DIR "/sim/sensors/levels/";
+  fs::copy_file(level + "ideal.yaml", path("level.yaml"));
+  const std::string command = "render " + kRoom + " --motion handheld:0:10 --level " +
+                              path("level.yaml") + " --out " + path("out");
+  const auto exchange = [&](const char* with) {
+    fs::copy_file(level + with, path("level.yaml"), fs::copy_options::overwrite_existing);
+  };
+  disturbed(command, "scene ", [&] { exchange("pepper.yaml"); });
+  ASSERT_EQ(code_, 0);
+  EXPECT_EQ(run(command), 2) << said_;
+  EXPECT_NE(said_.find("already contains a sequence with other settings"), std::string::npos);
+  exchange("ideal.yaml");
+  EXPECT_EQ(run(command), 0) << said_;
+}
+
 TEST_F(ChangedInputs, ASceneThatChangesBetweenEpisodesHasNone) {
   const std::string root = MH_SOURCE_DIR;
   fs::copy_file(kRoom, path("other.yaml"));

@@ -598,6 +598,23 @@ TEST_F(Recorded, AFileThatChangesUnderARunLeavesNeitherAMapNorAResult) {
   EXPECT_TRUE(made) << "a map of these images was kept";
 }
 
+TEST_F(Recorded, AnImageThatAppearsUnderARunLeavesNeitherAMapNorAResult) {
+  record(room(), "tum", 0, 40);
+  auto files = std::vector<fs::path>(fs::directory_iterator(room() / "rgb"), {});
+  std::ranges::sort(files);
+  const std::string late = read_file(files.at(30));
+  fs::remove(files.at(30));
+  const World place = world();
+  RunTools watched = tools();
+  RunTools plain = tools();
+  watched.status = [&](std::string_view status) {
+    if (status.starts_with("frame 20 ")) write(files.at(30), late);
+  };
+  EXPECT_THROW(run_one(spec_, place, watched), InputChanged);
+  fs::remove(files.at(30));
+  EXPECT_NO_THROW(run_one(spec_, place, plain));
+}
+
 // Others' images are put in their place for a moment, in which some frames are read.
 TEST_F(Recorded, AFolderThatIsAnotherForAMomentLeavesNoResult) {
   record(room(), "tum", 0, 40);

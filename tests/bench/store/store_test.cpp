@@ -638,7 +638,8 @@ TEST_F(StoreFile, MergingNeverPutsAFailureInThePlaceOfAResultNorOneFailureInThat
   EXPECT_EQ(merged(store_with(false, 0, "first"), store_with(false, 0, "second")),
             std::tuple(0u, RunStatus::kFailed, "first", 0u));
   Store here = store_with(true, 1, "");
-  EXPECT_EQ(here.merge(store_with(true, 2, "").file()), 0u);
+  EXPECT_EQ(here.merge(store_with(true, 1, "").file()), 0u) << "only its times may differ";
+  EXPECT_THROW(here.merge(store_with(true, 2, "").file()), InputError);
   EXPECT_EQ(here.load("kx", some_run("x").spec).truth[0].world_from_camera.translation().x(), 1)
       << "what is here stays";
 }
