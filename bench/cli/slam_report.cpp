@@ -65,6 +65,7 @@ Json summary_json(const SlamReport& report) {
                {"keyframes", report.state.map.keyframe_count()},
                {"landmarks", report.state.map.landmark_count()},
                {"loops", report.log.loops},
+               {"disparity_sigma_px", report.state.camera.disparity_sigma_px},
                {"trajectory_digest", hex(digest(run.estimate))},
                {"map_digest", hex(report.state.map.digest())}};
   if (report.evaluation) {
@@ -137,6 +138,8 @@ void print_slam_report(const SlamReport& report) {
   }
   fmt::print("{}, {}, {} closed\n", counted(report.state.map.keyframe_count(), "keyframe"),
              counted(report.state.map.landmark_count(), "landmark"), counted(log.loops, "loop"));
+  if (const Camera& camera = report.state.camera; !camera.disparity_sigma_is_given)
+    fmt::print("depth trusted to {:.2f} px of disparity, as learned\n", camera.disparity_sigma_px);
   if (report.evaluation) {
     const Evaluation& e = *report.evaluation;
     if (e.ape_translation_m.count > 0)

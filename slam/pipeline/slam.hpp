@@ -27,7 +27,7 @@ struct TrackedFrame {
 
 /// The complete state of one SLAM run. It has value semantics: copying it copies the map.
 struct SlamState {
-  Camera camera;        // with what is learned of its depth
+  Camera camera;         // with what is learned of its depth
   int depth_frames = 0;  ///< that have taught it
   SlamConfig config;
   std::shared_ptr<const Vocabulary> vocabulary;  // shared: large, immutable

@@ -11,12 +11,12 @@
 namespace mh {
 namespace {
 
-constexpr int kPoints = 200;
+constexpr int kSeenPoints = 200;
 
 /// Adds white noise to pixels (of their sigma) and to disparities.
-std::vector<PoseObservation> noisy(const SE3& pose, const Camera& camera, double disparity_sigma_px,
-                                   RandomStream stream) {
-  auto seen = testing::observe(kPoints, pose, camera, stream.fork(0));
+std::vector<PoseObservation> with_white_errors(const SE3& pose, const Camera& camera,
+                                               double disparity_sigma_px, RandomStream stream) {
+  auto seen = testing::observe(kSeenPoints, pose, camera, stream.fork(0));
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const RandomStream s = stream.fork(1).fork(i);
     seen[i].u_px += seen[i].sigma_px * s.normal(0);
@@ -55,8 +55,8 @@ double learned_from(int frames, double disparity_sigma_px, double bent_px = 0) {
   Camera camera;
   const SE3 pose = testing::true_pose();
   for (int i = 0; i < frames; ++i) {
-    auto seen = noisy(pose, camera, disparity_sigma_px,
-                      RandomStream(7).fork(static_cast<std::uint64_t>(i)));
+    auto seen = with_white_errors(pose, camera, disparity_sigma_px,
+                                  RandomStream(7).fork(static_cast<std::uint64_t>(i)));
     bend(seen, camera, bent_px);
     camera.disparity_sigma_px = learned_disparity_sigma_px(camera.disparity_sigma_px, i,
                                                            disagreement_of(seen, pose, camera));
@@ -72,7 +72,8 @@ TEST(DepthDisagreement, IsChiSquareOverItsQuartileIfErrorsAreWhite) {
   double sum = 0;
   constexpr int kFrames = 1000;
   for (int i = 0; i < kFrames; ++i) {
-    const auto seen = noisy(pose, camera, 0.5, RandomStream(3).fork(static_cast<std::uint64_t>(i)));
+    const auto seen =
+        with_white_errors(pose, camera, 0.5, RandomStream(3).fork(static_cast<std::uint64_t>(i)));
     const double d = disagreement_of(seen, pose, camera);
     below += d < 1;
     sum += d;
