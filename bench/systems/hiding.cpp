@@ -142,7 +142,7 @@ Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> neede
 }
 
 void Hiding::apply() const {
-  if (folders_.empty() && files_.empty() && left_.empty() && !memory_) return;
+  if (folders_.empty() && files_.empty() && left_.empty() && own_.empty()) return;
   int error = why_not(user_map_, group_map_);
   if (error == 0) error = enter_namespace(user_map_, group_map_);
   if (error != 0) {

@@ -58,6 +58,10 @@ std::string settings_text(const Camera& camera) {
       d.is_rational()
           ? fmt::format("Camera.k4: {:#}\nCamera.k5: {:#}\nCamera.k6: {:#}\n", d.k4, d.k5, d.k6)
           : "";
+  const std::string sigma =
+      camera.disparity_sigma_is_given
+          ? fmt::format("Modelhouse.disparity_sigma_px: {:#}\n", camera.disparity_sigma_px)
+          : "";
   return fmt::format(
       "%YAML:1.0\n"
       "# Written by Modelhouse. Pixel centers at integers; depth is metric and registered.\n"
@@ -72,10 +76,10 @@ std::string settings_text(const Camera& camera) {
       "Viewer.KeyFrameSize: 0.05\nViewer.KeyFrameLineWidth: 1\nViewer.GraphLineWidth: 0.9\n"
       "Viewer.PointSize: 2\nViewer.CameraSize: 0.08\nViewer.CameraLineWidth: 3\n"
       "Viewer.ViewpointX: 0\nViewer.ViewpointY: -0.7\nViewer.ViewpointZ: -1.8\n"
-      "Viewer.ViewpointF: 500\n",
+      "Viewer.ViewpointF: 500\n{}",
       camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, d.k1, d.k2, d.p1, d.p2, d.k3,
       rational, camera.width_px, camera.height_px, camera.rate_hz, camera.baseline_m * camera.fx_px,
-      kDepthPerMeter);
+      kDepthPerMeter, sigma);
 }
 
 const char* distortion_model(const Distortion& distortion) {

@@ -14,9 +14,11 @@ namespace {
 
 constexpr int kLeastDepths = 30;
 constexpr double kQuartile = 0.25;
-constexpr double kQuartileChi2 = 3.4546;  // of chi-square with 6 degrees of freedom
-/// Directions that the depths determine less than this share of the best are left out.
-constexpr double kLeastInformation = 1e-6;
+/// Depths see three motions: along the axis and about the two others.
+constexpr int kDirections = 3;
+constexpr double kQuartileChi2 = 1.2125;  // of chi-square with that many degrees of freedom
+/// Directions that the depths determine less than this share of the best are undetermined.
+constexpr double kLeastInformation = 1e-9;
 
 }  // namespace
 
@@ -50,8 +52,8 @@ std::optional<double> depth_disagreement(std::span<const PoseObservation> observ
     chi2 += along[i] * along[i] / axes.eigenvalues()[i];
     ++directions;
   }
-  if (directions == 0) return std::nullopt;
-  return chi2 * 6 / directions / kQuartileChi2;
+  if (directions != kDirections) return std::nullopt;
+  return chi2 / kQuartileChi2;
 }
 
 double learned_disparity_sigma_px(double disparity_sigma_px, int frames, double disagreement) {

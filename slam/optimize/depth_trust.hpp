@@ -11,11 +11,12 @@ namespace mh {
 
 /// By how much a frame's depths disagree with its image: the square of the disagreement over its
 /// lower quartile if each depth errs by itself with Camera::disparity_sigma_px. Nothing if fewer
-/// than 30 observations have depth.
+/// than 30 observations have depth, or if they do not determine the three motions that change it.
 ///
 /// At a pose that minimizes the sum of both, the gradient g of the depths is balanced by that of
 /// the image. With H = H_image + H_depth, g has the covariance C = H_depth - H_depth H^-1 H_depth,
-/// and g^T C^-1 g is chi-square with 6 degrees of freedom. Depth that errs alike over a part of the
+/// and g^T C^-1 g is chi-square with 3 degrees of freedom: depths change with the motion along the
+/// axis and about the two others. Depth that errs alike over a part of the
 /// image (bent, of a wrong scale, read beside its pixel) pulls harder than that, however little
 /// each reading errs, and it is the pull that a pose suffers from. This is the test of the
 /// information matrix (White, Econometrica 50(1), 1982) with frames as clusters.

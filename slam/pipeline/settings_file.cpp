@@ -34,6 +34,14 @@ void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera
                        .k6 = yaml.number_or(prefix + "k6", 0, -kMost, kMost)};
 }
 
+/// A number, or "learned".
+void read_disparity_sigma(YamlReader& section, const std::string& key, Camera& c) {
+  const auto sigma = section.find(key);
+  if (!sigma || sigma->as_string() == "learned") return;
+  c.disparity_sigma_px = sigma->as_double(1e-6, kMost);
+  c.disparity_sigma_is_given = true;
+}
+
 void read_camera(YamlReader& yaml, Settings& settings) {
   auto section = yaml.find("camera");
   if (!section) return;
@@ -48,10 +56,7 @@ void read_camera(YamlReader& yaml, Settings& settings) {
   c.cy_px = camera.number("cy_px", 0, c.height_px - 1);
   c.rate_hz = camera.number_or("rate_hz", c.rate_hz, 1e-3, kMost);
   c.baseline_m = camera.number_or("baseline_m", c.baseline_m, 1e-6, kMost);
-  if (auto sigma = camera.find("disparity_sigma_px"); sigma && sigma->as_string() != "learned") {
-    c.disparity_sigma_px = sigma->as_double(1e-6, kMost);
-    c.disparity_sigma_is_given = true;
-  }
+  read_disparity_sigma(camera, "disparity_sigma_px", c);
   auto distortion = camera.find("distortion");
   if (distortion) {
     read_distortion(*distortion, "", c);
@@ -99,6 +104,9 @@ const OrbSlamKeys kOrbSlam2{"ORB-SLAM2", "Camera.", "Camera.bf", "ThDepth", "Dep
 const OrbSlamKeys kOrbSlam3{"ORB-SLAM3", "Camera1.", "Stereo.b", "Stereo.ThDepth",
                             "RGBD.DepthMapFactor"};
 
+/// What we add to them, in the files that we write.
+constexpr const char* kOurSigma = "Modelhouse.disparity_sigma_px";
+
 /// Other keys of such files: the camera type, sizes that its images are shrunk to (ours are not),
 /// and keys for other sensors.
 constexpr auto kOrbSlamOthers = std::to_array<std::string_view>(
@@ -138,7 +146,7 @@ std::string unread_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   std::vector<std::string> unread;
   for (const auto& [key, node] : yaml.entries())
     if (!is_one_of(known, key) && key != "Camera.type" && key != "Camera.bFishEye" &&
-        !key.starts_with("Viewer.") && !key.starts_with("File."))
+        !key.starts_with("Viewer.") && !key.starts_with("File.") && key != kOurSigma)
       unread.push_back(key);
   return fmt::format("{}", fmt::join(unread, ", "));
 }
@@ -168,6 +176,7 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   // ORB-SLAM2 states the baseline in m times fx.
   const double unit = &keys == &kOrbSlam2 ? c.fx_px : 1;
   c.baseline_m = yaml.number_or(keys.baseline, c.baseline_m * unit, 1e-6, kMost) / unit;
+  read_disparity_sigma(yaml, kOurSigma, c);
   settings.has_depth_per_meter = yaml.find(keys.depth_scale).has_value();
   settings.depth_per_meter = yaml.number_or(keys.depth_scale, settings.depth_per_meter, 0, 1e9);
   if (settings.depth_per_meter == 0) settings.depth_per_meter = 1;

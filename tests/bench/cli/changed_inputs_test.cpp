@@ -197,7 +197,8 @@ TEST_F(ChangedInputs, AVocabularyThatIsWrittenDuringItsRunLeavesNoResult) {
 
 TEST_F(ChangedInputs, AVariableThatACommandNamesIsAnInput) {
   test::SmallSuite{
-      .systems = "[{name: p, protocol: trajectory, command: 'echo $GAIN >&2; exit 3'}]",
+      .systems =
+          "[{name: p, protocol: trajectory, command: 'echo $GAIN >&2; exit 3; : {trajectory}'}]",
       .labels = "[exact]"}
       .write(path("suite.yaml"));
   const auto to_do = [&](const char* gain) {
@@ -215,7 +216,7 @@ TEST_F(ChangedInputs, AVariableThatACommandNamesIsAnInput) {
 TEST_F(ChangedInputs, ARenderingIsOfTheLevelThatWasRead) {
   const std::string level = MH_SOURCE_DIR "/sim/sensors/levels/";
   fs::copy_file(level + "ideal.yaml", path("level.yaml"));
-  const std::string command = "render " + kRoom + " --motion handheld:0:10 --level " +
+  const std::string command = "render " + kRoom + " --motion handheld:0:30 --level " +
                               path("level.yaml") + " --out " + path("out");
   const auto exchange = [&](const char* with) {
     fs::copy_file(level + with, path("level.yaml"), fs::copy_options::overwrite_existing);

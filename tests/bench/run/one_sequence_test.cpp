@@ -414,6 +414,8 @@ TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
 // map.
 TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
   const RandomStream stream(0);
+  state.camera.disparity_sigma_px = 0.1;
+  state.camera.disparity_sigma_is_given = true;
   for (std::size_t i = 0; i < 100; ++i)
     step(state, sequence->frame(i, RandomStream()), stream.fork(i));
   SlamState further = state;

@@ -473,8 +473,9 @@ TEST_F(OutsideFaults, AProgramDoesNotSeeWhatIsHiddenFromIt) {
   const std::string log = look({secret, other, folder_ / "nowhere", secret / "run"});
   if (log.starts_with("modelhouse: nothing is hidden from the program: no mount namespace here: "))
     GTEST_SKIP() << log;
-  EXPECT_TRUE(log.starts_with("modelhouse: hidden from the program by a mount namespace: " +
-                              secret.string() + ", 1 file of the recording or scene\n"))
+  EXPECT_TRUE(log.starts_with(
+      "modelhouse: hidden from the program by a mount namespace: " + secret.string() +
+      ", 1 file of the recording or scene, what others have in shared memory\n"))
       << log;
   EXPECT_EQ(log.find("the truth"), std::string::npos) << log;
   EXPECT_HOLDS(log, "own:its own");

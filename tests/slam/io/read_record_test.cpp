@@ -172,7 +172,11 @@ TEST(RequireUnchanged, SeesEveryChangeAlsoOneThatWasTakenBack) {
     // As another process passes it on.
     record = decode_read_record(encode(record));
     EXPECT_NO_THROW(require_unchanged(record));
-    write_atomically(folder / "labels", "was not read");
+    write_atomically(folder / "other", "was not looked for");
+    EXPECT_NO_THROW(require_unchanged(record));
+    write_atomically(folder / "labels", "was not there");
+    EXPECT_THROW(require_unchanged(record), InputChanged);
+    fs::remove(folder / "labels");
     EXPECT_NO_THROW(require_unchanged(record));
     for (const char* name : {"scene", "table"}) {
       const ReadRecord before = recorded([&] { map_file(folder / name); });

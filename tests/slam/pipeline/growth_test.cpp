@@ -25,7 +25,10 @@ const FeatureWorld kWorld(2500, 400);
 SlamState new_run() {
   SlamConfig config;
   config.features.count = 400;
-  return make_slam(FeatureWorld::camera(), config, world_vocabulary());
+  Camera camera = FeatureWorld::camera();
+  camera.disparity_sigma_px = 0.1;  // more keyframes than it would learn: some are culled
+  camera.disparity_sigma_is_given = true;
+  return make_slam(camera, config, world_vocabulary());
 }
 
 StepReport feed(SlamState& state, const SE3& world_from_camera, std::uint64_t frame) {

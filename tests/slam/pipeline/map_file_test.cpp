@@ -407,8 +407,8 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
   EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
-  other[8] = 9;
-  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 9, but this program reads 8");
+  other[8] = 10;
+  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 10, but this program reads 9");
   EXPECT_NE(refusal_of(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));
