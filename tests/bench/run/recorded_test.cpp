@@ -16,6 +16,7 @@
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/summary.hpp"
+#include "bench/run/one/hidden.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/run/plan_runs.hpp"
 #include "bench/run/run_suite.hpp"
@@ -25,6 +26,7 @@
 #include "bench/suite/runs.hpp"
 #include "bench/suite/spec_json.hpp"
 #include "bench/systems/builtin.hpp"
+#include "bench/systems/program_folder.hpp"
 #include "scenes/recordings/frame_files.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "scenes/recordings/scannet_folder.hpp"
@@ -596,6 +598,27 @@ TEST_F(Recorded, AFileThatChangesUnderARunLeavesNeitherAMapNorAResult) {
     return std::string();
   });
   EXPECT_TRUE(made) << "a map of these images was kept";
+}
+
+TEST_F(Recorded, WhatItsLinksLeadToIsHiddenFromAProgramAndSoAreOtherRunsFolders) {
+  record(folder_ / "kept", "tum", 0, 4);
+  fs::remove(folder_ / "kept" / ".modelhouse");  // nothing says that it is a recording
+  fs::create_directories(room());
+  for (const auto& entry : fs::directory_iterator(folder_ / "kept"))
+    fs::create_symlink(entry.path(), room() / entry.path().filename());
+  spec_.system = {.kind = SystemKind::kPlain,
+                  .name = "p",
+                  .outside = OutsideProgram{.name = "p", .command = "true", .folder = folder_}};
+  const fs::path other = ProgramFolder::place() / fmt::format(".work.mh_test.{}x.0", getpid());
+  fs::create_directories(other);
+  const std::vector<fs::path> hidden = program_of(spec_, world(), {}).hidden;
+  fs::remove(other);
+  const auto holds = [&](const fs::path& path) {
+    return std::ranges::find(hidden, path) != hidden.end();
+  };
+  EXPECT_TRUE(holds(fs::canonical(folder_ / "kept" / "groundtruth.txt")));
+  EXPECT_TRUE(holds(room()));
+  EXPECT_TRUE(holds(other));
 }
 
 TEST_F(Recorded, AnImageThatAppearsUnderARunLeavesNeitherAMapNorAResult) {
