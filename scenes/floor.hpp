@@ -35,7 +35,7 @@ void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& 
 /// it is at least a quarter as large as the larger. A plane is fitted that may slope by up to 2
 /// degrees; steeper fits are replaced by a level plane. `rough_m` is five times the spread, 0.03 to
 /// 0.12 m.
-/// @param floor_z_m  height stated by the user: a level plane there
+/// @param floor_z_m  the user's floor height: a level plane is used
 /// @param warnings   where to append anything doubtful; may be null
 /// @returns nullopt if there is nothing to stand on.
 std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> floor_z_m = {},

@@ -27,7 +27,7 @@ struct AuditSummary {
   double correct = 0;        ///< in the run, after all attempts
   double first_correct = 0;  ///< at the first attempt, as are all fields below
   std::optional<double> first_correct_of_solvable;
-  // First causes of those that were not correct.
+  // Failed first attempts, by first cause.
   double wrong_candidates = 0, nothing_in_sight = 0, few_matches = 0, false_answer = 0,
          few_inliers = 0;
   // Ceilings.

@@ -177,7 +177,7 @@ std::filesystem::path read_source(SourceKind kind, const YamlReader& node, const
                                   int index = 0);
 
 /// The file that a suite names; if it does not exist, the shipped file of that name.
-/// @throws InputError at this place if it must exist and does not.
+/// @throws InputError at `node` if a required file is missing.
 std::filesystem::path named_file(const YamlReader& node, const SuitePaths& paths,
                                  std::optional<Shipped> what = {});
 

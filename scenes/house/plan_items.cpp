@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kTouch = 0.01;  // furniture may touch: builders' tolerances, not an overlap
-constexpr double kFlat = 0.03;   // rugs: things stand and people walk on them
+constexpr double kFlat = 0.03;   // rugs: people and furniture can be on them
 
 std::size_t piece_by_name(const YamlReader& yaml, const HousePlan& house, std::size_t room) {
   const std::string name = house.rooms[room].name + "/" + yaml.as_string();

@@ -13,8 +13,8 @@ namespace mh {
 enum class FirstImage { kColor, kDepth };
 
 /// Reads a list of pairs, "stamp file stamp file" per line, with the color images' stamps; the
-/// files are next to it. The order is that of the first pair that can be read: depth is gray, of 16
-/// bits.
+/// files are next to it. The first readable pair sets the order: its 16-bit gray image is the
+/// depth.
 /// @param otherwise  the order if no pair can be read
 /// @throws InputError naming list and line, also for lines that hold a pose.
 std::vector<RecordedFrame> read_associations(const std::filesystem::path& list,

@@ -76,7 +76,7 @@ struct PlanarWorld::Impl {
                             static_cast<float>(0.5 * model.height_m))),
         robot_shape(static_cast<btScalar>(model.footprint_radius_m)) {
     world.setGravity(btVector3(0, 0, 0));
-    // An overlap is resolved without a push that would outlast it.
+    // Overlaps are resolved without leaving the body any velocity.
     world.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
     dispatcher.registerCollisionCreateFunc(SPHERE_SHAPE_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE,
                                            &outline_contacts);

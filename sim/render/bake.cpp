@@ -167,8 +167,8 @@ class Baker {
     });
   }
 
-  /// Reports progress over all rounds: lamps and suns, each bounce, and the back sides of what
-  /// stayed dark.
+  /// Reports progress over all rounds: lamps and suns, each bounce, and the backs of dark
+  /// surfaces.
   void note_job(int jobs_of_round) const {
     if (!watch_) return;
     const std::lock_guard lock(watching_);

@@ -40,7 +40,7 @@ struct Figure {
 /// "0.0123", "87.50%"; "-" if unknown.
 std::string shown(const Figure& figure);
 
-/// Returns the figures of a score, in the order of its list.
+/// Returns a score's figures in the order of its fields().
 template <class Score>
 std::vector<Figure> figures_of(const Score& score) {
   std::vector<Figure> figures;

@@ -50,7 +50,7 @@ struct EstimateAlignment {
   /// line) is aligned by its first pose.
   SE3 truth_from_estimate;
   /// Aligns the first tracked pose with the truth, nothing else: a robot knows where its dock is.
-  /// The frame of the occupancy map and of the images.
+  /// The occupancy map and images use this frame.
   SE3 dock_from_estimate;
 };
 EstimateAlignment align_estimate(const Trajectory& estimate, const Trajectory& truth);

@@ -71,7 +71,7 @@ double student_t(double degrees_of_freedom) {
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
 
-/// The curve begins as a mean over all environments; over fewer than these it is not comparable.
+/// The curve starts as a mean over all environments; below this many, it is not comparable.
 constexpr std::size_t kFewestCounted = 5;
 
 struct Curve {

@@ -32,7 +32,7 @@ struct EpisodeTools {
   std::function<void()> done = [] {};  ///< called after each
 };
 
-/// Kidnaps the robot of a run at each start of each variant, in this order. Its map is made of the
+/// Kidnaps a run's robot at each start of each variant, variant by variant. Its map is made of the
 /// mapped frames at the estimated poses.
 /// @param estimate             of the mapping
 /// @param truth_from_estimate  for the scores alone
