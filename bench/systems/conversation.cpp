@@ -173,6 +173,8 @@ class Conversation {
     if (is_nested_too_deep(line))
       fail(fmt::format("nested its reply more than {} levels deep: '{}'", kDeepestJson,
                        shortened(line)));
+    if (line.find('\0') != std::string::npos)  // a parser takes it for the end
+      fail(fmt::format("wrote what is not a line of JSON: '{}'", shortened(line)));
     Json reply;
     std::vector<std::set<std::string>> keys;  // of the open objects, innermost last
     std::string doubled;

@@ -648,6 +648,8 @@ TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
   EXPECT_HOLDS(
       hello_error("echo Welcome to my SLAM; sleep 60"),
       "wrote what is not a line of JSON: 'Welcome to my SLAM', replying to hello (request 1)");
+  EXPECT_HOLDS(hello_error(R"(printf '{"id":1,"protocol":1}\0\n'; sleep 60)"),
+               "wrote what is not a line of JSON");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "named no \"protocol\": expected 1");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
                "speaks protocol 2, not 1");
