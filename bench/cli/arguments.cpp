@@ -83,13 +83,26 @@ void resolve(std::string& word, Shipped what) {
 
 namespace {
 
-/// What files begin with that are written here, by their ending.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeads = {
-    {{".png", "\x89PNG"},
-     {".pdf", "%PDF"},
-     {".glb", "glTF"},
-     {".ply", "ply"},
-     {".mhvoc", "MHVOCAB"}}};
+/// What a file begins with that has an ending; empty for endings that tell nothing.
+std::string_view head_of(const fs::path& file) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeads = {
+      {{".png", "\x89PNG"},
+       {".pdf", "%PDF"},
+       {".glb", "glTF"},
+       {".ply", "ply"},
+       {".mhvoc", "MHVOCAB"}}};
+  for (const auto& [ending, head] : kHeads)
+    if (file.extension() == ending) return head;
+  return {};
+}
+
+/// Whether a file that is there begins so, or is empty.
+bool begins_with(const fs::path& file, std::string_view head) {
+  std::string start(head.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return in.gcount() == 0 || start == head;
+}
 
 void require_other_file(const fs::path& file, const fs::path& input) {
   std::error_code error;
@@ -111,15 +124,9 @@ void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
                                  fs::is_directory(file, error) ? "a folder" : "no file"));
   for (const fs::path& input : read) require_other_file(file, input);
-  for (const auto& [ending, head] : kHeads)
-    if (file.extension() == ending) {
-      std::string start(head.size(), '\0');
-      std::ifstream in(file, std::ios::binary);
-      in.read(start.data(), static_cast<std::streamsize>(start.size()));
-      if (in.gcount() > 0 && start != head)
-        throw InputError(fmt::format("{}: is there already, and no file of this kind: name another",
-                                     file.string()));
-    }
+  if (!begins_with(file, head_of(file)))
+    throw InputError(
+        fmt::format("{}: is there already, and no file of this kind: name another", file.string()));
   make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 

@@ -17,6 +17,9 @@ struct ExportArguments {
 };
 
 void run(const ExportArguments& options) {
+  const std::vector<std::filesystem::path> read = {
+      options.store, std::filesystem::path(options.store) / "results.sqlite"};
+  if (!options.out.empty()) require_writable(options.out, read);
   const Store store = Store::open_to_read(options.store);
   load_results(store, store.planned_suite());  // so that a damaged row is not exported
   const std::string text = options.format == "csv"    ? export_csv(store)
@@ -28,7 +31,7 @@ void run(const ExportArguments& options) {
   }
   constexpr std::size_t kHead = 16;  // of the format's first line
   require_replaceable(options.out, std::string_view(text).substr(0, kHead), "`modelhouse export`",
-                      {options.store, std::filesystem::path(options.store) / "results.sqlite"});
+                      read);
   write_atomically(options.out, text);
 }
 

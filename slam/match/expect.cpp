@@ -56,6 +56,21 @@ PoseObservation observe(const Eigen::Vector3d& point_in_world, const Keypoint& k
           .sigma_px = octave_scale(features, keypoint.octave)};
 }
 
+std::vector<PoseObservation> observe(const Features& features,
+                                     const std::vector<LandmarkId>& landmarks, const Map& map,
+                                     const Camera& camera, const FeatureConfig& config,
+                                     std::vector<std::uint32_t>& feature_of) {
+  std::vector<PoseObservation> observations;
+  feature_of.clear();
+  for (std::uint32_t i = 0; i < landmarks.size(); ++i)
+    if (landmarks[i].valid()) {
+      observations.push_back(
+          observe(map.at(landmarks[i]).position_in_world, features.keypoints[i], camera, config));
+      feature_of.push_back(i);
+    }
+  return observations;
+}
+
 Eigen::Vector3d unproject(const Keypoint& keypoint, const Camera& camera,
                           const SE3& world_from_camera) {
   return world_from_camera * camera.unproject(keypoint.u_px, keypoint.v_px, keypoint.depth_m);

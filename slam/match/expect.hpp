@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "slam/core/camera.hpp"
 #include "slam/core/se3.hpp"
@@ -24,6 +26,14 @@ std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& came
 /// A landmark seen at a feature, as input of the optimizers.
 PoseObservation observe(const Eigen::Vector3d& point_in_world, const Keypoint& keypoint,
                         const Camera& camera, const FeatureConfig& features);
+
+/// All landmarks that an image's features are matched to, as input of the optimizers.
+/// @param landmarks   one per feature, or none
+/// @param feature_of  becomes the feature of each observation
+std::vector<PoseObservation> observe(const Features& features,
+                                     const std::vector<LandmarkId>& landmarks, const Map& map,
+                                     const Camera& camera, const FeatureConfig& config,
+                                     std::vector<std::uint32_t>& feature_of);
 
 /// Point (m, world) behind a keypoint with depth.
 Eigen::Vector3d unproject(const Keypoint& keypoint, const Camera& camera,

@@ -30,8 +30,7 @@ std::optional<double> depth_disagreement(std::span<const PoseObservation> observ
   for (const PoseObservation& o : observations) {
     const Eigen::Vector3d p = camera_from_world * o.point_in_world;
     if (p.z() < kMinimumDepth_m) continue;
-    const ImageMeasurement measured{
-        .u_px = o.u_px, .v_px = o.v_px, .disparity_px = o.disparity_px, .sigma_px = o.sigma_px};
+    const ImageMeasurement measured = o.measurement();
     const Eigen::Matrix<double, 3, 6> jacobian =
         reprojection_jacobian(p, measured, camera) * perturbation_jacobian(p);
     of_all.noalias() += jacobian.transpose() * jacobian;

@@ -24,10 +24,6 @@ struct NormalEquations {
   double cost = 0;
 };
 
-ImageMeasurement measurement(const PoseObservation& o) {
-  return {.u_px = o.u_px, .v_px = o.v_px, .disparity_px = o.disparity_px, .sigma_px = o.sigma_px};
-}
-
 double gate(const ImageMeasurement& measured, const PoseConfig& config) {
   return measured.has_depth() ? config.chi2_stereo : config.chi2_mono;
 }
@@ -42,7 +38,7 @@ NormalEquations linearize(std::span<const PoseObservation> observations,
   NormalEquations sum;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (!inlier[i]) continue;
-    const ImageMeasurement measured = measurement(observations[i]);
+    const ImageMeasurement measured = observations[i].measurement();
     const double limit = gate(measured, config);
     const Eigen::Vector3d p = camera_from_world * observations[i].point_in_world;
     if (p.z() < kMinimumDepth_m) {
@@ -117,7 +113,7 @@ int find_inliers(std::span<const PoseObservation> observations, const SE3& camer
   inlier.resize(observations.size());
   int count = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    const ImageMeasurement measured = measurement(observations[i]);
+    const ImageMeasurement measured = observations[i].measurement();
     const Eigen::Vector3d p = camera_from_world * observations[i].point_in_world;
     const bool fits =
         p.z() >= kMinimumDepth_m &&

@@ -12,6 +12,7 @@
 #include "slam/core/camera.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/se3.hpp"
+#include "slam/optimize/reprojection.hpp"
 
 namespace mh {
 
@@ -22,6 +23,10 @@ struct PoseObservation {
   double u_px = 0, v_px = 0;
   double disparity_px = -1;  ///< negative = no depth
   double sigma_px = 1;       ///< standard deviation of the keypoint (scale^octave)
+
+  ImageMeasurement measurement() const {
+    return {.u_px = u_px, .v_px = v_px, .disparity_px = disparity_px, .sigma_px = sigma_px};
+  }
 };
 
 struct PoseEstimate {

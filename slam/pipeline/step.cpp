@@ -46,14 +46,12 @@ bool is_keyframe(const Map& map, Stamp stamp_ns) {
 /// more: others are where a single depth says.
 void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Features& features) {
   if (state.camera.disparity_sigma_is_given) return;
-  std::vector<PoseObservation> seen;
-  for (std::size_t i = 0; i < tracked.landmarks.size(); ++i) {
-    if (!tracked.landmarks[i].valid()) continue;
-    const Landmark& landmark = state.map.at(tracked.landmarks[i]);
-    if (landmark.observations.size() >= 3)
-      seen.push_back(observe(landmark.position_in_world, features.keypoints[i], state.camera,
-                             state.config.features));
-  }
+  std::vector<LandmarkId> certain = tracked.landmarks;
+  for (LandmarkId& id : certain)
+    if (id.valid() && state.map.at(id).observations.size() < 3) id = LandmarkId{};
+  std::vector<std::uint32_t> feature_of;
+  const std::vector<PoseObservation> seen =
+      observe(features, certain, state.map, state.camera, state.config.features, feature_of);
   const auto disagreement = depth_disagreement(seen, tracked.camera_from_world, state.camera);
   if (!disagreement) return;
   state.camera.disparity_sigma_px = learned_disparity_sigma_px(state.camera.disparity_sigma_px,

@@ -156,15 +156,8 @@ class CandidateTrial {
 
   std::vector<PoseObservation> observe_all(const std::vector<LandmarkId>& landmarks,
                                            std::vector<std::uint32_t>& feature_of) const {
-    std::vector<PoseObservation> observations;
-    for (std::uint32_t i = 0; i < landmarks.size(); ++i)
-      if (landmarks[i].valid()) {
-        observations.push_back(observe(context_.map.at(landmarks[i]).position_in_world,
-                                       query_.features.keypoints[i], context_.camera,
-                                       context_.config.features));
-        feature_of.push_back(i);
-      }
-    return observations;
+    return observe(query_.features, landmarks, context_.map, context_.camera,
+                   context_.config.features, feature_of);
   }
 
   void adopt(const PoseEstimate& estimate, const std::vector<std::uint32_t>& feature_of,

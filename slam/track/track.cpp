@@ -81,17 +81,11 @@ std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,
                                             const SlamContext& context) {
-  const Map& map = context.map;
   const Camera& camera = context.camera;
   const FeatureConfig& features = context.config.features;
-  std::vector<PoseObservation> observations;
   std::vector<std::uint32_t> feature_of;
-  for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
-    if (!landmarks[i].valid()) continue;
-    observations.push_back(observe(map.at(landmarks[i]).position_in_world,
-                                   query.features.keypoints[i], camera, features));
-    feature_of.push_back(i);
-  }
+  std::vector<PoseObservation> observations =
+      observe(query.features, landmarks, context.map, camera, features, feature_of);
   for (const PassingPoint& point : passing) {
     if (landmarks[point.feature].valid()) continue;
     observations.push_back(observe(point.position_in_world, query.features.keypoints[point.feature],
