@@ -235,7 +235,7 @@ class Experience:
 
 def bound(limit_s):
     """A mistake may ask for all memory, write without end, or compute without end."""
-    for what, most in ((resource.RLIMIT_DATA, MOST_MEMORY), (resource.RLIMIT_FSIZE, MOST_MEMORY // 8),
+    for what, most in ((resource.RLIMIT_DATA, MOST_MEMORY), (resource.RLIMIT_FSIZE, MOST_MEMORY),
                        (resource.RLIMIT_CORE, 0), (resource.RLIMIT_CPU, int(limit_s) + 1)):
         resource.setrlimit(what, (most, most))
 
