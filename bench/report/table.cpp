@@ -2,6 +2,7 @@
 #include "bench/report/table.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +13,8 @@
 #include "bench/report/recordings_text.hpp"
 #include "bench/report/scenes_table.hpp"
 #include "bench/report/sweep_table.hpp"
+#include "bench/report/text_table.hpp"
+#include "bench/results/published.hpp"
 #include "bench/suite/parameters.hpp"
 #include "bench/suite/runs.hpp"
 #include "slam/config/slam.hpp"
@@ -85,10 +88,26 @@ std::vector<std::string> base_lines(const Suite& suite) {
 
 namespace {
 
+/// Nothing unless the suite states published figures.
+std::string published_text(const AteBesidePublished& table) {
+  if (table.environments.empty()) return "";
+  std::vector<std::string> headings{"ATE m"};
+  headings.insert(headings.end(), table.systems.begin(), table.systems.end());
+  TextTable text(std::move(headings));
+  for (std::size_t e = 0; e < table.environments.size(); ++e) {
+    std::vector<std::string> cells{table.environments[e]};
+    for (const std::optional<double>& ate_m : table.ate_m[e])
+      cells.push_back(ate_m ? fmt::format("{:.4f}", *ate_m) : "-");
+    text.add(std::move(cells));
+  }
+  return "\nbeside published ATE, of which all frames were mapped\n" + text.text();
+}
+
 std::string main_table(const Suite& suite, std::span<const Row> rows, Extent extent) {
-  return parameter_points(suite).size() > 1 ? sweep_table(suite, rows)
-         : suite.environments.size() > 1    ? scenes_table(suite, rows, extent)
-                                            : place_table(suite, rows, extent);
+  return (parameter_points(suite).size() > 1 ? sweep_table(suite, rows)
+          : suite.environments.size() > 1    ? scenes_table(suite, rows, extent)
+                                             : place_table(suite, rows, extent)) +
+         published_text(ate_beside_published(suite, rows));
 }
 
 }  // namespace

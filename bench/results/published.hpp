@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "bench/results/summary.hpp"
 #include "bench/suite/suite.hpp"
 
 namespace mh {
@@ -39,5 +43,16 @@ inline std::span<const PublishedCandidates> published_candidates(const Suite& su
   if (suite.published != Published::kTable2) return {};
   return kCandidates;
 }
+
+/// ATE (RMSE, m) of systems on one environment each: those of the suite, and those that were
+/// published.
+struct AteBesidePublished {
+  std::vector<std::string> systems;  ///< the suite's, then the others
+  std::vector<std::string> environments;
+  std::vector<std::vector<std::optional<double>>> ate_m;  ///< by environment, then by system
+};
+/// Empty unless the suite states published ones (Suite::published_ate_m). Of the suite's systems:
+/// the median over trials, at the first level, kind of labels and parameter point.
+AteBesidePublished ate_beside_published(const Suite& suite, std::span<const Row> rows);
 
 }  // namespace mh

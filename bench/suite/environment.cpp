@@ -8,6 +8,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bench/suite/entry_names.hpp"
 #include "bench/suite/names.hpp"
@@ -202,6 +203,8 @@ Environments read_environments(const YamlReader& list, const SuitePaths& paths,
           node);
     }
   }
+  if (all.list.empty())
+    list.fail(fmt::format("nothing is left to run: {}", fmt::join(all.notes, "; ")));
   return all;
 }
 

@@ -162,7 +162,8 @@ struct Environments {
 /// - `sequences: PATTERN` instead of `sequence` creates an environment for each recording that
 ///   matches (* and ? in the last part of the path), sorted by name, named after its folder or
 ///   file. Its category is the given one, or what the mapping `categories` assigns to the scene
-///   type in the data set; recordings of other types are left out and counted in a note.
+///   type in the data set; recordings of other types are left out and counted in a note. With
+///   `may_be_absent: true` a pattern without a match is left out with a note.
 /// - `files: PATTERN` must be the only field: each file that matches (* and ? in the last part of
 ///   the path), sorted by name, contains one such mapping, with paths relative to its own folder.
 /// Names default to the category; `robot` to the given default.

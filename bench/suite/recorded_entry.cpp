@@ -89,9 +89,10 @@ Environment recorded_environment(std::string name, std::string category, std::st
   return e;
 }
 
-/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording.
+/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording,
+/// and a pattern that matches nothing, which is an error unless it may.
 std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const SuitePaths& paths,
-                                            std::vector<std::string>& notes) {
+                                            bool may_be_absent, std::vector<std::string>& notes) {
   const auto [layout, path] = split_sequence(pattern.as_string());
   const fs::path full = (paths.folder / path).lexically_normal();
   std::vector<FoundRecording> found;
@@ -115,7 +116,9 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
     else if (is_folder(place))  // a file is a list or a table next to the recordings
       others.push_back(name);
   }
-  if (found.empty()) pattern.fail(fmt::format("no recording matches '{}'", full.string()));
+  if (found.empty() && !may_be_absent)
+    pattern.fail(fmt::format("no recording matches '{}'", full.string()));
+  if (found.empty()) notes.push_back(fmt::format("{}: left out: not there", full.string()));
   if (!others.empty())
     notes.push_back(fmt::format("{}: left out: {} without a recording, the first: {}",
                                 pattern.as_string(), counted(others.size(), "folder"), others[0]));
@@ -176,6 +179,7 @@ std::vector<Environment> read_pattern_entry(YamlReader node, const SuitePaths& p
     check_folder_name(*category, category->as_string());
     fixed = category->as_string();
   }
+  const bool may_be_absent = node.boolean("may_be_absent", false);
   const BesideFrames beside(node, paths);
   if (beside.queries) beside.queries->fail("is of one recording, not of a pattern");
   node.finish();
@@ -183,7 +187,8 @@ std::vector<Environment> read_pattern_entry(YamlReader node, const SuitePaths& p
   const std::string text = pattern.as_string();
   const auto known = paths.found.find(text);
   const std::vector<FoundRecording> found =
-      known != paths.found.end() ? known->second : find_recordings(pattern, paths, all.notes);
+      known != paths.found.end() ? known->second
+                                 : find_recordings(pattern, paths, may_be_absent, all.notes);
   std::map<std::string, std::size_t> left_out;
   std::vector<Environment> made;
   for (const FoundRecording& recording : found) {
@@ -196,7 +201,7 @@ std::vector<Environment> read_pattern_entry(YamlReader node, const SuitePaths& p
     made.push_back(recorded_environment(place.stem().string(), fixed ? *fixed : category->second,
                                         recording.sequence, beside, paths, 0));
   }
-  if (made.empty())
+  if (made.empty() && !found.empty())
     pattern.fail(fmt::format("none of {} has a scene type that `categories` names: {}",
                              counted(found.size(), "recording"), counted_types(left_out)));
   if (made.size() < found.size())

@@ -173,6 +173,17 @@ YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
   return YamlReader::parse(text, "--vary");
 }
 
+/// Reads "ORB-SLAM2: {rgbd_dataset_freiburg1_desk: 0.016}" and so on. The names may be of
+/// environments that are not at hand.
+std::map<std::string, std::map<std::string, double>> read_published_ate(YamlReader& yaml) {
+  std::map<std::string, std::map<std::string, double>> published;
+  if (auto systems = yaml.find("published_ate_m"))
+    for (auto& [system, of_it] : systems->entries())
+      for (const auto& [environment, ate_m] : of_it.entries())
+        published[system][environment] = ate_m.as_double(0);
+  return published;
+}
+
 }  // namespace
 
 bool fits(const Environment& environment, const Labels& labels) {
@@ -232,6 +243,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
   suite.labels = read_labels(yaml.at("labels"), suite, paths.folder);
   MappingReader reader(yaml);
   fields(suite, reader);
+  suite.published_ate_m = read_published_ate(yaml);
   if (const auto study = yaml.find("study")) check_design(*study, paths);
   bool states_readout = false;
   if (auto slam = yaml.find("slam")) {

@@ -71,6 +71,8 @@ struct Suite {
   Measure measure = Measure::kCorrect;
   std::optional<double> non_inferiority_margin;
   std::optional<Published> published;
+  /// ATE (RMSE, m) that others published: system, then environment. Shown beside the measured ones.
+  std::map<std::string, std::map<std::string, double>> published_ate_m;
   GateConfig gate;                         ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;   ///< truncates the tours: for a quick look
   bool scene_replaced = false;             ///< SuiteOverrides::scene was set

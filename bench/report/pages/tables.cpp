@@ -9,6 +9,7 @@
 #include "bench/report/pages/page_table.hpp"
 #include "bench/report/table2.hpp"
 #include "bench/report/wording.hpp"
+#include "bench/results/published.hpp"
 
 namespace mh {
 namespace {
@@ -133,6 +134,21 @@ Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
     begin_published(table, row.system);
     for (const Table2Column& column : kTable2Columns)
       if (column.published != nullptr) table.number(page_column(column), row.*column.published);
+  }
+  return table.json();
+}
+
+Json published_ate_json(const Suite& suite, std::span<const Row> rows) {
+  const AteBesidePublished ate = ate_beside_published(suite, rows);
+  if (ate.environments.empty()) return nullptr;
+  PageTable table("Beside published ATE",
+                  "RMSE, m. The published figures are of all frames; here the test frames are held "
+                  "out.");
+  for (std::size_t e = 0; e < ate.environments.size(); ++e) {
+    table.begin_row();
+    table.text({"environment", "environment"}, ate.environments[e]);
+    for (std::size_t s = 0; s < ate.systems.size(); ++s)
+      table.number({ate.systems[s], ate.systems[s], "m", 4}, ate.ate_m[e][s]);
   }
   return table.json();
 }

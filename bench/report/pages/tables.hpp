@@ -36,6 +36,9 @@ nlohmann::ordered_json table1_json(const Suite& suite, std::span<const CategoryR
 /// the suite names them (`published`).
 nlohmann::ordered_json table2_json(const Suite& suite, std::span<const CategoryRow> rows);
 
+/// ATE by environment beside what was published; null unless the suite states it.
+nlohmann::ordered_json published_ate_json(const Suite& suite, std::span<const Row> rows);
+
 /// A row per variant and system: success of the kidnapped robots; null without episodes.
 nlohmann::ordered_json episodes_page_json(const Suite& suite, std::span<const RunResult> runs);
 

@@ -152,6 +152,7 @@ void write_source(Pieces& pieces, const std::string& place, const PagesSource& s
     overview["tiles"] = tiles_json(suite, rows, categories);
     overview["table1"] = table1_json(suite, categories);
     overview["table2"] = table2_json(suite, categories);
+    overview["published_ate"] = published_ate_json(suite, rows);
     if (overview["table2"].is_null())
       overview["table2"] = episodes_page_json(suite, source.results.runs);
     figures = {{"candidates", candidates_json(suite, categories)},

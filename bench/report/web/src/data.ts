@@ -78,6 +78,7 @@ export interface Overview {
   tiles?: WrittenTable;
   table1?: WrittenTable | null;
   table2?: WrittenTable | null;
+  published_ate?: WrittenTable | null;
 }
 /** What the overview shows of a place. */
 export interface PlaceImages {

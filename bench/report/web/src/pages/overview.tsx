@@ -328,6 +328,12 @@ export function OverviewPage(): JSX.Element {
             {(overview) => (
               <>
                 <Top folder={folder} place={place} overview={overview} />
+                {overview.published_ate && (
+                  <>
+                    <h2>{new Table(overview.published_ate).title}</h2>
+                    <DataTable id={`ate-${place}`} table={new Table(overview.published_ate)} />
+                  </>
+                )}
                 {overview.table2 ? (
                   <>
                     <h2>{new Table(overview.table2).title}</h2>
