@@ -135,11 +135,20 @@ class Copy:
             self.run('git', '-C', root, 'worktree', 'add', '--quiet', '--detach', self.tree, self.head)
         self.run('git', '-C', self.tree, 'checkout', '--quiet', '--force', '--detach', self.head)
         # What is changed is compiled alone: an object file then tells its source, and is soon made.
+        # A source's properties hold in one folder of the build, which must be known by then.
         alone = work / 'alone.cmake'
         globs = ' '.join(f'{self.tree / folder}/*.cpp' for folder in (*folders, 'tests'))
         alone.write_text(f'file(GLOB_RECURSE ALONE {globs})\n'
-                         'set_source_files_properties(${ALONE} PROPERTIES '
-                         'SKIP_UNITY_BUILD_INCLUSION ON)\n')
+                         'function(compile_alone folder)\n'
+                         '  set_source_files_properties(${ALONE} DIRECTORY ${folder} PROPERTIES\n'
+                         '    SKIP_UNITY_BUILD_INCLUSION ON)\n'
+                         '  get_property(below DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)\n'
+                         '  foreach(one IN LISTS below)\n'
+                         '    compile_alone(${one})\n'
+                         '  endforeach()\n'
+                         'endfunction()\n'
+                         'cmake_language(DEFER DIRECTORY ${CMAKE_SOURCE_DIR} CALL compile_alone\n'
+                         '               ${CMAKE_SOURCE_DIR})\n')
         if not (self.build / 'build.ninja').exists():
             # Of the library's containers: an index past the end ends the program.
             self.run('cmake', '--preset', 'release', '-DCMAKE_CXX_FLAGS=-D_GLIBCXX_ASSERTIONS',
