@@ -225,6 +225,15 @@ TEST_F(Figures, OfMappingStandUnderTheirHeadings) {
       << table;
 }
 
+TEST_F(Figures, OfOthersStandBesideTheMeasuredAte) {
+  Suite suite = suite_;
+  suite.published_ate_m = {{"ORB-SLAM2", {{"den", 0.016}, {"desk", 0.022}}}, {"Another", {}}};
+  for (const std::string& text : {results_table(suite, runs_), results_screen(suite, runs_)})
+    EXPECT_EQ(below(text, {"ATE m", "semantic", "plain", "Another", "ORB-SLAM2"}, "den"),
+              (Cells{"den", "0.0111", "0.0555", "-", "0.0160"}))
+        << text;
+}
+
 // Of the queries that both answer the semantic system is nearer by 0.05, 0.12, 0.42, 0.81 and 0.9:
 // 2.3 / 5 = 0.46. It answers one of eight more, and three of eight more correctly.
 TEST_F(Figures, OfTheComparisonAreSemanticMinusPlain) {

@@ -234,6 +234,17 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   expect_in(error(entry, "[recorded]", "", set), "no recording matches");
 }
 
+TEST_F(RecordedSuite, APatternThatMayBeAbsentIsLeftOutWithANote) {
+  const std::string absent =
+      "- {sequences: 'tum:nowhere/rgbd_*', category: tum, may_be_absent: true}\n";
+  const Suite suite = load(absent + kDesk);
+  ASSERT_EQ(suite.environments.size(), 1U);
+  EXPECT_EQ(suite.environments[0].name, "desk");
+  ASSERT_EQ(suite.notes.size(), 1U);
+  expect_in(suite.notes[0], "nowhere/rgbd_*: left out: not there");
+  expect_in(error(absent), "nothing is left to run: ");
+}
+
 TEST_F(RecordedSuite, APatternNeedsACategoryOrAMapOfThem) {
   expect_in(error("- {sequences: 'scans/scene*'}"), "category");
   expect_in(error("- {sequences: 'scans/scene*', categories: {Lobby: lobby}}"),
