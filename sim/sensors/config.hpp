@@ -236,6 +236,32 @@ void fields(C& c, Visit& v) {
     "how much later than the stamp the depth is captured");
 }
 
+/// What calibration leaves of a depth camera's systematic errors; they stay the same from frame to
+/// frame: depth_bias.hpp. Neutral by default.
+struct DepthBiasConfig {
+  bool enabled = false;
+  /// TUM's Kinects before their authors corrected them: 1.035 (freiburg1), 1.031 (freiburg2).
+  double scale = 1.0;
+  /// TUM fr1 after that correction: 0.01 (docs/measurements/tracking.md). Teichman, Miller and
+  /// Thrun (CLAMS, RSS 2013) learn such multipliers over image and distance.
+  double bend = 0.0;
+  std::uint64_t camera = 0;
+  double shift_x_px = 0.0, shift_y_px = 0.0;
+  friend bool operator==(const DepthBiasConfig&, const DepthBiasConfig&) = default;
+};
+
+template <MaybeConst<DepthBiasConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, scale, bend, camera, shift_x_px, shift_y_px] = c;
+  v("enabled", enabled, setting::kSwitch, "systematic errors of depth");
+  v("scale", scale, {0.5, 2}, "factor of all depth");
+  v("bend", bend, {0, 0.2},
+    "root mean square of a smooth multiplier minus 1, over the image and with distance");
+  v("camera", camera, setting::kSeed, "which camera: the seed of the multiplier's shape");
+  v("shift_x_px", shift_x_px, {-50, 50}, "a pixel reads the depth so far to its right");
+  v("shift_y_px", shift_y_px, {-50, 50}, "and so far below it");
+}
+
 /// The fraction of frames that are blank (black, without depth and labels) or never arrive.
 struct LostFramesConfig {
   bool enabled = false;
@@ -290,6 +316,7 @@ struct SensorConfig {
   MotionBlurConfig motion_blur;
   RollingShutterConfig rolling_shutter;
   DepthOffsetConfig depth_offset;
+  DepthBiasConfig depth_bias;
   LostFramesConfig blank_frames;    ///< arrive black, without depth and labels
   LostFramesConfig dropped_frames;  ///< never arrive
   HurryConfig hurry;
@@ -304,7 +331,7 @@ template <MaybeConst<SensorConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
   [[maybe_unused]] auto& [depth_noise, color_noise, shot_noise, auto_exposure, vignetting,
                           lens_blur, processing, lens_distortion, motion_blur, rolling_shutter,
-                          depth_offset, blank_frames, dropped_frames, hurry, labels,
+                          depth_offset, depth_bias, blank_frames, dropped_frames, hurry, labels,
                           motion_sampling] = config;
   const auto part = [&](const char* name, auto& c) {
     visit.section(name);
@@ -321,6 +348,7 @@ void for_each_setting(C& config, Visit&& visit) {
   part("motion_blur", motion_blur);
   part("rolling_shutter", rolling_shutter);
   part("depth_offset", depth_offset);
+  part("depth_bias", depth_bias);
   part("blank_frames", blank_frames);
   part("dropped_frames", dropped_frames);
   part("hurry", hurry);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "sim/sensors/depth_bias.hpp"
 #include "sim/sensors/depth_noise.hpp"
 #include "sim/sensors/develop.hpp"
 #include "sim/sensors/sensors.hpp"
@@ -29,6 +30,7 @@ RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorCo
   frame.depth_m = config.depth_noise.enabled
                       ? noisy_depth(truth.depth_m, camera, config.depth_noise, stream.fork(kDepth))
                       : truth.depth_m;
+  if (config.depth_bias.enabled) frame.depth_m = biased_depth(frame.depth_m, config.depth_bias);
   SensorConfig set = config;
   set.shot_noise.gain = analog_gain(config.shot_noise, truth.exposure);
   develop(frame.color, camera, set, gain, stream.fork(kColor));

@@ -423,6 +423,7 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
                ideal.auto_exposure.enabled || ideal.vignetting.enabled ||
                ideal.lens_distortion.enabled || ideal.processing.enabled ||
                ideal.lens_blur.enabled || ideal.depth_offset.enabled ||
+               ideal.depth_bias.enabled ||
                ideal.blank_frames.enabled || ideal.dropped_frames.enabled);
   EXPECT_EQ(ideal, exact_sensors());
 
@@ -546,6 +547,12 @@ std::vector<LevelNumber> level_numbers() {
        [](const C& c) { return c.rolling_shutter.readout_s(); }, 1e-3},
       {"depth_offset", "offset_ms", -1000, 1000, false, "",
        [](const C& c) { return c.depth_offset.offset_s(); }, 1e-3},
+      {"depth_bias", "scale", 0.5, 2, false, "", [](const C& c) { return c.depth_bias.scale; }},
+      {"depth_bias", "bend", 0, 0.2, false, "", [](const C& c) { return c.depth_bias.bend; }},
+      {"depth_bias", "shift_x_px", -50, 50, false, "",
+       [](const C& c) { return c.depth_bias.shift_x_px; }},
+      {"depth_bias", "shift_y_px", -50, 50, false, "",
+       [](const C& c) { return c.depth_bias.shift_y_px; }},
       {"blank_frames", "share", 0, 1, false, "", [](const C& c) { return c.blank_frames.lost(); }},
       {"dropped_frames", "share", 0, 1, false, "",
        [](const C& c) { return c.dropped_frames.lost(); }},
