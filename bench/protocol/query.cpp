@@ -54,6 +54,7 @@ QueryAnswer query(const System& frozen, std::size_t index, const Sequence& seque
     const auto [noise, draws] = presentation(stream, index, attempt, config.attempts);
     if (attempt == 0 || config.attempts == Attempts::kNewNoise)
       frame = usable_frame(sequence, index, noise);
+    frame.odom_from_camera.reset();  // the robot was carried there
     if (attempt == 0)
       answer.blank_frames =
           lose(*session, frame, config.max_blank_frames, stream.fork(RunDraw::kBlank).fork(index));

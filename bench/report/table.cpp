@@ -33,7 +33,10 @@ std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) 
 }
 
 std::string base_text(const Suite& suite) {
-  const std::vector<std::string> lines = base_lines(suite);
+  std::vector<std::string> lines = base_lines(suite);
+  for (const Sense sense : suite.senses)
+    lines.push_back(
+        fmt::format("senses: {}, besides the camera, while mapping", name_of(sense, words(sense))));
   return lines.empty() ? "" : fmt::format("\n{}\n", fmt::join(lines, "\n"));
 }
 

@@ -83,6 +83,7 @@ std::vector<RunSpec> expand(const Suite& suite) {
                               .slam = studies[s].mapping,
                               .points = studies[s].points,
                               .protocol = suite.protocol,
+                              .senses = suite.senses,
                               .graded = suite.graded,
                               .episodes = suite.episodes,
                               .map_labels = suite.episodes ? suite.labels.front() : Labels(),

@@ -26,6 +26,7 @@ struct RunSpec {
   /// Settings of the queries: for each, one pass over all queries on the same map. At least one.
   std::vector<SemanticConfig> points;
   ProtocolConfig protocol;
+  std::vector<Sense> senses = {};
   std::optional<GradedSpec> graded = {};
   std::optional<EpisodesSpec> episodes = {};  ///< asked after the queries
   /// Of the frames of a run with episodes: they make the objects of the robot's map, even if the
@@ -37,7 +38,7 @@ struct RunSpec {
 template <MaybeConst<RunSpec> S, class Visit>
 void fields(S& spec, Visit& v) {
   auto& [name, environment, level, vocabulary, system, labels, trial, seed, slam, points, protocol,
-         graded, episodes, map_labels, max_frames] = spec;
+         senses, graded, episodes, map_labels, max_frames] = spec;
   v("name", name);
   v("environment", environment);
   v("level", level);
@@ -49,6 +50,7 @@ void fields(S& spec, Visit& v) {
   v("slam", slam);
   v("points", points);
   v("protocol", protocol);
+  v("senses", senses);
   v("graded", graded);
   v("episodes", episodes);
   v("map_labels", map_labels);

@@ -11,6 +11,7 @@
 #include "bench/suite/names.hpp"
 #include "bench/suite/runs.hpp"
 #include "scenes/scannet/files.hpp"
+#include "sim/world/travel.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/io/error.hpp"
@@ -173,6 +174,23 @@ YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
   return YamlReader::parse(text, "--vary");
 }
 
+std::vector<Sense> read_senses(YamlReader& yaml, const std::vector<Environment>& environments) {
+  std::vector<Sense> senses;
+  const auto list = yaml.find("senses");
+  if (!list) return senses;
+  for (const YamlReader& node : items_of(*list)) {
+    const Sense sense = one_of(node, words(Sense{}));
+    if (std::ranges::count(senses, sense) > 0)
+      node.fail(fmt::format("'{}' is listed twice", node.as_string()));
+    senses.push_back(sense);
+    for (const Environment& e : environments)
+      if (e.is_recorded() || !is_driven(e.mapping_tour))
+        node.fail(fmt::format("is of a robot that drives, and '{}' is {}", e.name,
+                              e.is_recorded() ? "a recording" : "mapped by hand"));
+  }
+  return senses;
+}
+
 /// Reads "ORB-SLAM2: {rgbd_dataset_freiburg1_desk: 0.016}" and so on. The names may be of
 /// environments that are not at hand.
 std::map<std::string, std::map<std::string, double>> read_published_ate(YamlReader& yaml) {
@@ -283,6 +301,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
                         file.string(), e.name));
         break;
       }
+  suite.senses = read_senses(yaml, suite.environments);
   if (const auto graded = yaml.find("graded")) {
     suite.graded = read_graded(*graded);
     for (const Environment& e : suite.environments)

@@ -30,6 +30,12 @@ constexpr Names<Published, 1> words(Published) {
   return {{{"table2", Published::kTable2}}};
 }
 
+/// What a robot's other sensors tell the systems under test.
+enum class Sense { kOdometry };
+constexpr Names<Sense, 1> words(Sense) {
+  return {{{"odometry", Sense::kOdometry}}};
+}
+
 /// By which share of a system's answers it is judged.
 enum class Measure { kCorrect, kSuccess };
 constexpr Names<Measure, 2> words(Measure) {
@@ -63,6 +69,7 @@ struct Suite {
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
+  std::vector<Sense> senses;             ///< given while mapping, besides the camera
   std::optional<GradedSpec> graded;      ///< asked in every environment
   std::optional<EpisodesSpec> episodes;  ///< the same, of a robot that drives by its map
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and

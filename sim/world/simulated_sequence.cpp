@@ -92,7 +92,9 @@ Shutter::Exposed SimulatedSequence::noisy(std::size_t i, RandomStream noise) con
 RgbdFrame SimulatedSequence::frame(std::size_t i, RandomStream noise) const {
   RenderedFrame seen = noisy(i, noise).seen;
   SemanticImage semantics = label_exposed(shutter_, sensors_, labels_, i, noise, seen);
-  return {stamp_ns(i), std::move(seen.color), std::move(seen.depth_m), std::move(semantics)};
+  RgbdFrame made{stamp_ns(i), std::move(seen.color), std::move(seen.depth_m), std::move(semantics)};
+  if (!odom_from_camera_.empty()) made.odom_from_camera = odom_from_camera_[i];
+  return made;
 }
 
 }  // namespace mh

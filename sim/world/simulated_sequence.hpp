@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/sensors/shutter.hpp"
@@ -40,6 +41,12 @@ class SimulatedSequence : public Sequence {
   /// @param name identifies everything that the constructor received, except labels
   void share(const SharedImages& images, const std::string& name);
 
+  /// From now on frames carry the odometry of their moment.
+  /// @param odom_from_camera  as many as there are frames
+  void set_odometry(std::vector<SE3> odom_from_camera) {
+    odom_from_camera_ = std::move(odom_from_camera);
+  }
+
   const Camera& camera() const override { return shutter_.camera(); }
   std::size_t size() const override { return shutter_.path().size(); }
   Stamp stamp_ns(std::size_t i) const override { return shutter_.path()[i].stamp_ns; }
@@ -54,6 +61,7 @@ class SimulatedSequence : public Sequence {
   Shutter shutter_;
   SensorConfig sensors_;
   LabelMode labels_;
+  std::vector<SE3> odom_from_camera_;        // or empty
   SharedImages images_;                      // shared
   std::string name_;                         // of their file
   std::unique_ptr<SharedExposures> shared_;  // or null

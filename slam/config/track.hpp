@@ -17,6 +17,10 @@ struct TrackConfig {
   double near_angle_rad = 0.9;   ///< if they face within this angle, even without shared landmarks
   double sure_position_m = 0.015;  ///< a pose with a larger standard deviation than this, or
   double sure_angle_rad = 0.01;    ///< than this, from its image alone, is fused with the motion
+  /// Wheel odometry, where frames bring it, places a frame whose image does not, up to this drift
+  /// (one standard deviation).
+  double odometry_position_m = 0.3;
+  double odometry_angle_rad = 0.2;
   double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
   /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.
   /// 0: global shutter.
@@ -27,8 +31,8 @@ struct TrackConfig {
 template <MaybeConst<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
-         local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad, coast_s,
-         readout_s] = c;
+         local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad,
+         odometry_position_m, odometry_angle_rad, coast_s, readout_s] = c;
   v("min_inliers", min_inliers, setting::kPoints, "after the local map, to count as tracked");
   v("min_inliers_sparse", min_inliers_sparse, setting::kPoints,
     "where that is more than a sixth of the keypoints");
@@ -44,6 +48,9 @@ void fields(C& c, Visit& v) {
     "a pose less sure than this by its image or");
   v("sure_angle_rad", sure_angle_rad, setting::kAngle_rad,
     "than this is weighed against the motion");
+  v("odometry_position_m", odometry_position_m, {0, 10},
+    "odometry places frames that the image does not, up to this drift (0: never) and");
+  v("odometry_angle_rad", odometry_angle_rad, setting::kAngle_rad, "this");
   v("coast_s", coast_s, {0, 10},
     "how long a lost camera is searched for along its predicted motion");
   v("readout_s", readout_s, {0, 1}, "of a rolling shutter, first row to last; 0: all at once");

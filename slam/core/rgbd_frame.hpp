@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "slam/core/grid2d.hpp"
 #include "slam/core/labels.hpp"
+#include "slam/core/se3.hpp"
 
 namespace mh {
 
@@ -40,6 +42,9 @@ struct RgbdFrame {
   Grid2d<Rgb8> color;
   Grid2d<float> depth_m;  ///< along the optical axis, registered to color; 0 = no return
   SemanticImage semantics;
+  /// Where the wheels alone place the camera at the stamp; their frame of reference drifts. Absent:
+  /// no odometry.
+  std::optional<SE3> odom_from_camera = {};
 };
 
 }  // namespace mh

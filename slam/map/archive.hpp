@@ -198,9 +198,9 @@ template <class A, MaybeConst<Keyframe> T>
 void fields(A& a, T& keyframe) {
   // The grid is rebuilt from the keypoints.
   auto& [id, stamp_ns, camera_from_world, features, grid, words, landmarks, covisible, erased,
-         parent, camera_from_parent] = keyframe;
-  a(id, stamp_ns, camera_from_world, features, words, landmarks, covisible, erased, parent,
-    camera_from_parent);
+         odom_from_camera, parent, camera_from_parent] = keyframe;
+  a(id, stamp_ns, camera_from_world, features, words, landmarks, covisible, erased,
+    odom_from_camera, parent, camera_from_parent);
 }
 template <class A, MaybeConst<Observation> T>
 void fields(A& a, T& observation) {

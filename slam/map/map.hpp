@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,8 +38,9 @@ struct Keyframe {
   std::vector<Neighbor> covisible;  ///< at least kMinShared; ordered by most shared, then by id
 
   bool erased = false;
-  KeyframeId parent;       ///< an erased keyframe's pose is relative to this one
-  SE3 camera_from_parent;  ///< valid if erased
+  std::optional<SE3> odom_from_camera = {};  ///< RgbdFrame::odom_from_camera
+  KeyframeId parent;                         ///< an erased keyframe's pose is relative to this one
+  SE3 camera_from_parent;                    ///< valid if erased
 };
 
 /// Keyframes, landmarks and the observations that link them. Entities are addressed by id; erased

@@ -2,7 +2,9 @@
 #include "slam/mapping/local_mapping.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -10,6 +12,7 @@
 #include "slam/map/id_set.hpp"
 #include "slam/match/expect.hpp"
 #include "slam/optimize/bundle.hpp"
+#include "slam/track/motion.hpp"
 
 namespace mh {
 namespace {
@@ -270,10 +273,56 @@ std::vector<KeyframeId> observing_keyframes(const Map& map,
   return result;
 }
 
+/// The live keyframes with odometry before and after one in time, where there are any.
+std::array<KeyframeId, 2> beside_in_time(const Map& map, const Keyframe& keyframe) {
+  std::array<KeyframeId, 2> beside;
+  for (const Keyframe& k : map.keyframes()) {
+    if (k.erased || !k.odom_from_camera || k.stamp_ns == keyframe.stamp_ns) continue;
+    const bool is_later = k.stamp_ns > keyframe.stamp_ns;
+    KeyframeId& nearest = beside[is_later ? 1 : 0];
+    if (!nearest.valid() || (k.stamp_ns < map.at(nearest).stamp_ns) == is_later) nearest = k.id;
+  }
+  return beside;
+}
+
+/// What the wheels did between keyframes that follow each other, at least one of them free. Adds
+/// those that are missing to the fixed ones.
+std::vector<std::pair<KeyframeId, KeyframeId>> wheel_steps(const Map& map,
+                                                           const std::vector<KeyframeId>& free,
+                                                           std::vector<KeyframeId>& fixed) {
+  std::vector<std::pair<KeyframeId, KeyframeId>> steps;
+  for (const KeyframeId id : free) {
+    if (!map.at(id).odom_from_camera) continue;
+    const auto [before, after] = beside_in_time(map, map.at(id));
+    for (const auto& [a, b] : {std::pair(before, id), std::pair(id, after)}) {
+      if (!a.valid() || !b.valid()) continue;
+      if (std::ranges::find(steps, std::pair(a, b)) != steps.end()) continue;
+      steps.emplace_back(a, b);
+      for (const KeyframeId end : {a, b})
+        if (std::ranges::find(free, end) == free.end() &&
+            std::ranges::find(fixed, end) == fixed.end())
+          fixed.push_back(end);
+    }
+  }
+  return steps;
+}
+
+BundleMotion motion_of(const Keyframe& a, const Keyframe& b) {
+  constexpr double kLeast_m = 0.005, kLeast_rad = 0.005;  // joints and stamps of the readings
+  BundleMotion motion;
+  motion.b_from_a = b.odom_from_camera->inverse() * *a.odom_from_camera;
+  const Vector6d twist = motion.b_from_a.log();
+  const PoseSigma drift = odometry_drift(twist.head<3>().norm(), twist.tail<3>().norm());
+  motion.sigma_m = kLeast_m + drift.position_m;
+  motion.sigma_rad = kLeast_rad + drift.angle_rad;
+  return motion;
+}
+
 /// Adjusts the free keyframes and all landmarks that they see; the fixed ones define the frame of
 /// reference: without any, nothing moves.
-void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
-                      const std::vector<KeyframeId>& fixed, const SlamContext& context) {
+void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free, std::vector<KeyframeId> fixed,
+                      const SlamContext& context) {
+  const auto steps = wheel_steps(map, free, fixed);
   if (free.empty() || fixed.empty()) return;
   std::vector<std::int32_t> pose_of(map.keyframes().size(), -1);
   BundleProblem problem;
@@ -284,6 +333,12 @@ void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free,
   };
   for (const KeyframeId id : free) add_pose(id);
   for (const KeyframeId id : fixed) add_pose(id);
+  for (const auto& [a, b] : steps) {
+    BundleMotion motion = motion_of(map.at(a), map.at(b));
+    motion.a = static_cast<std::uint32_t>(pose_of[a.value]);
+    motion.b = static_cast<std::uint32_t>(pose_of[b.value]);
+    problem.motions.push_back(motion);
+  }
 
   const std::vector<LandmarkId> points = landmarks_of(map, free);
   std::vector<Observation> observation_of;

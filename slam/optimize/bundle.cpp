@@ -58,7 +58,21 @@ double chi2_of(const BundleObservation& o, const State& state, const Camera& cam
   return reprojection_residual(p, measurement(o), camera).squaredNorm();
 }
 
-/// Pairs of free poses that see a point together; empty if the system is dense anyway.
+/// Beyond this chi-square (6 degrees of freedom, 1 %) a motion counts less and less.
+constexpr double kMotionChi2 = 16.8;
+
+/// Whitened residual of a motion.
+Vector6d motion_residual(const BundleMotion& m, const State& state) {
+  Vector6d r =
+      (state.camera_from_world[m.b] * state.camera_from_world[m.a].inverse() * m.b_from_a.inverse())
+          .log();
+  r.head<3>() /= m.sigma_m;
+  r.tail<3>() /= m.sigma_rad;
+  return r;
+}
+
+/// Pairs of free poses that see a point together or share a motion; empty if the system is dense
+/// anyway.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> couplings(
     const BundleProblem& problem, const std::vector<std::uint32_t>& first_observation) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -71,6 +85,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> couplings(
         if (pose_a < problem.free_poses && pose_b < problem.free_poses)
           pairs.emplace_back(pose_a, pose_b);
       }
+  for (const BundleMotion& m : problem.motions)
+    if (m.a < problem.free_poses && m.b < problem.free_poses) pairs.emplace_back(m.a, m.b);
   return pairs;
 }
 
@@ -135,7 +151,41 @@ double cost_of(const Phase& phase, const Workspace& w, const State& state) {
     const double chi2 = chi2_of(o, state, camera);
     cost += robust ? huber_loss(chi2, gate(o, config)) : chi2;
   }
+  for (const BundleMotion& m : problem.motions)
+    cost += huber_loss(motion_residual(m, state).squaredNorm(), kMotionChi2);
   return cost;
+}
+
+/// Adds a motion to the blocks of its free poses. With left perturbations the residual changes by
+/// that of b minus the adjoint of b_from_a times that of a; the derivative of log is taken as 1.
+void linearize_motion(const BundleMotion& m, const BundleProblem& problem, Workspace& w,
+                      const State& state) {
+  const Vector6d r = motion_residual(m, state);
+  const double weight = huber_weight(r.squaredNorm(), kMotionChi2);
+  Vector6d inverse_sigma;
+  inverse_sigma << Eigen::Vector3d::Constant(1 / m.sigma_m),
+      Eigen::Vector3d::Constant(1 / m.sigma_rad);
+  const Matrix6d of_b = inverse_sigma.asDiagonal();
+  Matrix6d adjoint = Matrix6d::Zero();
+  const Eigen::Matrix3d rotation = m.b_from_a.rotation();
+  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = rotation;
+  adjoint.topRightCorner<3, 3>() = cross_columns(m.b_from_a.translation(), rotation);
+  const Matrix6d of_a = -of_b * adjoint;
+  const auto add = [&](std::uint32_t pose, const Matrix6d& jacobian) {
+    if (pose >= problem.free_poses) return;
+    const Matrix6d own = weight * jacobian.transpose() * jacobian;
+    w.reduced.at(pose, pose) += own;
+    const Eigen::Index at = 6 * static_cast<Eigen::Index>(pose);
+    w.pose_diagonal.segment<6>(at) += own.diagonal();
+    w.right_side.segment<6>(at) -= weight * jacobian.transpose() * r;
+  };
+  add(m.a, of_a);
+  add(m.b, of_b);
+  if (m.a >= problem.free_poses || m.b >= problem.free_poses) return;
+  if (m.a > m.b)
+    w.reduced.at(m.a, m.b) += weight * of_a.transpose() * of_b;
+  else
+    w.reduced.at(m.b, m.a) += weight * of_b.transpose() * of_a;
 }
 
 /// Adds one point's observations to the pose blocks and to their gradient; fills W for each.
@@ -222,6 +272,7 @@ void build_reduced_system(const Phase& phase, Workspace& w, const State& state, 
     w.point_inverse[point] = information.inverse();
     eliminate_point(problem, w, point);
   }
+  for (const BundleMotion& m : problem.motions) linearize_motion(m, problem, w, state);
   for (std::uint32_t pose = 0; pose < problem.free_poses; ++pose) {
     const Vector6d diagonal = w.pose_diagonal.segment<6>(6 * static_cast<Eigen::Index>(pose));
     PoseSystem::Block& own = w.reduced.at(pose, pose);

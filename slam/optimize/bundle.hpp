@@ -20,21 +20,30 @@ struct BundleObservation {
   float sigma_px = 1;
 };
 
+/// A motion between two poses that another sensor measured. Residual: log(b_from_a measured^-1),
+/// divided by its standard deviations; Huber's rho, since wheels slip.
+struct BundleMotion {
+  std::uint32_t a = 0, b = 0;  ///< indices into BundleProblem::camera_from_world
+  SE3 b_from_a;
+  double sigma_m = 1, sigma_rad = 1;
+};
+
 /// Poses [0, free_poses) are adjusted, the rest are fixed. Observations are ordered by point.
 struct BundleProblem {
   std::vector<SE3> camera_from_world;
   std::uint32_t free_poses = 0;
   std::vector<Eigen::Vector3d> points_in_world;
   std::vector<BundleObservation> observations;
+  std::vector<BundleMotion> motions = {};
 };
 
 struct BundleResult {
   std::vector<SE3> camera_from_world;  ///< all, fixed ones unchanged
   std::vector<Eigen::Vector3d> points_in_world;
   std::vector<std::uint8_t> outlier;  ///< per observation: beyond its gate or behind the camera
-  double initial_cost = 0;            ///< sum of Huber's rho over all observations
-  double final_cost = 0;              ///< sum of squared whitened residuals over the inliers
-  int iterations = 0;                 ///< trial steps of both phases
+  double initial_cost = 0;  ///< sum of Huber's rho over all observations; without the motions
+  double final_cost = 0;    ///< sum of squared whitened residuals over the inliers; the same
+  int iterations = 0;       ///< trial steps of both phases
 };
 
 /// Bundle adjustment by Levenberg-Marquardt with the Schur complement over points, analytic

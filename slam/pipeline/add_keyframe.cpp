@@ -46,6 +46,7 @@ KeyframeId add_keyframe(SlamState& state, PreparedFrame& frame, const TrackedPos
   keyframe.words = with_words(frame, state, observers).words;
   keyframe.features = frame.features;
   keyframe.grid = frame.grid;
+  keyframe.odom_from_camera = frame.odom_from_camera;
   KeyframeId id;
   {
     const InStage stage(observers, Stage::kMapping);

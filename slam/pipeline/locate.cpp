@@ -18,11 +18,14 @@ int inliers_needed(const Features& features, const TrackConfig& config) {
 /// Localizes a frame from the last tracked one: by the motion model or the reference keyframe,
 /// whichever is confirmed in the local map first. A frame that comes after lost frames needs as
 /// many inliers as relocalization.
-std::optional<Located> follow(const SlamState& state, const Tracker& tracker, PreparedFrame& frame,
+/// @param reckoned  predicts the motion in the place of the last step
+std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
+                              const std::optional<Reckoned>& reckoned, PreparedFrame& frame,
                               const SlamContext& context, const StepObservers& observers) {
   if (!tracker.last) return std::nullopt;
   const auto by_motion = [&] {
-    return track_motion(without_words(frame), *tracker.last, predict(tracker, frame.stamp_ns),
+    return track_motion(without_words(frame), *tracker.last,
+                        reckoned ? reckoned->camera_from_world : predict(tracker, frame.stamp_ns),
                         context);
   };
   const auto by_reference = [&] {
@@ -33,7 +36,7 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker, Pr
   const int min_inliers = tracker.coasting ? state.config.relocalize.min_inliers
                                            : inliers_needed(frame.features, state.config.track);
   // If the motion is not known yet, appearance needs no guess.
-  const bool moving = tracker.velocity_per_s.has_value();
+  const bool moving = tracker.velocity_per_s.has_value() || reckoned;
   for (const bool use_motion : {moving, !moving}) {
     std::optional<TrackedPose> tracked;
     {
@@ -45,6 +48,40 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker, Pr
       return located;
   }
   return std::nullopt;
+}
+
+/// Localizes a frame where odometry has it: in the map around, or, if the image cannot contradict,
+/// by odometry alone.
+std::optional<Located> follow_odometry(const SlamState& state, const Tracker& tracker,
+                                       const Reckoned& reckoned, PreparedFrame& frame,
+                                       const SlamContext& context, const StepObservers& observers) {
+  const TrackConfig& config = state.config.track;
+  const PoseSigma sigma = worst_sigma(reckoned.covariance);
+  std::optional<TrackedPose> near;
+  {
+    const InStage stage(observers, Stage::kTracking);
+    near =
+        track_near(without_words(frame), reckoned.camera_from_world,
+                   config.search_radius_px + 2 * sigma.angle_rad * context.camera.fx_px, context);
+  }
+  if (near)
+    if (auto located = confirm_in_local_map(frame, *near, inliers_needed(frame.features, config),
+                                            context, observers))
+      if (reckoned.allows(located->tracked, config)) return located;
+  // Where the place is well known, landmarks should be seen, and enough is seen, but not they: the
+  // wheels slipped, or the robot was carried away.
+  constexpr double kKnown_m = 0.05, kKnown_rad = 0.03;
+  if (sigma.position_m <= kKnown_m && sigma.angle_rad <= kKnown_rad &&
+      static_cast<int>(frame.features.size()) >= 6 * config.min_inliers &&
+      count_expected(reckoned.camera_from_world, context) >= 6 * config.min_inliers)
+    return std::nullopt;
+  Located located;
+  located.tracked.camera_from_world = reckoned.camera_from_world;
+  located.tracked.landmarks.resize(frame.features.size());
+  located.reference = state.map.live_keyframe(tracker.reference);
+  located.motion = Motion::at_rest(reckoned.covariance);
+  located.reckoning = reckoned.reckoning;
+  return located;
 }
 
 std::optional<TrackedPose> search_everywhere(const SlamState& state, Tracker& tracker,
@@ -83,15 +120,22 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
                               StepReport& report) {
   const SlamConfig& config = state.config;
   const SlamContext context = context_of(state, observers, report);
-  if (auto located = follow(state, tracker, frame, context, observers)) {
-    fuse_with_prediction(*located, tracker, frame.stamp_ns, config.track);
+  const auto reckoned = reckon_by_odometry(tracker, frame.odom_from_camera, config.track);
+  auto located = follow(state, tracker, reckoned, frame, context, observers);
+  if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
+  if (!located && reckoned)
+    located = follow_odometry(state, tracker, *reckoned, frame, context, observers);
+  if (located && located->reckoning.is_zero())
+    fuse_with_prediction(*located, tracker, frame.stamp_ns, reckoned, config.track);
+  if (located) {
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }
   const auto found = search_everywhere(state, tracker, frame, stream, observers, report);
   if (!found) return std::nullopt;
-  auto located =
-      confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
+  located = confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
+  // As long as odometry knows the place, a far one only looks like it.
+  if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
   if (located) {
     located->motion = Motion::at_rest(located->tracked.information.inverse());
     report.status = TrackStatus::kRelocalized;

@@ -24,8 +24,13 @@ namespace archive {
 
 template <class A, MaybeConst<LastFrame> T>
 void fields(A& a, T& last) {
-  auto& [stamp_ns, camera_from_world, features, landmarks] = last;
-  a(stamp_ns, camera_from_world, features, landmarks);
+  auto& [stamp_ns, camera_from_world, features, landmarks, odom_from_camera] = last;
+  a(stamp_ns, camera_from_world, features, landmarks, odom_from_camera);
+}
+template <class A, MaybeConst<Reckoning> T>
+void fields(A& a, T& reckoning) {
+  auto& [distance_m, turn_rad] = reckoning;
+  a(distance_m, turn_rad);
 }
 template <class A, MaybeConst<Motion> T>
 void fields(A& a, T& motion) {
@@ -44,9 +49,10 @@ void fields(A& a, T& scores) {
 }
 template <class A, MaybeConst<Tracker> T>
 void fields(A& a, T& tracker) {
-  auto& [last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, stale_scores] =
-      tracker;
-  a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, stale_scores);
+  auto& [last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, reckoning,
+         stale_scores] = tracker;
+  a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, reckoning,
+    stale_scores);
 }
 template <class A, MaybeConst<LoopMemory> T>
 void fields(A& a, T& memory) {

@@ -31,6 +31,7 @@ struct PreparedFrame {
   Features features;
   FeatureGrid grid;
   std::optional<WordIndex> words;
+  std::optional<SE3> odom_from_camera = {};
 };
 
 /// extract(), reported as a stage.

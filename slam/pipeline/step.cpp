@@ -30,8 +30,9 @@ StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers
   report.world_from_camera = SE3();
   report.inliers = with_depth;
   remember(state.tracker,
-           {frame.stamp_ns, SE3(), std::move(frame.features), state.map.at(id).landmarks}, id,
-           std::nullopt);
+           {frame.stamp_ns, SE3(), std::move(frame.features), state.map.at(id).landmarks,
+            frame.odom_from_camera},
+           id, std::nullopt);
   return report;
 }
 
@@ -70,11 +71,12 @@ void count_sightings(Map& map, const Located& located) {
 StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
                 const StepObservers& observers) {
   require_increasing_stamp(frame.stamp_ns, state.last_stamp_ns);
-  return step(state, frame.stamp_ns, observed_features(frame, state, observers), stream, observers);
+  return step(state, frame.stamp_ns, observed_features(frame, state, observers), stream, observers,
+              frame.odom_from_camera);
 }
 
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
-                const StepObservers& observers) {
+                const StepObservers& observers, const std::optional<SE3>& odom_from_camera) {
   require_increasing_stamp(stamp_ns, state.last_stamp_ns);
   if (features.descriptors.size() != features.keypoints.size())
     throw InputError(fmt::format("frame at {} ns: {} keypoints, but {} descriptors", stamp_ns,
@@ -86,6 +88,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   const SlamContext context = context_of(state, observers, report);
 
   PreparedFrame frame = prepare(stamp_ns, std::move(features), state, state.tracker);
+  frame.odom_from_camera = odom_from_camera;
   if (state.map.empty()) return initialize(state, std::move(frame), observers, report);
 
   auto located = locate(state, state.tracker, frame, stream, observers, report);
@@ -105,7 +108,11 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   KeyframeId reference = located->reference;
   ++state.tracker.frames_since_keyframe;
-  if (needs_keyframe(tracked, frame.features, reference, state.tracker.frames_since_keyframe,
+  // Where odometry alone tells the pose, the image may show nothing.
+  const bool shows_enough = located->reckoning.is_zero() ||
+                            points_with_depth(frame.features) >= state.config.track.min_inliers;
+  if (shows_enough &&
+      needs_keyframe(tracked, frame.features, reference, state.tracker.frames_since_keyframe,
                      context) &&
       !is_keyframe(state.map, stamp_ns)) {
     reference = add_keyframe(state, frame, tracked, stream.fork(1), observers, report);
@@ -119,8 +126,9 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
       reference, tracked.camera_from_world * state.map.camera_from_world(reference).inverse()};
   remember(state.tracker,
            {stamp_ns, tracked.camera_from_world, std::move(frame.features),
-            std::move(tracked.landmarks)},
+            std::move(tracked.landmarks), frame.odom_from_camera},
            reference, located->motion);
+  state.tracker.reckoning = located->reckoning;
   return report;
 }
 

@@ -20,9 +20,30 @@ int points_with_depth(const Features& features) {
                                         [](const Keypoint& k) { return k.depth_m > 0; }));
 }
 
+bool Reckoned::allows(const TrackedPose& tracked, const TrackConfig& config) const {
+  constexpr double kMostChi2 = 30;  // 6 degrees of freedom: one in 20,000
+  constexpr double kMostSlip_m = 0.1, kMostSlip_rad = 0.1;
+  const Vector6d off = (tracked.camera_from_world * camera_from_world.inverse()).log();
+  if (tracked.inliers >= 5 * config.min_inliers && off.head<3>().norm() <= kMostSlip_m &&
+      off.tail<3>().norm() <= kMostSlip_rad)
+    return true;
+  const Matrix6d sum = covariance + tracked.information.inverse();
+  return off.dot(sum.ldlt().solve(off)) <= kMostChi2;
+}
+
 void fuse_with_prediction(Located& located, const Tracker& tracker, Stamp stamp_ns,
-                          const TrackConfig& config) {
+                          const std::optional<Reckoned>& reckoned, const TrackConfig& config) {
   const Matrix6d covariance = located.tracked.information.inverse();
+  if (reckoned) {
+    SE3& pose = located.tracked.camera_from_world;
+    Motion motion = Motion::at_rest(reckoned->covariance);
+    const Vector6d off =
+        motion.correct((pose * reckoned->camera_from_world.inverse()).log(), covariance);
+    located.tracked.unsure = !is_sure(covariance, config);
+    if (located.tracked.unsure) pose = SE3::exp(off) * reckoned->camera_from_world;
+    located.motion = motion;
+    return;
+  }
   const double elapsed_s = seconds_since_last(tracker, stamp_ns);
   if (!tracker.motion || elapsed_s <= 0) {
     located.motion = Motion::at_rest(covariance);
@@ -35,6 +56,32 @@ void fuse_with_prediction(Located& located, const Tracker& tracker, Stamp stamp_
   located.tracked.unsure = !is_sure(covariance, config);
   if (located.tracked.unsure) pose = SE3::exp(off) * predicted;
   located.motion = motion;
+}
+
+std::optional<Reckoned> reckon_by_odometry(const Tracker& tracker,
+                                           const std::optional<SE3>& odom_from_camera,
+                                           const TrackConfig& config) {
+  if (!tracker.last || config.odometry_position_m == 0) return std::nullopt;
+  const std::optional<SE3> step = odometry_step(tracker, odom_from_camera);
+  if (!step) return std::nullopt;
+  const Vector6d twist = step->log();
+  Reckoned found;
+  found.reckoning = {tracker.reckoning.distance_m + twist.head<3>().norm(),
+                     tracker.reckoning.turn_rad + twist.tail<3>().norm()};
+  const auto [position_m, angle_rad] =
+      odometry_drift(found.reckoning.distance_m, found.reckoning.turn_rad);
+  if (position_m > config.odometry_position_m || angle_rad > config.odometry_angle_rad)
+    return std::nullopt;
+  found.camera_from_world = *step * tracker.last->camera_from_world;
+  // The map itself moves by this much from frame to frame.
+  constexpr double kMap_m = 0.005, kMap_rad = 0.005;
+  Vector6d variances;
+  variances << Eigen::Vector3d::Constant(position_m * position_m + kMap_m * kMap_m),
+      Eigen::Vector3d::Constant(angle_rad * angle_rad + kMap_rad * kMap_rad);
+  found.covariance = variances.asDiagonal();
+  if (tracker.reckoning.is_zero() && tracker.motion)
+    found.covariance += tracker.motion->pose_covariance;
+  return found;
 }
 
 std::optional<Located> dead_reckon(const Tracker& tracker, Stamp stamp_ns, const Features& features,

@@ -36,6 +36,12 @@ PoseSigma worst_sigma(const Matrix6d& covariance) {
           .angle_rad = worst(covariance.bottomRightCorner<3, 3>())};
 }
 
+PoseSigma odometry_drift(double way_m, double turn_rad) {
+  constexpr double kOfWay = 0.03, kWayOfTurn_m = 0.02, kOfTurn = 0.02, kTurnOfWay_per_m = 0.01;
+  return {.position_m = kOfWay * way_m + kWayOfTurn_m * turn_rad,
+          .angle_rad = kOfTurn * turn_rad + kTurnOfWay_per_m * way_m};
+}
+
 Motion Motion::at_rest(const Matrix6d& pose_covariance) {
   return {.velocity_per_s = Vector6d::Zero(),
           .pose_covariance = pose_covariance,

@@ -12,6 +12,9 @@ struct PoseSigma {
 /// Extracts it from a pose covariance (translation, rotation; of the camera, in its own frame).
 PoseSigma worst_sigma(const Matrix6d& covariance);
 
+/// Drift of wheel odometry over a way and a turn, one standard deviation of a wheeled base.
+PoseSigma odometry_drift(double way_m, double turn_rad);
+
 /// Kalman filter of the camera's motion: constant velocity with white-noise acceleration; each
 /// tracked pose is a measurement with the covariance computed from its image. Twists and
 /// covariances are those of the camera in its own frame (translation, rotation), so that the map

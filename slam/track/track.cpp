@@ -235,6 +235,56 @@ LocalMap local_map(const TrackedPose& tracked, const SlamContext& context) {
   return local;
 }
 
+namespace {
+
+struct Expected {
+  std::vector<ProjectionTarget> targets;
+  std::vector<LandmarkId> landmarks;
+};
+
+/// The landmarks around a pose that an image from there should show.
+Expected expected_around(const SE3& camera_from_world, double radius_px,
+                         const SlamContext& context) {
+  const LocalMap local =
+      local_map({.camera_from_world = camera_from_world, .landmarks = {}}, context);
+  const Eigen::Vector3d camera_in_world = camera_from_world.inverse().translation();
+  Expected found;
+  for (const LandmarkId id : local.landmarks)
+    if (const auto target =
+            expect(context.map.at(id), camera_from_world, camera_in_world, context.camera,
+                   context.config.features, static_cast<float>(radius_px))) {
+      found.targets.push_back(*target);
+      found.landmarks.push_back(id);
+    }
+  return found;
+}
+
+}  // namespace
+
+int count_expected(const SE3& camera_from_world, const SlamContext& context) {
+  return static_cast<int>(expected_around(camera_from_world, 1, context).landmarks.size());
+}
+
+std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
+                                      const SlamContext& context) {
+  const Expected around = expected_around(guess, radius_px, context);
+  const std::vector<std::uint8_t> taken(query.features.size(), 0);
+  const auto found =
+      find_landmarks({query,
+                      around.targets,
+                      around.landmarks,
+                      taken,
+                      {.max_distance = static_cast<float>(context.config.match.max_distance),
+                       .ratio = static_cast<float>(context.config.match.ratio_projection)}},
+                     context, Matcher::kLocalMap);
+  std::vector<LandmarkId> landmarks(query.features.size());
+  for (std::size_t t = 0; t < found.size(); ++t)
+    if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = around.landmarks[t];
+  auto tracked = optimize_matches(query, landmarks, {}, guess, context);
+  if (tracked && tracked->inliers < context.config.track.min_inliers_frame) tracked.reset();
+  return tracked;
+}
+
 std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
                                               const LocalMap& local, const SlamContext& context) {
   const Map& map = context.map;

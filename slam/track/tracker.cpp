@@ -17,6 +17,13 @@ SE3 predict(const Tracker& tracker, Stamp stamp_ns) {
   return SE3::exp(*tracker.velocity_per_s * elapsed_s) * tracker.last->camera_from_world;
 }
 
+std::optional<SE3> odometry_step(const Tracker& tracker,
+                                 const std::optional<SE3>& odom_from_camera) {
+  const std::optional<SE3>& before = tracker.last->odom_from_camera;
+  if (!before || !odom_from_camera) return std::nullopt;
+  return odom_from_camera->inverse() * *before;
+}
+
 void update_velocity(Tracker& tracker, Stamp stamp_ns, const SE3& camera_from_world) {
   tracker.velocity_per_s.reset();
   if (!tracker.last || stamp_ns <= tracker.last->stamp_ns) return;

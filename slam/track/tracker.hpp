@@ -19,6 +19,13 @@ struct LastFrame {
   SE3 camera_from_world;
   Features features;
   std::vector<LandmarkId> landmarks;  ///< per feature; invalid = none
+  std::optional<SE3> odom_from_camera = {};
+};
+
+/// What the wheels have done since an image last told the pose.
+struct Reckoning {
+  double distance_m = 0, turn_rad = 0;
+  bool is_zero() const { return distance_m == 0 && turn_rad == 0; }
 };
 
 /// State of tracking between frames; Tracker{} is lost. It has two motion models: the step between
@@ -32,6 +39,7 @@ struct Tracker {
   KeyframeId reference;                    ///< keyframe that shares the most landmarks
   int frames_since_keyframe = 0;
   bool coasting = false;     ///< lost since `last`, but still within coast_s
+  Reckoning reckoning;       ///< up to `last`
   StaleScores stale_scores;  ///< outlive losses
 
   bool tracking() const { return last.has_value() && !coasting; }
@@ -44,6 +52,11 @@ double seconds_since_last(const Tracker& tracker, Stamp stamp_ns);
 /// is known.
 /// @pre tracker.last
 SE3 predict(const Tracker& tracker, Stamp stamp_ns);
+
+/// The camera's motion since the last frame by odometry, camera_now_from_camera_last; absent
+/// without odometry of both. @pre tracker.last
+std::optional<SE3> odometry_step(const Tracker& tracker,
+                                 const std::optional<SE3>& odom_from_camera);
 
 /// Updates the velocity from the camera's motion since the last frame. Call before mapping, which
 /// may move the world.

@@ -13,6 +13,7 @@
 #include "bench/protocol/world/first_frames.hpp"
 #include "bench/suite/inputs.hpp"
 #include "bench/suite/recorded_camera.hpp"
+#include "robots/model/odometry.hpp"
 #include "scenes/load.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
@@ -95,7 +96,9 @@ void simulate(World& world, LabelMode labels, const SharedImages& images) {
     if (!images.folder.empty()) made->share(images, name);
     return made;
   };
-  world.mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene);
+  const auto mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene);
+  mapping->set_odometry(p.odom_from_camera);
+  world.mapping = mapping;
   if (p.second)
     world.second = sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second,
                             p.second_pedestrian_scene);
@@ -178,6 +181,27 @@ GradedQueries graded_queries(const RunSpec& spec, const SimulatedPlace& world) {
        .by_hand = !is_driven(spec.environment.mapping_tour)});
 }
 
+/// Wheel odometry along a path, with the head's joints read without error.
+/// @param lifted_ns  when the robot was carried to another place, if it was
+std::vector<SE3> odometry_along(const DrivenPath& path, const Robot& robot,
+                                std::optional<Stamp> lifted_ns, std::uint64_t seed,
+                                const std::filesystem::path& file) {
+  if (robot.wheels() == nullptr)
+    throw InputError(
+        fmt::format("{}: has no wheels, and the suite gives odometry (`senses`)", file.string()));
+  WheelOdometer odometer(*robot.wheels(), robot.equipment->odometry, seed);
+  std::vector<SE3> odom_from_camera;
+  for (std::size_t i = 0; i < path.camera.size(); ++i) {
+    const SE3& world_from_base = path.base[i].world_from_camera;
+    if (i > 0 && lifted_ns && path.base[i - 1].stamp_ns < *lifted_ns &&
+        path.base[i].stamp_ns >= *lifted_ns)
+      odometer.lift_to(world_from_base);
+    odom_from_camera.push_back(odometer.drive_to(world_from_base) * world_from_base.inverse() *
+                               path.camera[i].world_from_camera);
+  }
+  return odom_from_camera;
+}
+
 /// Builds the world with the inputs of everything except an outside program.
 World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
             const BakeWatch& baked) {
@@ -242,13 +266,18 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   };
   world.mapping = input("mapping_tour", environment.mapping_tour,
                         [&] { return along(*scene, environment.mapping_tour, obstacles(0)); });
+  std::optional<Stamp> lifted_ns;
   if (environment.kidnapped_tour) {
+    lifted_ns = world.mapping.camera.back().stamp_ns + 1;
     const DrivenPath elsewhere =
         along(*scene, *environment.kidnapped_tour, obstacles(world.mapping.camera.size()));
     world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
   }
   lose_frames(world.mapping);
   shorten(world.mapping);
+  if (std::ranges::count(spec.senses, Sense::kOdometry) > 0)
+    world.odom_from_camera =
+        odometry_along(world.mapping, world.robot, lifted_ns, spec.seed, environment.robot);
   if (environment.query_scene) {
     world.second_scene = lit_scene("query_scene", *environment.query_scene);
     world.second_renderer = make_scene_renderer(*world.second_scene);

@@ -34,7 +34,8 @@ struct SimulatedPlace {
   std::shared_ptr<const Renderer> renderer;
   Robot robot;
   DrivenPath mapping;
-  std::optional<DrivenPath> second;           ///< the second tour, if the environment has one
+  std::vector<SE3> odom_from_camera;  ///< at the frames of `mapping`; empty unless it is given
+  std::optional<DrivenPath> second;   ///< the second tour, if the environment has one
   std::shared_ptr<const Scene> second_scene;  ///< the second tour's scene; null: the same scene
   std::shared_ptr<const Renderer> second_renderer;  ///< of that scene; null: the same renderer
   std::shared_ptr<const PedestrianScene>
