@@ -127,6 +127,11 @@ class Conversation {
     fields["color"] = show("color.ppm", files.color);
     fields["depth"] = show("depth.pgm", files.depth);
     if (!files.labels.empty()) fields["labels"] = show("labels.pgm", files.labels);
+    if (frame.odom_from_camera) {
+      const Eigen::Vector3d& t = frame.odom_from_camera->translation();
+      const Eigen::Quaterniond q = frame.odom_from_camera->quaternion();
+      fields["odometry"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+    }
     fields["seed"] = told_seed(stream);
     const Json reply =
         ask(what, fields,

@@ -64,6 +64,9 @@ typedef struct mh_frame {
   const uint16_t* depth; /**< along the optical axis, see depth_per_meter; 0 = no return */
   const uint8_t* labels; /**< class id per pixel; NULL if the run has no labels */
   int32_t seed;          /**< seeds all randomness of this call, >= 0; each attempt has its own */
+  /** Where the wheels alone place the camera; their world drifts. NULL: no odometry. Last, so that a
+   * library that was built before it was there still works. */
+  const struct mh_pose* odometry;
 } mh_frame;
 
 /** Pose of the camera in the system's own world (world_from_camera): x y z in meters, then the unit

@@ -243,6 +243,10 @@ void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
 
 void TumWriter::add(const RgbdFrame& frame) {
   add_images(frame);
+  if (frame.odom_from_camera) {
+    const std::scoped_lock lock(mutex_);
+    odometry_[frame.stamp_ns] = *frame.odom_from_camera;
+  }
   if (!frame.semantics.index.empty()) add_labels(frame.stamp_ns, class_image(frame.semantics));
 }
 
@@ -279,9 +283,12 @@ void TumWriter::finish() {
     write_atomically(folder_ / (part + ".txt"), list);
   }
   write_atomically(folder_ / "associations.txt", associations);
-  Trajectory truth;
-  for (const auto& [stamp, pose] : truth_) truth.push_back({stamp, pose});
-  if (!truth.empty()) write_tum(folder_ / "groundtruth.txt", truth);
+  for (const auto& [name, poses] :
+       {std::pair("groundtruth.txt", &truth_), std::pair("odometry.txt", &odometry_)}) {
+    Trajectory path;
+    for (const auto& [stamp, pose] : *poses) path.push_back({stamp, pose});
+    if (!path.empty()) write_tum(folder_ / name, path);
+  }
   write_atomically(folder_ / "camera_info.yaml", camera_info_text(camera_));
   write_atomically(folder_ / "camera.yaml", settings_text(camera_));
 }

@@ -61,7 +61,8 @@ class TumWriter : public SequenceWriter {
  public:
   TumWriter(std::filesystem::path folder, const Camera& camera,
             PngCompression png_compression = {});
-  /// Adds only what a system may see. label.txt lists the frames that have labels.
+  /// Adds only what a system may see. label.txt lists the frames that have labels, odometry.txt the
+  /// poses by odometry, if there are any.
   void add(const RgbdFrame& frame);
   void add(std::size_t index, const ExactFrame& frame) override;
   bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) override;
@@ -78,7 +79,7 @@ class TumWriter : public SequenceWriter {
   std::vector<int> png_;
   std::mutex mutex_;                               ///< guards the members below
   std::map<std::string, std::set<Stamp>> listed_;  ///< by part: stamps whose images exist
-  std::map<Stamp, SE3> truth_;
+  std::map<Stamp, SE3> truth_, odometry_;
 };
 
 }  // namespace mh

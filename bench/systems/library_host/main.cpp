@@ -233,6 +233,13 @@ class HostedSystem {
     const std::vector<std::uint16_t> depth = Image(request.at("depth")).shorts();
     std::optional<Image> labels;
     if (request.contains("labels")) labels.emplace(request.at("labels"));
+    std::optional<mh_pose> odometry;
+    if (request.contains("odometry")) {
+      const Json& told = request.at("odometry");
+      odometry.emplace();
+      for (std::size_t i = 0; i < std::size(odometry->values); ++i)
+        odometry->values[i] = told.at(i).get<double>();
+    }
     const mh_frame frame = {
         .stamp_ns = mh::parse_stamp(request.at("stamp").get_ref<const std::string&>()),
         .width_px = color.width,
@@ -240,7 +247,8 @@ class HostedSystem {
         .color = color.bytes(),
         .depth = depth.data(),
         .labels = labels ? labels->bytes() : nullptr,
-        .seed = request.at("seed")};
+        .seed = request.at("seed"),
+        .odometry = odometry ? &*odometry : nullptr};
     call(function, &frame, &reply);
     return reply_json(reply);
   }

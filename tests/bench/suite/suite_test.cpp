@@ -94,6 +94,27 @@ TEST_F(SuiteFile, IsJudgedByCorrectAnswersUnlessItNamesSuccess) {
   EXPECT_EQ(load_suite(shipped_file("model_house", Shipped::kSuite)).measure, Measure::kCorrect);
 }
 
+TEST_F(SuiteFile, SensesAreOfARobotThatDrives) {
+  EXPECT_TRUE(load("").senses.empty());
+  const Suite suite = load("senses: [odometry]\n");
+  EXPECT_EQ(suite.senses, std::vector{Sense::kOdometry});
+  for (const RunSpec& run : expand(suite)) EXPECT_EQ(run.senses, suite.senses);
+  EXPECT_NE(error("senses: [odometry, odometry]\n").find("'odometry' is listed twice"),
+            std::string::npos);
+  EXPECT_NE(error("senses: [sonar]\n").find("sonar"), std::string::npos);
+  std::ofstream(folder_ / "by_hand.yaml")
+      << "environments:\n- {category: house, scene: house.yaml, robot: robot.yaml, mapping_tour: "
+         "'handheld:0'}\nlevels: [pepper.yaml]\nsystems: [plain]\nlabels: [none]\nvocabulary: "
+         "words.mhvoc\nsenses: [odometry]\n";
+  try {
+    load_suite(folder_ / "by_hand.yaml");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("'house' is mapped by hand"), std::string::npos)
+        << e.what();
+  }
+}
+
 TEST_F(SuiteFile, RefusesADesignThatChangedSinceItWasStated) {
   std::ofstream(folder_ / "design.md") << "The question, and how it is answered.\n";
   const std::string study = "study: {design: design.md, xxh3: 'ca917f622f4946c3'}\n";

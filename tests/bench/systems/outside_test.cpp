@@ -16,6 +16,7 @@
 #include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
 #include "sim/sensors/sensors.hpp"
 #include "slam/core/digest.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/io/files.hpp"
 #include "tests/slam/core/made_sequence.hpp"
 
@@ -115,6 +116,50 @@ TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
   ASSERT_EQ(labels.type(), CV_8UC1);
   EXPECT_EQ(labels.at<std::uint8_t>(1, 0), 7);  // the most probable class
   EXPECT_EQ(labels.at<std::uint8_t>(0, 0), kVoid);
+}
+
+TEST(Odometry, IsToldInAConversationAndWrittenIntoADataset) {
+  const fs::path folder = fs::temp_directory_path() / ("mh_odometry_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  RgbdFrame frame;
+  frame.stamp_ns = 1'000'000'000;
+  frame.color = Grid2d<Rgb8>(64, 48);
+  frame.depth_m = Grid2d<float>(64, 48);
+  Camera camera;
+  camera.width_px = 64, camera.height_px = 48, camera.cx_px = 31.5, camera.cy_px = 23.5;
+  camera.fx_px = camera.fy_px = 52;
+  RgbdFrame moved = frame;
+  moved.stamp_ns = 2'000'000'000;
+  moved.odom_from_camera = SE3(Eigen::Quaterniond(0.6, 0, 0, 0.8), Eigen::Vector3d(0.5, -0.25, 1));
+
+  // Answers that it is lost, and keeps what it was asked.
+  const std::string program =
+      "n=0; while read -r line; do n=$((n+1)); printf '%s\\n' \"$line\" >>" +
+      (folder / "asked").string() +
+      "; if [ $n = 1 ]; then echo '{\"id\":1,\"protocol\":1}'; else echo "
+      "\"{\\\"id\\\":$n,\\\"pose\\\":null}\"; fi; done";
+  {
+    const auto system = make_conversation_system(
+        {.name = "told", .command = program, .mode = OutsideMode::kConversation}, camera, 0,
+        folder / "log");
+    EXPECT_FALSE(system->track(frame, RandomStream(1)).world_from_camera);
+    system->track(moved, RandomStream(2));
+  }
+  const std::string asked = read_file(folder / "asked");
+  const std::string told = R"("odometry":[0.5,-0.25,1.0,0.0,0.0,0.8,0.6])";
+  EXPECT_EQ(asked.find("odometry"), asked.find(told) + 1) << asked;
+  EXPECT_NE(asked.find(told), std::string::npos) << asked;
+
+  write_dataset(folder / "dataset", camera, 2,
+                [&](std::size_t i) { return std::optional(i == 0 ? frame : moved); });
+  const Trajectory odometry =
+      parse_trajectory(read_file(folder / "dataset/odometry.txt"), "odometry.txt");
+  ASSERT_EQ(odometry.size(), 1U);
+  EXPECT_EQ(odometry[0].stamp_ns, moved.stamp_ns);
+  EXPECT_LT((odometry[0].world_from_camera.inverse() * *moved.odom_from_camera).log().norm(), 1e-6);
+  write_dataset(folder / "without", camera, 1, [&](std::size_t) { return std::optional(frame); });
+  EXPECT_FALSE(fs::exists(folder / "without/odometry.txt"));
+  fs::remove_all(folder);
 }
 
 TEST(SettingsText, HasRealNumbersWhereReadersInsistOnThem) {

@@ -248,6 +248,59 @@ TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
   EXPECT_EQ(result.points_in_world[41], problem.points_in_world[41]);
 }
 
+TEST(Adjust, AMotionPlacesAPoseThatSeesNothing) {
+  SyntheticBundle bundle =
+      make_bundle({.poses = 6, .fixed_poses = 2, .points = 100}, kBundleCamera, RandomStream(6));
+  BundleProblem& problem = bundle.problem;
+  const SE3 unseen = testing::true_pose();
+  problem.camera_from_world.insert(problem.camera_from_world.begin() + 4, unseen);
+  ++problem.free_poses;
+  for (BundleObservation& o : problem.observations) o.pose += o.pose >= 4;
+  // Off by 0.3 m and 0.2 rad from where the motion from a fixed pose puts it.
+  Vector6d off;
+  off << 0.3, 0, 0, 0, 0.2, 0;
+  const SE3 told = SE3::exp(off) * unseen;
+  problem.motions.push_back({.a = 5,
+                             .b = 4,
+                             .b_from_a = told * problem.camera_from_world[5].inverse(),
+                             .sigma_m = 0.02,
+                             .sigma_rad = 0.02});
+  const BundleResult result = adjust(problem, kBundleCamera, {.iterations = 50});
+  EXPECT_LT((result.camera_from_world[4] * told.inverse()).log().norm(), 1e-3);
+}
+
+TEST(Adjust, AMotionBetweenFreePosesHoldsThemTogetherAndASlipDoesNot) {
+  const auto moved_by = [](double slip_m) {
+    SyntheticBundle bundle = make_bundle({.poses = 6, .points = 300, .disturbance_m = 0.01},
+                                         kBundleCamera, RandomStream(7));
+    const BundleResult before = adjust(bundle.problem, kBundleCamera);
+    Vector6d slip = Vector6d::Zero();
+    slip[0] = slip_m;
+    for (const auto& [a, b] : {std::pair(0U, 1U), std::pair(3U, 2U)})
+      bundle.problem.motions.push_back(
+          {.a = a,
+           .b = b,
+           .b_from_a = SE3::exp(slip) * bundle.true_poses[b] * bundle.true_poses[a].inverse(),
+           .sigma_m = 1e-4,
+           .sigma_rad = 1e-4});
+    const BundleResult after = adjust(bundle.problem, kBundleCamera);
+    double error_before = 0, error_after = 0;
+    for (const auto& [a, b] : {std::pair(0U, 1U), std::pair(3U, 2U)}) {
+      const SE3 truth = bundle.true_poses[b] * bundle.true_poses[a].inverse();
+      const auto error = [&](const BundleResult& r) {
+        return (r.camera_from_world[b] * r.camera_from_world[a].inverse() * truth.inverse())
+            .log()
+            .norm();
+      };
+      error_before += error(before);
+      error_after += error(after);
+    }
+    return error_after / error_before;
+  };
+  EXPECT_LT(moved_by(0), 0.3);
+  EXPECT_LT(moved_by(1.0), 5) << "a meter's slip counts little";
+}
+
 TEST(Adjust, DropsAnObservationFromBehindTheCamera) {
   SyntheticBundle bundle =
       make_bundle({.poses = 6, .points = 150, .noise_px = 0}, kBundleCamera, RandomStream(7));
