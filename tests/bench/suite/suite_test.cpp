@@ -105,7 +105,7 @@ TEST_F(SuiteFile, SensesAreOfARobotThatDrives) {
   std::ofstream(folder_ / "by_hand.yaml")
       << "environments:\n- {category: house, scene: house.yaml, robot: robot.yaml, mapping_tour: "
          "'handheld:0'}\nlevels: [pepper.yaml]\nsystems: [plain]\nlabels: [none]\nvocabulary: "
-         "words.mhvoc\nsenses: [odometry]\n";
+         "words\nsenses: [odometry]\n";
   try {
     load_suite(folder_ / "by_hand.yaml");
     FAIL();

@@ -12,10 +12,10 @@ namespace {
 
 using testing_support::FeatureWorld;
 
-constexpr Stamp kPeriod_ns = 33'333'333;
-const FeatureWorld kWorld(2500, 400);
+constexpr Stamp kStep_ns = 33'333'333;
+const FeatureWorld kRow(2500, 400);
 
-SlamState new_run(double odometry_position_m = TrackConfig().odometry_position_m) {
+SlamState a_run(double odometry_position_m = TrackConfig().odometry_position_m) {
   static const auto vocabulary = std::make_shared<const Vocabulary>(
       Vocabulary::load(std::string(MH_SOURCE_DIR) + "/assets/vocabulary.mhvoc"));
   SlamConfig config;
@@ -33,8 +33,8 @@ struct Walk {
   StepReport feed(SlamState& state, std::size_t i, const std::optional<SE3>& odometry) {
     const auto frame = static_cast<std::uint64_t>(next++);
     const bool blind = i >= blind_from && i < blind_to;
-    return step(state, static_cast<Stamp>(frame) * kPeriod_ns,
-                blind ? Features() : kWorld.see(path[i], RandomStream(2).fork(frame)),
+    return step(state, static_cast<Stamp>(frame) * kStep_ns,
+                blind ? Features() : kRow.see(path[i], RandomStream(2).fork(frame)),
                 RandomStream(3).fork(frame), {}, odometry);
   }
   /// With an origin of its own, and 1 degree of drift over the look around.
@@ -49,7 +49,7 @@ struct Walk {
 };
 
 TEST(Odometry, CarriesTheMapAcrossABlindSpell) {
-  SlamState state = new_run();
+  SlamState state = a_run();
   Walk walk;
   for (std::size_t i = 0; i < walk.path.size(); ++i) {
     const StepReport report = walk.feed(state, i, walk.odometry(i));
@@ -61,7 +61,7 @@ TEST(Odometry, CarriesTheMapAcrossABlindSpell) {
   }
   state.map.check_invariants();
 
-  SlamState without = new_run();
+  SlamState without = a_run();
   Walk again;
   int lost = 0;
   for (std::size_t i = 0; i < again.blind_to; ++i)
@@ -71,7 +71,7 @@ TEST(Odometry, CarriesTheMapAcrossABlindSpell) {
 
 TEST(Odometry, SwitchedOffItChangesNoBit) {
   const auto digest_of = [](bool given) {
-    SlamState state = new_run(0);
+    SlamState state = a_run(0);
     Walk walk;
     for (std::size_t i = 0; i < 200; ++i)
       walk.feed(state, i, given ? std::optional(walk.odometry(i)) : std::nullopt);
@@ -81,7 +81,7 @@ TEST(Odometry, SwitchedOffItChangesNoBit) {
 }
 
 TEST(Odometry, ThatStandsWhileTheRobotIsCarriedPlacesItNowhere) {
-  SlamState state = new_run();
+  SlamState state = a_run();
   Walk walk;
   walk.blind_to = walk.blind_from;
   std::size_t i = 0;
@@ -98,7 +98,7 @@ TEST(Odometry, ThatStandsWhileTheRobotIsCarriedPlacesItNowhere) {
 }
 
 TEST(Odometry, TooMuchDriftIsLost) {
-  SlamState state = new_run(0.01);
+  SlamState state = a_run(0.01);
   Walk walk;
   int lost = 0;
   for (std::size_t i = 0; i < walk.blind_to; ++i)
