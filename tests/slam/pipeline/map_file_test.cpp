@@ -126,6 +126,10 @@ class Layout {
     for (int column = 0; column < 3; ++column) vector(r.col(column));
     vector(p.translation());
   }
+  void maybe(const std::optional<SE3>& p) {
+    put<std::uint8_t>(p.has_value());
+    if (p) pose(*p);
+  }
   void twist(const Vector6d& v) {
     for (int i = 0; i < 6; ++i) put<double>(v[i]);
   }
@@ -169,6 +173,7 @@ class Layout {
       put<std::int32_t>(n.shared);
     }
     put<std::uint8_t>(k.erased);
+    maybe(k.odom_from_camera);
     put<std::uint32_t>(k.parent.value);
     pose(k.camera_from_parent);
   }
@@ -193,6 +198,7 @@ class Layout {
       pose(t.last->camera_from_world);
       features(t.last->features);
       ids(t.last->landmarks);
+      maybe(t.last->odom_from_camera);
     }
     put<std::uint8_t>(t.velocity_per_s.has_value());
     if (t.velocity_per_s) twist(*t.velocity_per_s);
@@ -206,6 +212,7 @@ class Layout {
     put<std::uint32_t>(t.reference.value);
     put<std::int32_t>(t.frames_since_keyframe);
     put<std::uint8_t>(t.coasting);
+    put<double>(t.reckoning.distance_m, t.reckoning.turn_rad);
     put<std::uint64_t>(t.stale_scores.of.size());
     for (const auto& [similarity, query] : t.stale_scores.of) {
       put<double>(similarity);
@@ -408,7 +415,7 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
   other[8] = 10;
-  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 10, but this program reads 9");
+  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 11, but this program reads 10");
   EXPECT_NE(refusal_of(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));
