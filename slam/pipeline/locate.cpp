@@ -68,12 +68,13 @@ std::optional<Located> follow_odometry(const SlamState& state, const Tracker& tr
     if (auto located = confirm_in_local_map(frame, *near, inliers_needed(frame.features, config),
                                             context, observers))
       if (reckoned.allows(located->tracked, config)) return located;
-  // Where the place is well known, landmarks should be seen, and enough is seen, but not they: the
-  // wheels slipped, or the robot was carried away.
+  // Where the place is well known, what the last frame showed should be seen, and enough is seen,
+  // but not that: the wheels slipped, or the robot was carried away.
   constexpr double kKnown_m = 0.05, kKnown_rad = 0.03;
   if (sigma.position_m <= kKnown_m && sigma.angle_rad <= kKnown_rad &&
-      static_cast<int>(frame.features.size()) >= 6 * config.min_inliers &&
-      count_expected(reckoned.camera_from_world, context) >= 6 * config.min_inliers)
+      static_cast<int>(frame.features.size()) >= 3 * config.min_inliers &&
+      count_that_can_be_found(*tracker.last, reckoned.camera_from_world, context.map,
+                              context.camera) >= 3 * config.min_inliers)
     return std::nullopt;
   Located located;
   located.tracked.camera_from_world = reckoned.camera_from_world;

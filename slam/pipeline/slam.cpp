@@ -33,7 +33,14 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
 }
 
 void rewind(SlamState& state) {
-  forget(state.tracker);
+  Tracker& tracker = state.tracker;
+  if (tracker.last && tracker.last->odom_from_camera) {  // which tells earlier frames' places, too
+    tracker.velocity_per_s.reset();
+    tracker.motion.reset();
+    tracker.coasting = true;
+  } else {
+    forget(tracker);
+  }
   state.last_stamp_ns.reset();
 }
 

@@ -63,7 +63,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns);
 
 /// Prepares for input that jumps back in time: tracking is lost, earlier stamps are accepted, and
-/// the map is kept.
+/// the map is kept. Odometry still tells where the camera is.
 void rewind(SlamState& state);
 
 /// Localizes a frame in a frozen map. The caller owns the tracker, so that many queries can start

@@ -88,7 +88,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   const SlamContext context = context_of(state, observers, report);
 
   PreparedFrame frame = prepare(stamp_ns, std::move(features), state, state.tracker);
-  frame.odom_from_camera = odom_from_camera;
+  if (state.config.track.odometry_position_m > 0) frame.odom_from_camera = odom_from_camera;
   if (state.map.empty()) return initialize(state, std::move(frame), observers, report);
 
   auto located = locate(state, state.tracker, frame, stream, observers, report);

@@ -61,7 +61,7 @@ void fuse_with_prediction(Located& located, const Tracker& tracker, Stamp stamp_
 std::optional<Reckoned> reckon_by_odometry(const Tracker& tracker,
                                            const std::optional<SE3>& odom_from_camera,
                                            const TrackConfig& config) {
-  if (!tracker.last || config.odometry_position_m == 0) return std::nullopt;
+  if (!tracker.last) return std::nullopt;
   const std::optional<SE3> step = odometry_step(tracker, odom_from_camera);
   if (!step) return std::nullopt;
   const Vector6d twist = step->log();

@@ -261,10 +261,6 @@ Expected expected_around(const SE3& camera_from_world, double radius_px,
 
 }  // namespace
 
-int count_expected(const SE3& camera_from_world, const SlamContext& context) {
-  return static_cast<int>(expected_around(camera_from_world, 1, context).landmarks.size());
-}
-
 std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
                                       const SlamContext& context) {
   const Expected around = expected_around(guess, radius_px, context);

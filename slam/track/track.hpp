@@ -46,9 +46,6 @@ int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& 
 std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
                                       const SlamContext& context);
 
-/// How many of the landmarks around a pose an image from there should show.
-int count_expected(const SE3& camera_from_world, const SlamContext& context);
-
 /// Estimates a frame's pose by appearance: words shared with the reference keyframe.
 /// @returns nullopt below TrackConfig::min_inliers_frame.
 std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,

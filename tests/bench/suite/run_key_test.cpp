@@ -222,7 +222,7 @@ void change(T& value) {
     value += "other";
   } else if constexpr (std::is_enum_v<T>) {
     const auto all = words(value);
-    value = all[all[0].second == value ? 1 : 0].second;
+    value = all[all.size() > 1 && all[0].second == value ? 1 : 0].second;  // one word: the only
   } else if constexpr (kIsOptional<T>) {
     change(value.emplace());
   } else if constexpr (kIsVector<T>) {

@@ -422,8 +422,7 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
                ideal.motion_blur.enabled || ideal.rolling_shutter.enabled ||
                ideal.auto_exposure.enabled || ideal.vignetting.enabled ||
                ideal.lens_distortion.enabled || ideal.processing.enabled ||
-               ideal.lens_blur.enabled || ideal.depth_offset.enabled ||
-               ideal.depth_bias.enabled ||
+               ideal.lens_blur.enabled || ideal.depth_offset.enabled || ideal.depth_bias.enabled ||
                ideal.blank_frames.enabled || ideal.dropped_frames.enabled);
   EXPECT_EQ(ideal, exact_sensors());
 

@@ -97,6 +97,28 @@ TEST(Odometry, ThatStandsWhileTheRobotIsCarriedPlacesItNowhere) {
   EXPECT_TRUE(found);
 }
 
+TEST(Odometry, KnowsThePlaceAfterARewind) {
+  const auto after_a_rewind = [](bool given) {
+    SlamState state = a_run();
+    state.config.relocalize.min_word_matches = 100'000;  // the whole map is of no help
+    Walk walk;
+    walk.blind_to = walk.blind_from;
+    const auto odometry = [&](std::size_t i) {
+      return given ? std::optional(walk.odometry(i)) : std::nullopt;
+    };
+    for (std::size_t i = 0; i < 120; ++i) walk.feed(state, i, odometry(i));
+    rewind(state);
+    walk.next = 71;
+    const StepReport report = walk.feed(state, 70, odometry(70));
+    if (report.world_from_camera) {
+      EXPECT_LT(walk.error(70, report).translation().norm(), 0.1);
+    }
+    return report.status;
+  };
+  EXPECT_EQ(after_a_rewind(true), TrackStatus::kRelocalized);
+  EXPECT_EQ(after_a_rewind(false), TrackStatus::kLost);
+}
+
 TEST(Odometry, TooMuchDriftIsLost) {
   SlamState state = a_run(0.01);
   Walk walk;
