@@ -34,24 +34,17 @@ bool Reckoned::allows(const TrackedPose& tracked, const TrackConfig& config) con
 void fuse_with_prediction(Located& located, const Tracker& tracker, Stamp stamp_ns,
                           const std::optional<Reckoned>& reckoned, const TrackConfig& config) {
   const Matrix6d covariance = located.tracked.information.inverse();
-  if (reckoned) {
-    SE3& pose = located.tracked.camera_from_world;
-    Motion motion = Motion::at_rest(reckoned->covariance);
-    const Vector6d off =
-        motion.correct((pose * reckoned->camera_from_world.inverse()).log(), covariance);
-    located.tracked.unsure = !is_sure(covariance, config);
-    if (located.tracked.unsure) pose = SE3::exp(off) * reckoned->camera_from_world;
-    located.motion = motion;
-    return;
-  }
   const double elapsed_s = seconds_since_last(tracker, stamp_ns);
-  if (!tracker.motion || elapsed_s <= 0) {
+  if (!reckoned && (!tracker.motion || elapsed_s <= 0)) {
     located.motion = Motion::at_rest(covariance);
     return;
   }
   SE3& pose = located.tracked.camera_from_world;
-  const SE3 predicted = tracker.motion->predict(tracker.last->camera_from_world, elapsed_s);
-  Motion motion = tracker.motion->after(elapsed_s);
+  const SE3 predicted = reckoned
+                            ? reckoned->camera_from_world
+                            : tracker.motion->predict(tracker.last->camera_from_world, elapsed_s);
+  Motion motion =
+      reckoned ? Motion::at_rest(reckoned->covariance) : tracker.motion->after(elapsed_s);
   const Vector6d off = motion.correct((pose * predicted.inverse()).log(), covariance);
   located.tracked.unsure = !is_sure(covariance, config);
   if (located.tracked.unsure) pose = SE3::exp(off) * predicted;

@@ -235,47 +235,30 @@ LocalMap local_map(const TrackedPose& tracked, const SlamContext& context) {
   return local;
 }
 
-namespace {
-
-struct Expected {
-  std::vector<ProjectionTarget> targets;
-  std::vector<LandmarkId> landmarks;
-};
-
-/// The landmarks around a pose that an image from there should show.
-Expected expected_around(const SE3& camera_from_world, double radius_px,
-                         const SlamContext& context) {
-  const LocalMap local =
-      local_map({.camera_from_world = camera_from_world, .landmarks = {}}, context);
-  const Eigen::Vector3d camera_in_world = camera_from_world.inverse().translation();
-  Expected found;
-  for (const LandmarkId id : local.landmarks)
-    if (const auto target =
-            expect(context.map.at(id), camera_from_world, camera_in_world, context.camera,
-                   context.config.features, static_cast<float>(radius_px))) {
-      found.targets.push_back(*target);
-      found.landmarks.push_back(id);
-    }
-  return found;
-}
-
-}  // namespace
-
 std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
                                       const SlamContext& context) {
-  const Expected around = expected_around(guess, radius_px, context);
+  const Eigen::Vector3d camera_in_world = guess.inverse().translation();
+  std::vector<ProjectionTarget> targets;
+  std::vector<LandmarkId> target_landmark;
+  const LocalMap local = local_map({.camera_from_world = guess, .landmarks = {}}, context);
+  for (const LandmarkId id : local.landmarks)
+    if (const auto target = expect(context.map.at(id), guess, camera_in_world, context.camera,
+                                   context.config.features, static_cast<float>(radius_px))) {
+      targets.push_back(*target);
+      target_landmark.push_back(id);
+    }
   const std::vector<std::uint8_t> taken(query.features.size(), 0);
   const auto found =
       find_landmarks({query,
-                      around.targets,
-                      around.landmarks,
+                      targets,
+                      target_landmark,
                       taken,
                       {.max_distance = static_cast<float>(context.config.match.max_distance),
                        .ratio = static_cast<float>(context.config.match.ratio_projection)}},
                      context, Matcher::kLocalMap);
   std::vector<LandmarkId> landmarks(query.features.size());
   for (std::size_t t = 0; t < found.size(); ++t)
-    if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = around.landmarks[t];
+    if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
   auto tracked = optimize_matches(query, landmarks, {}, guess, context);
   if (tracked && tracked->inliers < context.config.track.min_inliers_frame) tracked.reset();
   return tracked;
