@@ -21,6 +21,9 @@ struct TrackConfig {
   /// (one standard deviation).
   double odometry_position_m = 0.3;
   double odometry_angle_rad = 0.2;
+  /// While mapping, a camera that was lost is found again only where it can have come to, at this
+  /// speed, from where it was before; 0: anywhere.
+  double max_speed_m_s = 0;
   double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
   /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.
   /// 0: global shutter.
@@ -32,7 +35,7 @@ template <MaybeConst<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
          local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad,
-         odometry_position_m, odometry_angle_rad, coast_s, readout_s] = c;
+         odometry_position_m, odometry_angle_rad, max_speed_m_s, coast_s, readout_s] = c;
   v("min_inliers", min_inliers, setting::kPoints, "after the local map, to count as tracked");
   v("min_inliers_sparse", min_inliers_sparse, setting::kPoints,
     "where that is more than a sixth of the keypoints");
@@ -51,6 +54,8 @@ void fields(C& c, Visit& v) {
   v("odometry_position_m", odometry_position_m, {0, 10},
     "odometry places frames that the image does not, up to this drift (0: never) and");
   v("odometry_angle_rad", odometry_angle_rad, setting::kAngle_rad, "this");
+  v("max_speed_m_s", max_speed_m_s, {0, 100},
+    "while mapping, a lost camera is found again only where it can have come to; 0: anywhere");
   v("coast_s", coast_s, {0, 10},
     "how long a lost camera is searched for along its predicted motion");
   v("readout_s", readout_s, {0, 1}, "of a rolling shutter, first row to last; 0: all at once");

@@ -2,6 +2,8 @@
 // The whole system on one page: observe, locate, decide on a keyframe, map, look for loops,
 // remember.
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -59,6 +61,25 @@ void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Featu
                                                                state.depth_frames++, *disagreement);
 }
 
+/// Whether a camera that was lost can have come to a pose, at TrackConfig::max_speed_m_s, from
+/// where frames before it were, and on to where frames after it were before a rewind.
+bool within_reach(const SlamState& state, Stamp stamp_ns, const SE3& camera_from_world) {
+  const double max_speed_m_s = state.config.track.max_speed_m_s;
+  if (max_speed_m_s == 0) return true;
+  constexpr double kLeast_m = 0.3, kNanosecond_s = 1e-9;
+  const auto from = [&](const auto& other) {
+    const auto& [other_ns, frame] = *other;
+    const SE3 pose = frame.camera_from_reference * state.map.camera_from_world(frame.reference);
+    const double moved_m =
+        (pose.inverse().translation() - camera_from_world.inverse().translation()).norm();
+    const double elapsed_s = std::abs(static_cast<double>(stamp_ns - other_ns)) * kNanosecond_s;
+    return moved_m <= kLeast_m + max_speed_m_s * elapsed_s;
+  };
+  const auto after = state.tracked_frames.lower_bound(stamp_ns);
+  return (after == state.tracked_frames.end() || from(after)) &&
+         (after == state.tracked_frames.begin() || from(std::prev(after)));
+}
+
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
 void count_sightings(Map& map, const Located& located) {
   for (const LandmarkId id : located.expected) map.count_visible(id);
@@ -82,7 +103,6 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
     throw InputError(fmt::format("frame at {} ns: {} keypoints, but {} descriptors", stamp_ns,
                                  features.keypoints.size(), features.descriptors.size()));
   state.last_stamp_ns = stamp_ns;
-  state.tracked_frames.erase(stamp_ns);
   StepReport report;
   report.keypoints = static_cast<int>(features.size());
   const SlamContext context = context_of(state, observers, report);
@@ -92,6 +112,13 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   if (state.map.empty()) return initialize(state, std::move(frame), observers, report);
 
   auto located = locate(state, state.tracker, frame, stream, observers, report);
+  if (located && report.status == TrackStatus::kRelocalized &&
+      !within_reach(state, stamp_ns, located->tracked.camera_from_world)) {
+    located.reset();
+    report.status = TrackStatus::kLost;
+    report.relocalization = RelocalizationStage::kInliers;
+  }
+  state.tracked_frames.erase(stamp_ns);
   if (!located) {
     located = dead_reckon(state.tracker, stamp_ns, frame.features, context);
     if (located) report.status = TrackStatus::kTracked;
