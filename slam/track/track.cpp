@@ -235,30 +235,58 @@ LocalMap local_map(const TrackedPose& tracked, const SlamContext& context) {
   return local;
 }
 
-std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
-                                      const SlamContext& context) {
-  const Eigen::Vector3d camera_in_world = guess.inverse().translation();
+namespace {
+
+/// Landmarks of a local map where a pose expects them.
+struct Expected {
   std::vector<ProjectionTarget> targets;
-  std::vector<LandmarkId> target_landmark;
-  const LocalMap local = local_map({.camera_from_world = guess, .landmarks = {}}, context);
-  for (const LandmarkId id : local.landmarks)
-    if (const auto target = expect(context.map.at(id), guess, camera_in_world, context.camera,
-                                   context.config.features, static_cast<float>(radius_px))) {
-      targets.push_back(*target);
-      target_landmark.push_back(id);
-    }
-  const std::vector<std::uint8_t> taken(query.features.size(), 0);
+  std::vector<LandmarkId> landmarks;  // of each target
+};
+
+/// @param except  landmarks that are left out
+Expected expect_in_view(const LocalMap& local, const IdSet<LandmarkId>& except,
+                        const SE3& camera_from_world, double radius_px,
+                        const SlamContext& context) {
+  const Eigen::Vector3d camera_in_world = camera_from_world.inverse().translation();
+  Expected expected;
+  for (const LandmarkId id : local.landmarks) {
+    if (except.contains(id)) continue;
+    const auto target =
+        expect(context.map.at(id), camera_from_world, camera_in_world, context.camera,
+               context.config.features, static_cast<float>(radius_px));
+    if (!target) continue;
+    expected.targets.push_back(*target);
+    expected.landmarks.push_back(id);
+  }
+  return expected;
+}
+
+/// Matches what is expected with the keypoints that have no landmark yet.
+/// @param landmarks  per keypoint; receives those that were found
+void find_expected(const Expected& expected, const Query& query, double max_distance,
+                   const SlamContext& context, std::vector<LandmarkId>& landmarks) {
+  std::vector<std::uint8_t> taken;
+  for (const LandmarkId id : landmarks) taken.push_back(id.valid() ? 1 : 0);
   const auto found =
       find_landmarks({query,
-                      targets,
-                      target_landmark,
+                      expected.targets,
+                      expected.landmarks,
                       taken,
-                      {.max_distance = static_cast<float>(context.config.match.max_distance),
+                      {.max_distance = static_cast<float>(max_distance),
                        .ratio = static_cast<float>(context.config.match.ratio_projection)}},
                      context, Matcher::kLocalMap);
-  std::vector<LandmarkId> landmarks(query.features.size());
   for (std::size_t t = 0; t < found.size(); ++t)
-    if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
+    if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = expected.landmarks[t];
+}
+
+}  // namespace
+
+std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
+                                      const SlamContext& context) {
+  const LocalMap local = local_map({.camera_from_world = guess, .landmarks = {}}, context);
+  std::vector<LandmarkId> landmarks(query.features.size());
+  find_expected(expect_in_view(local, {}, guess, radius_px, context), query,
+                context.config.match.max_distance, context, landmarks);
   auto tracked = optimize_matches(query, landmarks, {}, guess, context);
   if (tracked && tracked->inliers < context.config.track.min_inliers_frame) tracked.reset();
   return tracked;
@@ -266,42 +294,19 @@ std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, doub
 
 std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
                                               const LocalMap& local, const SlamContext& context) {
-  const Map& map = context.map;
   IdSet<LandmarkId> matched;
-  std::vector<std::uint8_t> taken(query.features.size(), 0);
   std::vector<LandmarkId> landmarks = tracked.landmarks;
   LocalMapResult result;
-  for (std::size_t i = 0; i < landmarks.size(); ++i)
-    if (landmarks[i].valid()) {
-      matched.insert(landmarks[i]);
-      taken[i] = 1;
-      result.expected.push_back(landmarks[i]);
+  for (const LandmarkId id : landmarks)
+    if (id.valid()) {
+      matched.insert(id);
+      result.expected.push_back(id);
     }
-
-  const Eigen::Vector3d camera_in_world = tracked.camera_from_world.inverse().translation();
-  std::vector<ProjectionTarget> targets;
-  std::vector<LandmarkId> target_landmark;
-  for (const LandmarkId id : local.landmarks) {
-    if (matched.contains(id)) continue;
-    const auto target =
-        expect(map.at(id), tracked.camera_from_world, camera_in_world, context.camera,
-               context.config.features, static_cast<float>(context.config.track.local_radius_px));
-    if (!target) continue;
-    targets.push_back(*target);
-    target_landmark.push_back(id);
-    result.expected.push_back(id);
-  }
-  const auto found =
-      find_landmarks({query,
-                      targets,
-                      target_landmark,
-                      taken,
-                      {.max_distance = static_cast<float>(context.config.match.max_distance_loose),
-                       .ratio = static_cast<float>(context.config.match.ratio_projection)}},
-                     context, Matcher::kLocalMap);
-  for (std::size_t t = 0; t < found.size(); ++t)
-    if (found[t] >= 0) landmarks[static_cast<std::size_t>(found[t])] = target_landmark[t];
-
+  const Expected expected = expect_in_view(local, matched, tracked.camera_from_world,
+                                           context.config.track.local_radius_px, context);
+  result.expected.insert(result.expected.end(), expected.landmarks.begin(),
+                         expected.landmarks.end());
+  find_expected(expected, query, context.config.match.max_distance_loose, context, landmarks);
   auto refined =
       optimize_matches(query, landmarks, tracked.passing, tracked.camera_from_world, context);
   if (!refined) return std::nullopt;
