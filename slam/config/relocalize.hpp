@@ -37,7 +37,9 @@ struct RelocalizeConfig {
   Acceptance acceptance = Acceptance::kOurs;
   NeighborScores neighbor_scores = NeighborScores::kFresh;
   int min_word_matches = 15;
-  int min_inliers = 50;  ///< to accept a pose
+  int min_inliers = 50;    ///< to accept a pose
+  double rival_share = 0;  ///< a pose is refused if one elsewhere has at least this share of its
+                           ///< inliers; 0: the first pose is taken
   /// Around where a pose from few matches predicts a landmark; the second search uses 4 px.
   double search_radius_px = 10;
   /// Standard deviation of a true pair's disparity error (in addition to the keypoint's own, as in
@@ -53,13 +55,15 @@ struct RelocalizeConfig {
 
 template <MaybeConst<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, search_radius_px,
+  auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, rival_share, search_radius_px,
          disparity_sigma_px, ransac] = c;
   v("acceptance", acceptance, {}, "of a candidate's pose: ours or orb_slam2");
   v("neighbor_scores", neighbor_scores, {},
     "in equation 5: fresh, cleared or as_released (by ORB-SLAM2)");
   v("min_word_matches", min_word_matches, setting::kPoints, "with a candidate keyframe");
   v("min_inliers", min_inliers, setting::kPoints, "to accept a pose");
+  v("rival_share", rival_share, setting::kShare,
+    "of its inliers refuse a pose if another has them elsewhere; 0: the first is taken");
   v("search_radius_px", search_radius_px, setting::kRadius_px,
     "of the first search by pose (ours)");
   v("disparity_sigma_px", disparity_sigma_px, {0, 1000},

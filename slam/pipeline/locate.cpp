@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "slam/relocalize/relocalize.hpp"
-
 namespace mh {
 namespace {
 
@@ -87,11 +85,12 @@ std::optional<Located> follow_odometry(const SlamState& state, const Tracker& tr
 
 std::optional<TrackedPose> search_everywhere(const SlamState& state, Tracker& tracker,
                                              PreparedFrame& frame, RandomStream stream,
-                                             const StepObservers& observers, StepReport& report) {
+                                             const StepObservers& observers, StepReport& report,
+                                             const IsPossible& is_possible) {
   const InStage stage(observers, Stage::kRelocalization);
   RelocalizationResult found =
       relocalize(with_words(frame, state, observers), context_of(state, observers, report), stream,
-                 nullptr, &tracker.stale_scores);
+                 nullptr, &tracker.stale_scores, is_possible);
   report.relocalization = found.stage;
   report.candidates = found.candidates;
   if (!found.camera_from_world) return std::nullopt;
@@ -118,7 +117,7 @@ std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const Tr
 
 std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
-                              StepReport& report) {
+                              StepReport& report, const IsPossible& is_possible) {
   const SlamConfig& config = state.config;
   const SlamContext context = context_of(state, observers, report);
   const auto reckoned = reckon_by_odometry(tracker, frame.odom_from_camera, config.track);
@@ -132,7 +131,8 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }
-  const auto found = search_everywhere(state, tracker, frame, stream, observers, report);
+  const auto found =
+      search_everywhere(state, tracker, frame, stream, observers, report, is_possible);
   if (!found) return std::nullopt;
   located = confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
   // As long as odometry knows the place, a far one only looks like it.

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "slam/pipeline/prepared_frame.hpp"
+#include "slam/relocalize/relocalize.hpp"
 #include "slam/track/dead_reckon.hpp"
 
 namespace mh {
@@ -13,9 +14,10 @@ SlamContext context_of(const SlamState& state, const StepObservers& observers, S
 
 /// Localizes a frame in the map: by tracking from previous frames; if that fails, by
 /// relocalization. Reads the map, never writes it; of the tracker, only stale_scores changes.
+/// @param is_possible  of a pose that relocalization finds
 std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
-                              StepReport& report);
+                              StepReport& report, const IsPossible& is_possible = {});
 
 /// Refines a pose on the local map.
 /// @returns nullopt below `min_inliers`.

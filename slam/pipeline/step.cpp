@@ -111,13 +111,8 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   if (state.config.track.odometry_position_m > 0) frame.odom_from_camera = odom_from_camera;
   if (state.map.empty()) return initialize(state, std::move(frame), observers, report);
 
-  auto located = locate(state, state.tracker, frame, stream, observers, report);
-  if (located && report.status == TrackStatus::kRelocalized &&
-      !within_reach(state, stamp_ns, located->tracked.camera_from_world)) {
-    located.reset();
-    report.status = TrackStatus::kLost;
-    report.relocalization = RelocalizationStage::kInliers;
-  }
+  auto located = locate(state, state.tracker, frame, stream, observers, report,
+                        [&](const SE3& pose) { return within_reach(state, stamp_ns, pose); });
   state.tracked_frames.erase(stamp_ns);
   if (!located) {
     located = dead_reckon(state.tracker, stamp_ns, frame.features, context);

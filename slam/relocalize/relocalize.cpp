@@ -13,6 +13,7 @@ namespace mh {
 namespace {
 
 constexpr std::size_t kNeighbors = 10;
+constexpr RelocalizationStage kLastBeforeVerified = RelocalizationStage::kInliers;
 
 int overlap(const InvertedIndex::Score& score, Overlap what) {
   switch (what) {
@@ -96,7 +97,8 @@ KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
 
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
                                     const SlamContext& context, RandomStream stream,
-                                    PlaceMatchers matchers, AttemptMemo* memo) {
+                                    PlaceMatchers matchers, AttemptMemo* memo,
+                                    const IsPossible& is_possible) {
   RelocalizationResult result;
   AttemptMemo own;
   AttemptMemo& known = memo != nullptr ? *memo : own;
@@ -112,8 +114,11 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
     }
     const CandidateAttempt& attempt = place->second;
     add(attempt.counts, context.counts);
-    result.stage = std::max(result.stage, attempt.stage);
-    if (attempt.stage != RelocalizationStage::kVerified) continue;
+    const bool found = attempt.stage == RelocalizationStage::kVerified &&
+                       (!is_possible || is_possible(attempt.camera_from_world));
+    result.stage = std::max(result.stage,
+                            found ? attempt.stage : std::min(attempt.stage, kLastBeforeVerified));
+    if (!found) continue;
     result.camera_from_world = attempt.camera_from_world;
     result.landmarks = attempt.landmarks;
     result.inliers = attempt.inliers;
@@ -141,6 +146,37 @@ void prefer_near(std::vector<Candidate<KeyframeId>>& candidates, const Map& map,
     candidate.score *=
         std::pow(size_agreement(features, map.at(candidate.keyframe).features), power);
   std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate<KeyframeId>::score);
+}
+
+bool is_elsewhere(const SE3& a, const SE3& b) {
+  constexpr double kApart_m = 0.5, kApart_rad = 0.35;
+  return (a.inverse().translation() - b.inverse().translation()).norm() > kApart_m ||
+         angle_between_rad(a, b) > kApart_rad;
+}
+
+/// Tries all candidates, and keeps the pose with the most inliers unless one elsewhere has at least
+/// RelocalizeConfig::rival_share of them: then the place cannot be told.
+RelocalizationResult try_rivals(const Query& query, std::span<const KeyframeId> candidates,
+                                const SlamContext& context, RandomStream stream, AttemptMemo* memo,
+                                const IsPossible& is_possible) {
+  RelocalizationResult result;
+  std::vector<RelocalizationResult> found;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    RelocalizationResult tried =
+        try_candidates(query, candidates.subspan(i, 1), context, stream, {}, memo, is_possible);
+    result.stage = std::max(result.stage, tried.stage);
+    if (tried.camera_from_world) found.push_back(std::move(tried));
+  }
+  if (found.empty()) return result;
+  const auto best = std::ranges::max_element(found, {}, &RelocalizationResult::inliers);
+  const double rival = context.config.relocalize.rival_share * best->inliers;
+  const bool has_rival = std::ranges::any_of(found, [&](const RelocalizationResult& other) {
+    return other.inliers >= rival &&
+           is_elsewhere(*other.camera_from_world, *best->camera_from_world);
+  });
+  if (!has_rival) return *best;
+  result.stage = kLastBeforeVerified;
+  return result;
 }
 
 }  // namespace
@@ -174,7 +210,8 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 }
 
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo, StaleScores* stale_scores) {
+                                AttemptMemo* memo, StaleScores* stale_scores,
+                                const IsPossible& is_possible) {
   const SlamConfig& config = context.config;
   const auto selection = choose_candidates(context.map, query, config, stale_scores);
   std::vector<KeyframeId> candidates;
@@ -182,7 +219,10 @@ RelocalizationResult relocalize(const Query& query, const SlamContext& context, 
   const Camera camera = lenient(context.camera, config.relocalize);
   const SlamContext leniently{camera,         config,        context.map,
                               context.counts, context.trace, context.decisions};
-  RelocalizationResult result = try_candidates(query, candidates, leniently, stream, {}, memo);
+  RelocalizationResult result =
+      config.relocalize.rival_share > 0
+          ? try_rivals(query, candidates, leniently, stream, memo, is_possible)
+          : try_candidates(query, candidates, leniently, stream, {}, memo, is_possible);
   result.candidates = {.keyframes = context.map.keyframe_count(),
                        .c1 = selection.c1,
                        .c2 = selection.c2,

@@ -48,12 +48,16 @@ KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
 /// that differ only in which candidates they choose can reuse them.
 using AttemptMemo = std::map<KeyframeId, CandidateAttempt>;
 
+/// What is known of the camera's place: whether a pose is possible. Empty: any is.
+using IsPossible = std::function<bool(const SE3& camera_from_world)>;
+
 /// Tries candidate keyframes in order: matching by words, PnP with RANSAC, refinement, guided
-/// search. The first success wins; `candidates` of the result stays empty. A memo saves work and
-/// does not change the result.
+/// search. The first success at a possible pose wins; `candidates` of the result stays empty. A
+/// memo saves work and does not change the result.
 RelocalizationResult try_candidates(const Query& query, std::span<const KeyframeId> candidates,
                                     const SlamContext& context, RandomStream stream,
-                                    PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr);
+                                    PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr,
+                                    const IsPossible& is_possible = {});
 
 /// Chooses the candidates that relocalize() tries: select_keyframes(), with neighbors scored as
 /// RelocalizeConfig::neighbor_scores says, then `nearness` and `candidates` of SemanticConfig.
@@ -69,10 +73,12 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 /// Localizes the camera in the map without an initial guess: Algorithm 1 chooses the candidates, in
 /// order of score. With acceptance `ours`, candidates are tried at
 /// RelocalizeConfig::disparity_sigma_px or the camera's own sigma, whichever is larger. The pose is
-/// provisional: the caller must confirm it in the local map, at the camera's own sigma.
+/// provisional: the caller must confirm it in the local map, at the camera's own sigma. With
+/// RelocalizeConfig::rival_share, every candidate is tried.
 /// @param stale_scores  of earlier queries. Read and updated only under
 /// NeighborScores::kAsReleased, and must then not be null
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,
-                                AttemptMemo* memo = nullptr, StaleScores* stale_scores = nullptr);
+                                AttemptMemo* memo = nullptr, StaleScores* stale_scores = nullptr,
+                                const IsPossible& is_possible = {});
 
 }  // namespace mh

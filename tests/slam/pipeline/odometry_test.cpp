@@ -97,6 +97,23 @@ TEST(Odometry, ThatStandsWhileTheRobotIsCarriedPlacesItNowhere) {
   EXPECT_TRUE(found);
 }
 
+TEST(Reach, ACameraThatWasCarriedIsFoundWhenItCanHaveComeThere) {
+  const auto first_found_s = [](double max_speed_m_s) {
+    SlamState state = a_run();
+    state.config.track.max_speed_m_s = max_speed_m_s;
+    Walk walk;
+    walk.blind_to = walk.blind_from;
+    for (std::size_t i = 0; i < 300; ++i) walk.feed(state, i, std::nullopt);  // the second room
+    for (int k = 0; k < 300; ++k)
+      if (walk.feed(state, 10, std::nullopt).world_from_camera) return k / 30.0;
+    return 10.0;
+  };
+  const double apart_m = (Walk().path[299].translation() - Walk().path[10].translation()).norm();
+  EXPECT_LT(first_found_s(0), 0.5);
+  EXPECT_NEAR(first_found_s(1), apart_m - 0.3, 0.1);
+  EXPECT_EQ(first_found_s(0.1), 10);
+}
+
 TEST(Odometry, KnowsThePlaceAfterARewind) {
   const auto after_a_rewind = [](bool given) {
     SlamState state = a_run();

@@ -246,6 +246,59 @@ struct MappedViews {
 
 constexpr auto kBoth = {Acceptance::kOurs, Acceptance::kOrbSlam2};
 
+/// Two rooms alike, 10 m apart; a frame of the first. `less` points of the copy are missing.
+struct RoomAndCopy : MappedViews {
+  const SE3 to_copy = SE3::exp((Vector6d() << 10, 0, 0, 0, 0, 0).finished());
+  explicit RoomAndCopy(std::uint32_t less) : MappedViews([](std::uint32_t) { return false; }) {
+    Keyframe copy = map.at(KeyframeId{0});
+    copy.camera_from_world = to_copy.inverse();
+    copy.landmarks.clear();
+    map.add(std::move(copy));
+    for (std::uint32_t i = less; i < kPoints; ++i) {
+      const LandmarkId landmark = map.at(KeyframeId{0}).landmarks[i];
+      map.refresh(map.add_landmark(to_copy * map.at(landmark).position_in_world, KeyframeId{1}, i),
+                  {});
+    }
+  }
+  RelocalizationResult find_place(double rival_share, const IsPossible& is_possible = {}) const {
+    SlamConfig config;
+    config.relocalize.rival_share = rival_share;
+    const FeatureGrid grid(features.keypoints, camera);
+    MatchCounts counts{};
+    return relocalize({features, grid, words}, {camera, config, map, counts}, RandomStream(1),
+                      nullptr, nullptr, is_possible);
+  }
+};
+
+TEST(Relocalize, RefusesAPlaceThatHasARival) {
+  EXPECT_EQ(RoomAndCopy(0).find_place(0).stage, RelocalizationStage::kVerified);
+  for (const double share : {0.9, 1.0}) {
+    const auto refused = RoomAndCopy(0).find_place(share);
+    EXPECT_EQ(refused.stage, RelocalizationStage::kInliers);
+    EXPECT_FALSE(refused.camera_from_world);
+  }
+  // The copy has 54 of 60.
+  EXPECT_EQ(RoomAndCopy(6).find_place(0.9).stage, RelocalizationStage::kInliers);
+  const auto clear = RoomAndCopy(6).find_place(0.91);
+  EXPECT_EQ(clear.stage, RelocalizationStage::kVerified);
+  EXPECT_EQ(clear.keyframe, KeyframeId{0});
+}
+
+TEST(Relocalize, PassesOverPlacesThatAreImpossible) {
+  const RoomAndCopy rooms(0);
+  for (const double rival_share : {0.0, 0.9})
+    for (const double from_m : {-5.0, 5.0}) {
+      const auto found = rooms.find_place(rival_share, [&](const SE3& camera_from_world) {
+        return std::abs(camera_from_world.inverse().translation().x() - from_m) < 5;
+      });
+      EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
+      EXPECT_EQ(found.keyframe, KeyframeId{from_m < 0 ? 0U : 1U});
+    }
+  const auto nowhere = rooms.find_place(0, [](const SE3&) { return false; });
+  EXPECT_EQ(nowhere.stage, RelocalizationStage::kInliers);
+  EXPECT_FALSE(nowhere.camera_from_world);
+}
+
 // The first feature and the last may lie. What is found is each true one, no other, and the exact
 // pose.
 TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
