@@ -16,6 +16,7 @@ struct Feed {
   bool in_trouble = false;
   std::size_t to_pass = 0;  ///< after a failure: the furthest frame that failed
   int restarts_here = 0;    ///< consecutive ones that did not get past to_pass
+  int dropped_in_row = 0;
   bool tracking = false;
   bool mapped = false;  ///< something was tracked since the start or the last reset
 };
@@ -37,7 +38,12 @@ void note_tracked(Feed& feed, std::size_t index) {
   if (feed.in_trouble && index >= feed.to_pass) {
     feed.in_trouble = false;
     feed.restarts_here = 0;
+    feed.dropped_in_row = 0;
   }
+}
+
+bool is_hopeless(const Feed& feed, const ProtocolConfig& config) {
+  return config.hopeless_after > 0 && feed.dropped_in_row >= config.hopeless_after;
 }
 
 /// Records the report on a frame that was shown.
@@ -119,16 +125,22 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
     if (!is_failure(feed, i)) continue;
 
     ++outcome.failures;
-    go_back(feed, i, config);
-    system.rewind();
-    ++outcome.restarts;
-    if (feed.restarts_here < config.restarts_per_frame) {
-      ++feed.restarts_here;
-      continue;
+    if (is_hopeless(feed, config)) {
+      feed.to_pass = i;
+      feed.tracking = false;
+    } else {
+      go_back(feed, i, config);
+      system.rewind();
+      ++outcome.restarts;
+      if (feed.restarts_here < config.restarts_per_frame) {
+        ++feed.restarts_here;
+        continue;
+      }
     }
     out[i] = true;
     outcome.dropped.push_back(i);
     feed.restarts_here = 0;
+    ++feed.dropped_in_row;
     if (config.reset == DropReset::kMap) {
       system.reset();
       feed.mapped = false;

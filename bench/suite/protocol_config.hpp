@@ -59,6 +59,7 @@ struct ProtocolConfig {
   int rewind_frames = 50;
   int restarts_per_frame = 5;
   DropReset reset = DropReset::kCounter;
+  int hopeless_after = 0;
   /// A system that never recovers would otherwise cost restarts_per_frame + 1 rewinds for each
   /// dropped frame.
   double max_effort = 6.0;
@@ -81,9 +82,9 @@ inline ProtocolConfig live_feed() {
 
 template <MaybeConst<ProtocolConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [test_interval, on_failure, rewind_frames, restarts_per_frame, reset, max_effort,
-         query_attempts, attempts, max_blank_frames, correct_distance_m, correct_angle_deg, truth] =
-      c;
+  auto& [test_interval, on_failure, rewind_frames, restarts_per_frame, reset, hopeless_after,
+         max_effort, query_attempts, attempts, max_blank_frames, correct_distance_m,
+         correct_angle_deg, truth] = c;
   v("test_interval", test_interval, {0, 100000},
     "hold out every n-th frame as a test frame; 0: none");
   v("on_failure", on_failure, {},
@@ -94,6 +95,10 @@ void fields(C& c, Visit& v) {
   v("reset", reset, {},
     "after a dropped frame: set the count of restarts to zero (counter), or discard the map too "
     "(map)");
+  v("hopeless_after", hopeless_after, {0, 100000},
+    "frames dropped in a row after which those that follow are shown once, until one is tracked; "
+    "0: "
+    "never");
   v("max_effort", max_effort, {1, 1000},
     "mapping stops after this many track calls per frame of the sequence");
   v("query_attempts", query_attempts, {1, 1000}, "times that a test frame is shown");

@@ -141,6 +141,34 @@ TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
   EXPECT_EQ(system.trajectory().size(), 114u);
 }
 
+// Frames 80 to 99 are never tracked. 415 calls would drop the first of them (see above); of these
+// 86 go on after 80. A hopeless spell shows 81 to 99 without 89 once: 79 + 5 * 50 calls up to the
+// sixth failure, then 30 to 119 without 59, 80, 89, 119 = 86.
+TEST(MapSequence, AHopelessSpellIsShownOnce) {
+  FakeSystem system([](Stamp frame, int) { return frame < 80 || frame > 99; });
+  ProtocolConfig config;
+  config.hopeless_after = 1;
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
+  EXPECT_EQ(outcome.calls.size(), 415u);
+  EXPECT_EQ(outcome.restarts, 6);
+  EXPECT_EQ(system.rewinds, 6);
+  EXPECT_EQ(outcome.dropped.size(), 19u);
+  EXPECT_EQ(system.trajectory().size(), 116u - 19u);
+  config.hopeless_after = 0;
+  FakeSystem other([](Stamp frame, int) { return frame < 80 || frame > 99; });
+  const MappingOutcome all = map_sequence(other, fake_frames(kCount), config, RandomStream(1));
+  EXPECT_TRUE(all.gave_up);
+}
+
+TEST(MapSequence, AfterAHopelessSpellFramesGetTheirRestartsAgain) {
+  FakeSystem system([](Stamp frame, int) { return frame != 80 && frame != 81 && frame != 110; });
+  ProtocolConfig config;
+  config.hopeless_after = 1;
+  const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
+  EXPECT_EQ(outcome.dropped, (std::vector<std::size_t>{80, 81, 110}));
+  EXPECT_EQ(outcome.restarts, 6 + 6);
+}
+
 TEST(MapSequence, AFeedThatContinuesShowsEachFrameOnceAndHoldsNoneOut) {
   FakeSystem system([](Stamp frame, int) { return frame < 40 || frame >= 50; });
   std::vector<std::size_t> seen;
