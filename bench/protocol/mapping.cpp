@@ -2,10 +2,13 @@
 #include "bench/protocol/mapping.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "bench/protocol/step_digest.hpp"
 #include "bench/protocol/streams.hpp"
 #include "slam/core/digest.hpp"
+#include "slam/core/imu.hpp"
 
 namespace mh {
 namespace {
@@ -20,6 +23,17 @@ struct Feed {
   bool tracking = false;
   bool mapped = false;  ///< something was tracked since the start or the last reset
 };
+
+/// The readings since the frame that was shown before or, after a jump back, since the one before
+/// it in the sequence.
+std::vector<ImuReading> imu_since(const Sequence& sequence, std::optional<Stamp> shown_ns,
+                                  std::size_t index) {
+  const Stamp since_ns = shown_ns    ? *shown_ns
+                         : index > 0 ? sequence.stamp_ns(index - 1)
+                                     : std::numeric_limits<Stamp>::min();
+  const auto readings = imu_between(sequence.imu(), since_ns, sequence.stamp_ns(index));
+  return {readings.begin(), readings.end()};
+}
 
 bool is_failure(const Feed& feed, std::size_t index) {
   return feed.mapped && (feed.tracking || !feed.in_trouble || index >= feed.to_pass);
@@ -95,6 +109,7 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       count + 1000, static_cast<std::size_t>(config.max_effort * static_cast<double>(count)));
 
   Feed feed{.next = first, .mapped = first > 0};
+  std::optional<Stamp> shown_ns;  // the last frame, unless the feed has gone back since
   while (feed.next < count) {
     const std::size_t i = feed.next++;
     if (is_test_frame(i, config) || out[i]) continue;
@@ -102,11 +117,13 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       outcome.gave_up = true;
       break;
     }
-    const auto frame = frames.frame(i, mapping_noise(stream, outcome.restarts));
+    auto frame = frames.frame(i, mapping_noise(stream, outcome.restarts));
     if (!frame) {
       out[i] = true;
       continue;
     }
+    frame->imu = imu_since(sequence, shown_ns, i);
+    shown_ns = frame->stamp_ns;
     const RandomStream draws =
         stream.fork(RunDraw::kSlam).fork(static_cast<std::uint64_t>(outcome.restarts)).fork(i);
     const SystemReport report = system.track(*frame, draws);
@@ -130,6 +147,7 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       feed.tracking = false;
     } else {
       go_back(feed, i, config);
+      shown_ns.reset();
       system.rewind();
       ++outcome.restarts;
       if (feed.restarts_here < config.restarts_per_frame) {

@@ -132,6 +132,12 @@ class Conversation {
       const Eigen::Quaterniond q = frame.odom_from_camera->quaternion();
       fields["odometry"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
     }
+    for (const ImuReading& reading : frame.imu) {
+      const auto& w = reading.turn_rad_per_s;
+      const auto& a = reading.specific_force_m_per_s2;
+      fields["imu"].push_back(
+          {format_stamp(reading.stamp_ns), w.x(), w.y(), w.z(), a.x(), a.y(), a.z()});
+    }
     fields["seed"] = told_seed(stream);
     const Json reply =
         ask(what, fields,

@@ -64,9 +64,13 @@ typedef struct mh_frame {
   const uint16_t* depth; /**< along the optical axis, see depth_per_meter; 0 = no return */
   const uint8_t* labels; /**< class id per pixel; NULL if the run has no labels */
   int32_t seed;          /**< seeds all randomness of this call, >= 0; each attempt has its own */
-  /** Where the wheels alone place the camera; their world drifts. NULL: no odometry. Last, so that a
-   * library that was built before it was there still works. */
+  /* New members come last, so that a library that was built before them still works. */
+  /** Where the wheels alone place the camera; their world drifts. NULL: no odometry. */
   const struct mh_pose* odometry;
+  /** What the inertial sensor delivered since the frame before (after rewind(): since the frame
+   * before this one in the sequence), in order. */
+  const struct mh_imu* imu;
+  int32_t imu_count; /**< 0: none */
 } mh_frame;
 
 /** Pose of the camera in the system's own world (world_from_camera): x y z in meters, then the unit
@@ -75,6 +79,13 @@ typedef struct mh_frame {
 typedef struct mh_pose {
   double values[7];
 } mh_pose;
+
+/** A reading of an inertial sensor in the camera's housing, in the camera's axes. */
+typedef struct mh_imu {
+  int64_t stamp_ns;
+  double turn_rad_per_s[3];
+  double specific_force_m_per_s2[3]; /**< at rest 9.81 upward */
+} mh_imu;
 
 /** Where a relocalization ended. */
 typedef enum mh_stage {

@@ -13,6 +13,7 @@
 
 #include "scenes/image_file.hpp"
 #include "scenes/recordings/associations.hpp"
+#include "scenes/recordings/euroc.hpp"
 #include "scenes/recordings/images/write_image.hpp"
 #include "scenes/recordings/nearest_stamp.hpp"
 #include "scenes/recordings/tum_list.hpp"
@@ -243,9 +244,10 @@ void TumWriter::add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes) {
 
 void TumWriter::add(const RgbdFrame& frame) {
   add_images(frame);
-  if (frame.odom_from_camera) {
+  {
     const std::scoped_lock lock(mutex_);
-    odometry_[frame.stamp_ns] = *frame.odom_from_camera;
+    if (frame.odom_from_camera) odometry_[frame.stamp_ns] = *frame.odom_from_camera;
+    for (const ImuReading& reading : frame.imu) imu_[reading.stamp_ns] = reading;
   }
   if (!frame.semantics.index.empty()) add_labels(frame.stamp_ns, class_image(frame.semantics));
 }
@@ -288,6 +290,11 @@ void TumWriter::finish() {
     Trajectory path;
     for (const auto& [stamp, pose] : *poses) path.push_back({stamp, pose});
     if (!path.empty()) write_tum(folder_ / name, path);
+  }
+  if (!imu_.empty()) {
+    std::string text = fmt::format("{}\n", kEurocImuColumns);
+    for (const auto& [stamp, reading] : imu_) text += euroc_line(reading);
+    write_atomically(folder_ / "imu.csv", text);
   }
   write_atomically(folder_ / "camera_info.yaml", camera_info_text(camera_));
   write_atomically(folder_ / "camera.yaml", settings_text(camera_));

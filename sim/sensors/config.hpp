@@ -304,6 +304,33 @@ struct MotionSampling {
   friend bool operator==(const MotionSampling&, const MotionSampling&) = default;
 };
 
+/// An inertial sensor in the camera's housing. Defaults: noise of the Bosch BMI055 (data sheet:
+/// 0.014 deg/s/sqrt(Hz), 150 ug/sqrt(Hz), zero-rate offset 1 deg/s), as in Intel's D435i; the walks
+/// of the ADIS16448 in EuRoC's sensor.yaml (Burri et al., IJRR 2016), and an accelerometer's offset
+/// as that data set's ground truth has it.
+struct ImuConfig {
+  double rate_hz = 200;
+  double gyro_noise = 2.44e-4;   ///< rad/s/sqrt(Hz)
+  double gyro_walk = 1.94e-5;    ///< of the bias, rad/s^2/sqrt(Hz)
+  double gyro_bias = 0.0175;     ///< at the start, rad/s
+  double accel_noise = 1.47e-3;  ///< m/s^2/sqrt(Hz)
+  double accel_walk = 3.0e-3;    ///< of the bias, m/s^3/sqrt(Hz)
+  double accel_bias = 0.1;       ///< at the start, m/s^2
+  friend bool operator==(const ImuConfig&, const ImuConfig&) = default;
+};
+
+template <MaybeConst<ImuConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [rate_hz, gyro_noise, gyro_walk, gyro_bias, accel_noise, accel_walk, accel_bias] = c;
+  v("rate_hz", rate_hz, {10, 2000}, "readings per second, where a suite gives them");
+  v("gyro_noise", gyro_noise, {0, 1}, "rad/s/sqrt(Hz)");
+  v("gyro_walk", gyro_walk, {0, 1}, "of the bias, rad/s^2/sqrt(Hz)");
+  v("gyro_bias", gyro_bias, {0, 10}, "at the start, standard deviation, rad/s");
+  v("accel_noise", accel_noise, {0, 10}, "m/s^2/sqrt(Hz)");
+  v("accel_walk", accel_walk, {0, 10}, "of the bias, m/s^3/sqrt(Hz)");
+  v("accel_bias", accel_bias, {0, 100}, "at the start, standard deviation, m/s^2");
+}
+
 struct SensorConfig {
   DepthNoiseConfig depth_noise;
   ColorNoiseConfig color_noise;
@@ -320,6 +347,7 @@ struct SensorConfig {
   LostFramesConfig blank_frames;    ///< arrive black, without depth and labels
   LostFramesConfig dropped_frames;  ///< never arrive
   HurryConfig hurry;
+  ImuConfig imu;
   LabelConfig labels;
   MotionSampling motion_sampling;
   friend bool operator==(const SensorConfig&, const SensorConfig&) = default;
@@ -331,8 +359,8 @@ template <MaybeConst<SensorConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
   [[maybe_unused]] auto& [depth_noise, color_noise, shot_noise, auto_exposure, vignetting,
                           lens_blur, processing, lens_distortion, motion_blur, rolling_shutter,
-                          depth_offset, depth_bias, blank_frames, dropped_frames, hurry, labels,
-                          motion_sampling] = config;
+                          depth_offset, depth_bias, blank_frames, dropped_frames, hurry, imu,
+                          labels, motion_sampling] = config;
   const auto part = [&](const char* name, auto& c) {
     visit.section(name);
     fields(c, visit);
@@ -352,6 +380,7 @@ void for_each_setting(C& config, Visit&& visit) {
   part("blank_frames", blank_frames);
   part("dropped_frames", dropped_frames);
   part("hurry", hurry);
+  part("imu", imu);
   for_each_setting(labels, visit);
 }
 

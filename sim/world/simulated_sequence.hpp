@@ -46,12 +46,14 @@ class SimulatedSequence : public Sequence {
   void set_odometry(std::vector<SE3> odom_from_camera) {
     odom_from_camera_ = std::move(odom_from_camera);
   }
+  void set_imu(std::vector<ImuReading> readings) { imu_ = std::move(readings); }
 
   const Camera& camera() const override { return shutter_.camera(); }
   std::size_t size() const override { return shutter_.path().size(); }
   Stamp stamp_ns(std::size_t i) const override { return shutter_.path()[i].stamp_ns; }
   RgbdFrame frame(std::size_t i, RandomStream noise) const override;
   const Trajectory* truth() const override { return &shutter_.path(); }
+  std::span<const ImuReading> imu() const override { return imu_; }
 
  private:
   SharedExposures* shared_with(RandomStream noise) const;
@@ -62,6 +64,7 @@ class SimulatedSequence : public Sequence {
   SensorConfig sensors_;
   LabelMode labels_;
   std::vector<SE3> odom_from_camera_;        // or empty
+  std::vector<ImuReading> imu_;              // or empty
   SharedImages images_;                      // shared
   std::string name_;                         // of their file
   std::unique_ptr<SharedExposures> shared_;  // or null

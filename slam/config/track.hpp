@@ -17,10 +17,10 @@ struct TrackConfig {
   double near_angle_rad = 0.9;   ///< if they face within this angle, even without shared landmarks
   double sure_position_m = 0.015;  ///< a pose with a larger standard deviation than this, or
   double sure_angle_rad = 0.01;    ///< than this, from its image alone, is fused with the motion
-  /// Wheel odometry, where frames bring it, places a frame whose image does not, up to this drift
-  /// (one standard deviation).
-  double odometry_position_m = 0.3;
-  double odometry_angle_rad = 0.2;
+  /// Wheel odometry or an inertial sensor, where frames bring them, place a frame whose image does
+  /// not, up to this drift (one standard deviation).
+  double reckon_position_m = 0.3;
+  double reckon_angle_rad = 0.2;
   /// While mapping, a camera that was lost is found again only where it can have come to, at this
   /// speed, from where it was before; 0: anywhere.
   double max_speed_m_s = 0;
@@ -35,7 +35,7 @@ template <MaybeConst<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
          local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad,
-         odometry_position_m, odometry_angle_rad, max_speed_m_s, coast_s, readout_s] = c;
+         reckon_position_m, reckon_angle_rad, max_speed_m_s, coast_s, readout_s] = c;
   v("min_inliers", min_inliers, setting::kPoints, "after the local map, to count as tracked");
   v("min_inliers_sparse", min_inliers_sparse, setting::kPoints,
     "where that is more than a sixth of the keypoints");
@@ -51,9 +51,9 @@ void fields(C& c, Visit& v) {
     "a pose less sure than this by its image or");
   v("sure_angle_rad", sure_angle_rad, setting::kAngle_rad,
     "than this is weighed against the motion");
-  v("odometry_position_m", odometry_position_m, {0, 10},
-    "odometry places frames that the image does not, up to this drift (0: never) and");
-  v("odometry_angle_rad", odometry_angle_rad, setting::kAngle_rad, "this");
+  v("reckon_position_m", reckon_position_m, {0, 10},
+    "odometry or IMU place frames that the image does not, up to this drift (0: never) and");
+  v("reckon_angle_rad", reckon_angle_rad, setting::kAngle_rad, "this");
   v("max_speed_m_s", max_speed_m_s, {0, 100},
     "while mapping, a lost camera is found again only where it can have come to; 0: anywhere");
   v("coast_s", coast_s, {0, 10},

@@ -36,6 +36,16 @@ struct SemanticImage {
   friend bool operator==(const SemanticImage&, const SemanticImage&) = default;
 };
 
+/// A reading of an inertial sensor in the camera's housing; axes of the camera (x right, y down, z
+/// forward), origin in its center.
+struct ImuReading {
+  Stamp stamp_ns = 0;
+  Eigen::Vector3d turn_rad_per_s = Eigen::Vector3d::Zero();           ///< gyroscope
+  Eigen::Vector3d specific_force_m_per_s2 = Eigen::Vector3d::Zero();  ///< accelerometer: at rest
+                                                                      ///< 9.81 upward
+  friend bool operator==(const ImuReading&, const ImuReading&) = default;
+};
+
 /// Everything SLAM sees of one instant: no pose, no instance ids, no ground truth.
 struct RgbdFrame {
   Stamp stamp_ns = 0;
@@ -45,6 +55,8 @@ struct RgbdFrame {
   /// Where the wheels alone place the camera at the stamp; their frame of reference drifts. Absent:
   /// no odometry.
   std::optional<SE3> odom_from_camera = {};
+  /// What the inertial sensor delivered since the frame that was shown before, in order of stamps.
+  std::vector<ImuReading> imu = {};
 };
 
 }  // namespace mh

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "slam/core/camera.hpp"
@@ -28,6 +29,9 @@ class Sequence {
   /// Ground-truth camera poses, ordered by stamp; null if unknown. Frames without a valid pose are
   /// absent.
   virtual const Trajectory* truth() const = 0;
+  /// All that an inertial sensor delivered, in order of stamps; empty: there is none. Frames come
+  /// without it: what a system is shown before decides which readings a frame brings.
+  virtual std::span<const ImuReading> imu() const { return {}; }
 };
 
 /// The stamps of all frames, in order.

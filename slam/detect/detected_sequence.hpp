@@ -31,6 +31,7 @@ class DetectedSequence : public Sequence {
   Stamp stamp_ns(std::size_t i) const override { return inner_->stamp_ns(i); }
   RgbdFrame frame(std::size_t i, RandomStream noise) const override;
   const Trajectory* truth() const override { return inner_->truth(); }
+  std::span<const ImuReading> imu() const override { return inner_->imu(); }
 
  private:
   std::shared_ptr<const Sequence> inner_;

@@ -48,9 +48,9 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
   return std::nullopt;
 }
 
-/// Localizes a frame where odometry has it: in the map around, or, if the image cannot contradict,
-/// by odometry alone.
-std::optional<Located> follow_odometry(const SlamState& state, const Tracker& tracker,
+/// Localizes a frame where another sensor has it: in the map around, or, if the image cannot
+/// contradict, by that sensor alone.
+std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tracker,
                                        const Reckoned& reckoned, PreparedFrame& frame,
                                        const SlamContext& context, const StepObservers& observers) {
   const TrackConfig& config = state.config.track;
@@ -120,14 +120,16 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
                               StepReport& report, const IsPossible& is_possible) {
   const SlamConfig& config = state.config;
   const SlamContext context = context_of(state, observers, report);
-  const auto reckoned = reckon_by_odometry(tracker, frame.odom_from_camera, config.track);
+  const auto reckoned =
+      reckon(tracker, frame.stamp_ns, frame.odom_from_camera, frame.imu, config.track);
   auto located = follow(state, tracker, reckoned, frame, context, observers);
   if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
   if (!located && reckoned)
-    located = follow_odometry(state, tracker, *reckoned, frame, context, observers);
+    located = follow_reckoned(state, tracker, *reckoned, frame, context, observers);
   if (located && located->reckoning.is_zero())
     fuse_with_prediction(*located, tracker, frame.stamp_ns, reckoned, config.track);
   if (located) {
+    follow_inertially(*located, reckoned, frame.imu, tracker);
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }
@@ -135,10 +137,11 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
       search_everywhere(state, tracker, frame, stream, observers, report, is_possible);
   if (!found) return std::nullopt;
   located = confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
-  // As long as odometry knows the place, a far one only looks like it.
+  // As long as another sensor knows the place, a far one only looks like it.
   if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
   if (located) {
     located->motion = Motion::at_rest(located->tracked.information.inverse());
+    follow_inertially(*located, {}, frame.imu, tracker);
     report.status = TrackStatus::kRelocalized;
   } else {
     report.relocalization = RelocalizationStage::kInliers;

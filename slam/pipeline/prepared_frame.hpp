@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "slam/match/context.hpp"
 #include "slam/pipeline/slam.hpp"
@@ -32,6 +33,7 @@ struct PreparedFrame {
   FeatureGrid grid;
   std::optional<WordIndex> words;
   std::optional<SE3> odom_from_camera = {};
+  std::span<const ImuReading> imu = {};  ///< the caller owns them
 };
 
 /// extract(), reported as a stage.

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "slam/config/slam.hpp"
 #include "slam/core/camera.hpp"
@@ -52,12 +53,13 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
 
 /// The same, starting from features that exist already, from a cache or a synthetic world. The
 /// overload for a frame calls extract() and then this one.
-/// @param odom_from_camera  RgbdFrame::odom_from_camera
+/// @param odom_from_camera, imu  as in RgbdFrame
 /// @throws InputError if the stamp does not increase or the numbers of descriptors and keypoints
 /// differ.
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
                 const StepObservers& observers = {},
-                const std::optional<SE3>& odom_from_camera = {});
+                const std::optional<SE3>& odom_from_camera = {},
+                std::span<const ImuReading> imu = {});
 
 /// @throws InputError naming both stamps if the frame's is not later than the last one's.
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns);

@@ -93,11 +93,12 @@ StepReport step(SlamState& state, const RgbdFrame& frame, RandomStream stream,
                 const StepObservers& observers) {
   require_increasing_stamp(frame.stamp_ns, state.last_stamp_ns);
   return step(state, frame.stamp_ns, observed_features(frame, state, observers), stream, observers,
-              frame.odom_from_camera);
+              frame.odom_from_camera, frame.imu);
 }
 
 StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStream stream,
-                const StepObservers& observers, const std::optional<SE3>& odom_from_camera) {
+                const StepObservers& observers, const std::optional<SE3>& odom_from_camera,
+                std::span<const ImuReading> imu) {
   require_increasing_stamp(stamp_ns, state.last_stamp_ns);
   if (features.descriptors.size() != features.keypoints.size())
     throw InputError(fmt::format("frame at {} ns: {} keypoints, but {} descriptors", stamp_ns,
@@ -108,7 +109,10 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   const SlamContext context = context_of(state, observers, report);
 
   PreparedFrame frame = prepare(stamp_ns, std::move(features), state, state.tracker);
-  if (state.config.track.odometry_position_m > 0) frame.odom_from_camera = odom_from_camera;
+  if (state.config.track.reckon_position_m > 0) {
+    frame.odom_from_camera = odom_from_camera;
+    frame.imu = imu;
+  }
   if (state.map.empty()) return initialize(state, std::move(frame), observers, report);
 
   auto located = locate(state, state.tracker, frame, stream, observers, report,
@@ -130,7 +134,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   KeyframeId reference = located->reference;
   ++state.tracker.frames_since_keyframe;
-  // Where odometry alone tells the pose, the image may show nothing.
+  // Where another sensor alone tells the pose, the image may show nothing.
   const bool shows_enough = located->reckoning.is_zero() ||
                             points_with_depth(frame.features) >= state.config.track.min_inliers;
   if (shows_enough &&
@@ -151,6 +155,9 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
             std::move(tracked.landmarks), frame.odom_from_camera},
            reference, located->motion);
   state.tracker.reckoning = located->reckoning;
+  state.tracker.inertial = located->inertial;
+  if (located->inertial && located->reckoning.is_zero())
+    state.tracker.inertial_known = located->inertial->known(tracked.camera_from_world);
   return report;
 }
 

@@ -51,30 +51,85 @@ void fuse_with_prediction(Located& located, const Tracker& tracker, Stamp stamp_
   located.motion = motion;
 }
 
+namespace {
+
+// The map itself moves by this much from frame to frame.
+constexpr double kMap_m = 0.005, kMap_rad = 0.005;
+
+Matrix6d with_map(Matrix6d covariance) {
+  covariance.diagonal().head<3>().array() += kMap_m * kMap_m;
+  covariance.diagonal().tail<3>().array() += kMap_rad * kMap_rad;
+  return covariance;
+}
+
+Reckoning longer(const Reckoning& before, const SE3& step) {
+  const Vector6d twist = step.log();
+  return {before.distance_m + twist.head<3>().norm(), before.turn_rad + twist.tail<3>().norm()};
+}
+
 std::optional<Reckoned> reckon_by_odometry(const Tracker& tracker,
                                            const std::optional<SE3>& odom_from_camera,
                                            const TrackConfig& config) {
-  if (!tracker.last) return std::nullopt;
   const std::optional<SE3> step = odometry_step(tracker, odom_from_camera);
   if (!step) return std::nullopt;
-  const Vector6d twist = step->log();
   Reckoned found;
-  found.reckoning = {tracker.reckoning.distance_m + twist.head<3>().norm(),
-                     tracker.reckoning.turn_rad + twist.tail<3>().norm()};
+  found.reckoning = longer(tracker.reckoning, *step);
   const auto [position_m, angle_rad] =
       odometry_drift(found.reckoning.distance_m, found.reckoning.turn_rad);
-  if (position_m > config.odometry_position_m || angle_rad > config.odometry_angle_rad)
+  if (position_m > config.reckon_position_m || angle_rad > config.reckon_angle_rad)
     return std::nullopt;
   found.camera_from_world = *step * tracker.last->camera_from_world;
-  // The map itself moves by this much from frame to frame.
-  constexpr double kMap_m = 0.005, kMap_rad = 0.005;
   Vector6d variances;
-  variances << Eigen::Vector3d::Constant(position_m * position_m + kMap_m * kMap_m),
-      Eigen::Vector3d::Constant(angle_rad * angle_rad + kMap_rad * kMap_rad);
-  found.covariance = variances.asDiagonal();
+  variances << Eigen::Vector3d::Constant(position_m * position_m),
+      Eigen::Vector3d::Constant(angle_rad * angle_rad);
+  found.covariance = with_map(variances.asDiagonal());
   if (tracker.reckoning.is_zero() && tracker.motion)
     found.covariance += tracker.motion->pose_covariance;
   return found;
+}
+
+std::optional<Reckoned> reckon_by_imu(const Tracker& tracker, Stamp stamp_ns,
+                                      std::span<const ImuReading> imu, const TrackConfig& config) {
+  if (!tracker.inertial || imu.empty()) return std::nullopt;
+  Reckoned found;
+  found.inertial = tracker.inertial;
+  const auto last_from_now = found.inertial->advance(imu, tracker.last->stamp_ns, stamp_ns);
+  if (!last_from_now) return std::nullopt;
+  const PoseSigma sigma = worst_sigma(found.inertial->pose_covariance());
+  if (sigma.position_m > config.reckon_position_m || sigma.angle_rad > config.reckon_angle_rad)
+    return std::nullopt;
+  const SE3 step = last_from_now->inverse();
+  found.reckoning = longer(tracker.reckoning, step);
+  found.camera_from_world = step * tracker.last->camera_from_world;
+  found.covariance = with_map(found.inertial->pose_covariance());
+  return found;
+}
+
+}  // namespace
+
+std::optional<Reckoned> reckon(const Tracker& tracker, Stamp stamp_ns,
+                               const std::optional<SE3>& odom_from_camera,
+                               std::span<const ImuReading> imu, const TrackConfig& config) {
+  if (!tracker.last) return std::nullopt;
+  const auto by_odometry = reckon_by_odometry(tracker, odom_from_camera, config);
+  return by_odometry ? by_odometry : reckon_by_imu(tracker, stamp_ns, imu, config);
+}
+
+void follow_inertially(Located& located, const std::optional<Reckoned>& reckoned,
+                       std::span<const ImuReading> imu, const Tracker& tracker) {
+  const SE3& pose = located.tracked.camera_from_world;
+  if (!located.reckoning.is_zero()) {
+    located.inertial = reckoned->inertial;
+    return;
+  }
+  if (imu.empty()) return;
+  const Matrix6d measured = with_map(located.tracked.information.inverse());
+  if (reckoned && reckoned->inertial) {
+    located.inertial = reckoned->inertial;
+    located.inertial->correct((pose * reckoned->camera_from_world.inverse()).log(), measured);
+  } else {
+    located.inertial = InertialMotion::begin(imu.back(), measured, pose, tracker.inertial_known);
+  }
 }
 
 std::optional<Located> dead_reckon(const Tracker& tracker, Stamp stamp_ns, const Features& features,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "slam/config/track.hpp"
@@ -12,28 +13,35 @@ namespace mh {
 /// A frame's place in the map.
 struct Located {
   TrackedPose tracked;
-  KeyframeId reference;               ///< keyframe that shares most landmarks
-  std::vector<LandmarkId> expected;   ///< landmarks that should have been visible
-  std::optional<Motion> motion = {};  ///< updated with this frame
-  Reckoning reckoning = {};           ///< 0 where the image tells the pose
+  KeyframeId reference;                         ///< keyframe that shares most landmarks
+  std::vector<LandmarkId> expected;             ///< landmarks that should have been visible
+  std::optional<Motion> motion = {};            ///< updated with this frame
+  Reckoning reckoning = {};                     ///< 0 where the image tells the pose
+  std::optional<InertialMotion> inertial = {};  ///< at this frame
 };
 
-/// A frame's place by odometry alone: what the wheels have done since the last frame, added to its
-/// pose.
+/// A frame's place by another sensor alone: what the wheels did or the inertial sensor felt since
+/// the last frame, added to its pose.
 struct Reckoned {
   SE3 camera_from_world;
   Reckoning reckoning;
-  Matrix6d covariance;  ///< grown since an image last told the pose
+  Matrix6d covariance;                          ///< grown since an image last told the pose
+  std::optional<InertialMotion> inertial = {};  ///< at this frame, if it is by that sensor
 
   /// Whether a pose by an image may be that of this frame. One by many landmarks overrules the
-  /// wheels, which may slip, but not far within a frame.
+  /// sensor, since wheels may slip, but not far within a frame.
   bool allows(const TrackedPose& tracked, const TrackConfig& config) const;
 };
-/// @returns nothing without odometry, or if its drift exceeds TrackConfig::odometry_position_m or
-/// odometry_angle_rad
-std::optional<Reckoned> reckon_by_odometry(const Tracker& tracker,
-                                           const std::optional<SE3>& odom_from_camera,
-                                           const TrackConfig& config);
+/// @returns nothing without such a sensor, or if the drift exceeds TrackConfig::reckon_position_m
+/// or reckon_angle_rad. Of wheels and an inertial sensor, the wheels count.
+std::optional<Reckoned> reckon(const Tracker& tracker, Stamp stamp_ns,
+                               const std::optional<SE3>& odom_from_camera,
+                               std::span<const ImuReading> imu, const TrackConfig& config);
+
+/// Updates what the inertial sensor's filter knows with a frame that was located; begins it if it
+/// has not begun. @pre the pose is final
+void follow_inertially(Located& located, const std::optional<Reckoned>& reckoned,
+                       std::span<const ImuReading> imu, const Tracker& tracker);
 
 /// Updates the motion filter with a frame that follows the last one. If the image alone leaves the
 /// pose uncertain (few points in a narrow strip: rotation and translation look alike), the pose is

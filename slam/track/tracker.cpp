@@ -42,11 +42,13 @@ void remember(Tracker& tracker, LastFrame frame, KeyframeId reference,
 
 void forget(Tracker& tracker) {
   Tracker fresh;
+  fresh.inertial_known = tracker.inertial_known;
   fresh.stale_scores = std::move(tracker.stale_scores);
   tracker = std::move(fresh);
 }
 
 void lose(Tracker& tracker, Stamp stamp_ns, double coast_s) {
+  tracker.inertial.reset();
   const double lost_s = tracker.last ? seconds_since_last(tracker, stamp_ns) : HUGE_VAL;
   if (lost_s >= 0 && lost_s < coast_s)
     tracker.coasting = true;

@@ -9,6 +9,7 @@
 #include "slam/core/se3.hpp"
 #include "slam/features/features.hpp"
 #include "slam/relocalize/stale_scores.hpp"
+#include "slam/track/inertial.hpp"
 #include "slam/track/motion.hpp"
 
 namespace mh {
@@ -22,7 +23,7 @@ struct LastFrame {
   std::optional<SE3> odom_from_camera = {};
 };
 
-/// What the wheels have done since an image last told the pose.
+/// How the camera has moved since an image last told the pose.
 struct Reckoning {
   double distance_m = 0, turn_rad = 0;
   bool is_zero() const { return distance_m == 0 && turn_rad == 0; }
@@ -38,8 +39,11 @@ struct Tracker {
   std::optional<Motion> motion;            ///< over all frames since tracking began
   KeyframeId reference;                    ///< keyframe that shares the most landmarks
   int frames_since_keyframe = 0;
-  bool coasting = false;     ///< lost since `last`, but still within coast_s
-  Reckoning reckoning;       ///< up to `last`
+  bool coasting = false;                   ///< lost since `last`, but still within coast_s
+  Reckoning reckoning;                     ///< up to `last`
+  std::optional<InertialMotion> inertial;  ///< at `last`; absent where no sensor is
+  /// What it has learned; outlives losses.
+  std::optional<InertialMotion::Known> inertial_known;
   StaleScores stale_scores;  ///< outlive losses
 
   bool tracking() const { return last.has_value() && !coasting; }

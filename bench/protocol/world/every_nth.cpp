@@ -22,6 +22,7 @@ class EveryNth : public Sequence {
     return all_->frame(i * n_, noise);
   }
   const Trajectory* truth() const override { return all_->truth() != nullptr ? &truth_ : nullptr; }
+  std::span<const ImuReading> imu() const override { return all_->imu(); }
 
  private:
   std::shared_ptr<const Sequence> all_;

@@ -34,6 +34,7 @@ class FirstFrames : public Sequence {
   const Trajectory* truth() const override {
     return truth_ && !truth_->empty() ? &*truth_ : nullptr;
   }
+  std::span<const ImuReading> imu() const override { return all_->imu(); }
 
  private:
   std::unique_ptr<Sequence> all_;

@@ -15,6 +15,7 @@
 #include "bench/suite/recorded_camera.hpp"
 #include "robots/model/odometry.hpp"
 #include "scenes/load.hpp"
+#include "sim/sensors/imu.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/simulated_sequence.hpp"
@@ -98,6 +99,7 @@ void simulate(World& world, LabelMode labels, const SharedImages& images) {
   };
   const auto mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene);
   mapping->set_odometry(p.odom_from_camera);
+  mapping->set_imu(p.imu);
   world.mapping = mapping;
   if (p.second)
     world.second = sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second,
@@ -202,6 +204,12 @@ std::vector<SE3> odometry_along(const DrivenPath& path, const Robot& robot,
   return odom_from_camera;
 }
 
+void append(std::vector<ImuReading>& readings, const Trajectory& path, const SensorConfig& sensors,
+            std::uint64_t seed) {
+  const auto more = imu_along(path, sensors.imu, RandomStream(seed).fork(readings.size()));
+  readings.insert(readings.end(), more.begin(), more.end());
+}
+
 /// Builds the world with the inputs of everything except an outside program.
 World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
             const BakeWatch& baked) {
@@ -266,16 +274,24 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   };
   world.mapping = input("mapping_tour", environment.mapping_tour,
                         [&] { return along(*scene, environment.mapping_tour, obstacles(0)); });
+  const auto gives = [&](Sense sense) { return std::ranges::count(spec.senses, sense) > 0; };
+  if (gives(Sense::kImu)) append(world.imu, world.mapping.camera, world.sensors, spec.seed);
   std::optional<Stamp> lifted_ns;
   if (environment.kidnapped_tour) {
     lifted_ns = world.mapping.camera.back().stamp_ns + 1;
     const DrivenPath elsewhere =
         along(*scene, *environment.kidnapped_tour, obstacles(world.mapping.camera.size()));
+    const std::size_t before = world.mapping.camera.size();
     world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
+    if (gives(Sense::kImu))  // not of being carried
+      append(world.imu,
+             {world.mapping.camera.begin() + static_cast<std::ptrdiff_t>(before),
+              world.mapping.camera.end()},
+             world.sensors, spec.seed);
   }
   lose_frames(world.mapping);
   shorten(world.mapping);
-  if (std::ranges::count(spec.senses, Sense::kOdometry) > 0)
+  if (gives(Sense::kOdometry))
     world.odom_from_camera =
         odometry_along(world.mapping, world.robot, lifted_ns, spec.seed, environment.robot);
   if (environment.query_scene) {

@@ -35,6 +35,7 @@ struct SimulatedPlace {
   Robot robot;
   DrivenPath mapping;
   std::vector<SE3> odom_from_camera;  ///< at the frames of `mapping`; empty unless it is given
+  std::vector<ImuReading> imu;        ///< along `mapping`; empty unless it is given
   std::optional<DrivenPath> second;   ///< the second tour, if the environment has one
   std::shared_ptr<const Scene> second_scene;  ///< the second tour's scene; null: the same scene
   std::shared_ptr<const Renderer> second_renderer;  ///< of that scene; null: the same renderer

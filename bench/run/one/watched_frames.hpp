@@ -23,6 +23,7 @@ class SequenceView : public Sequence {
     return inner_.frame(i, noise);
   }
   const Trajectory* truth() const override { return inner_.truth(); }
+  std::span<const ImuReading> imu() const override { return inner_.imu(); }
 
  private:
   const Sequence& inner_;

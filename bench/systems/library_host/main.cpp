@@ -240,6 +240,15 @@ class HostedSystem {
       for (std::size_t i = 0; i < std::size(odometry->values); ++i)
         odometry->values[i] = told.at(i).get<double>();
     }
+    std::vector<mh_imu> imu;
+    for (const Json& told : request.value("imu", Json::array())) {
+      mh_imu& reading = imu.emplace_back();
+      reading.stamp_ns = mh::parse_stamp(told.at(0).get_ref<const std::string&>());
+      for (std::size_t i = 0; i < 3; ++i) {
+        reading.turn_rad_per_s[i] = told.at(1 + i).get<double>();
+        reading.specific_force_m_per_s2[i] = told.at(4 + i).get<double>();
+      }
+    }
     const mh_frame frame = {
         .stamp_ns = mh::parse_stamp(request.at("stamp").get_ref<const std::string&>()),
         .width_px = color.width,
@@ -248,7 +257,9 @@ class HostedSystem {
         .depth = depth.data(),
         .labels = labels ? labels->bytes() : nullptr,
         .seed = request.at("seed"),
-        .odometry = odometry ? &*odometry : nullptr};
+        .odometry = odometry ? &*odometry : nullptr,
+        .imu = imu.data(),
+        .imu_count = static_cast<std::int32_t>(imu.size())};
     call(function, &frame, &reply);
     return reply_json(reply);
   }

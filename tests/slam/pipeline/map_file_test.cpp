@@ -213,6 +213,7 @@ class Layout {
     put<std::int32_t>(t.frames_since_keyframe);
     put<std::uint8_t>(t.coasting);
     put<double>(t.reckoning.distance_m, t.reckoning.turn_rad);
+    put<std::uint8_t>(t.inertial.has_value(), t.inertial_known.has_value());  // here false
     put<std::uint64_t>(t.stale_scores.of.size());
     for (const auto& [similarity, query] : t.stale_scores.of) {
       put<double>(similarity);

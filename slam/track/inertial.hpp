@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "slam/core/rgbd_frame.hpp"
+#include "slam/core/se3.hpp"
+
+namespace mh {
+
+using Matrix18d = Eigen::Matrix<double, 18, 18>;
+
+/// Error-state Kalman filter of the camera's motion by an inertial sensor; tracked poses are its
+/// measurements (Sola, "Quaternion kinematics for the error-state Kalman filter", 2017, chapter 5,
+/// with errors in the camera's own frame). Everything is in the camera's frame, so that the map may
+/// move underneath.
+struct InertialMotion {
+  Eigen::Vector3d velocity_m_per_s;
+  Eigen::Vector3d gravity_m_per_s2;  ///< downward
+  Eigen::Vector3d turn_bias_rad_per_s, force_bias_m_per_s2;
+  /// Of position, rotation, velocity, gravity, and both biases, in this order.
+  Matrix18d covariance;
+  ImuReading before;  ///< the last reading
+
+  /// What the sensor taught, to begin anew where the map is found again.
+  struct Known {
+    Eigen::Vector3d gravity_in_world_m_per_s2;
+    Eigen::Vector3d turn_bias_rad_per_s, force_bias_m_per_s2;
+    Eigen::Matrix<double, 9, 9> covariance;
+  };
+  Known known(const SE3& camera_from_world) const;
+
+  /// State at a pose of which nothing else is known: the velocity is not, and gravity is what the
+  /// accelerometer shows, if nothing better was learned before.
+  static InertialMotion begin(const ImuReading& reading, const Matrix6d& pose_covariance,
+                              const SE3& camera_from_world, const std::optional<Known>& known);
+
+  /// Moves the state on to a later moment.
+  /// @param readings  since the last one, in order
+  /// @returns camera_before_from_camera_now; nothing if readings are missing for too long
+  std::optional<SE3> advance(std::span<const ImuReading> readings, Stamp from_ns, Stamp to_ns);
+
+  Matrix6d pose_covariance() const { return covariance.topLeftCorner<6, 6>(); }
+  /// Updates the state with a measured pose.
+  /// @param seen_off    twist from the predicted camera_from_world to the measured one
+  /// @param covariance  of the measurement
+  void correct(const Vector6d& seen_off, const Matrix6d& covariance);
+};
+
+}  // namespace mh
