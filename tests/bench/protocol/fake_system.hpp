@@ -24,6 +24,7 @@ class FakeSystem : public System {
   SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
     fed.push_back(frame.stamp_ns);
     streams.push_back(stream.key());
+    imu.push_back(frame.imu);
     const bool tracked = tracks_(frame.stamp_ns, ++showings_[frame.stamp_ns]);
     SystemReport report;
     report.status = tracked ? TrackStatus::kTracked : TrackStatus::kLost;
@@ -60,6 +61,7 @@ class FakeSystem : public System {
 
   std::vector<Stamp> fed;
   std::vector<std::uint64_t> streams;
+  std::vector<std::vector<ImuReading>> imu;
   int rewinds = 0, resets = 0;
   bool frozen = false;
 

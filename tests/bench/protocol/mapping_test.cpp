@@ -144,6 +144,23 @@ TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
 // Frames 80 to 99 are never tracked. 415 calls would drop the first of them (see above); of these
 // 86 go on after 80. A hopeless spell shows 81 to 99 without 89 once: 79 + 5 * 50 calls up to the
 // sixth failure, then 30 to 119 without 59, 80, 89, 119 = 86.
+TEST(MapSequence, FramesBringTheReadingsSinceTheFrameBefore) {
+  MadeSequence frames = fake_frames(kCount);
+  for (Stamp at = 0; at < static_cast<Stamp>(kCount); ++at) frames.readings.push_back({at, {}, {}});
+  FakeSystem system([](Stamp frame, int showing) { return frame != 80 || showing > 1; });
+  map_sequence(system, frames, {}, RandomStream(1));
+  const auto stamps = [&](std::size_t shown) {
+    std::vector<Stamp> of;
+    for (const ImuReading& reading : system.imu[shown]) of.push_back(reading.stamp_ns);
+    return of;
+  };
+  EXPECT_EQ(stamps(0), std::vector<Stamp>{0});
+  EXPECT_EQ(system.fed[29], 30);  // 29 is a test frame
+  EXPECT_EQ(stamps(29), (std::vector<Stamp>{29, 30}));
+  EXPECT_EQ(system.fed[79], 30);  // again, after the failure at 80
+  EXPECT_EQ(stamps(79), std::vector<Stamp>{30});
+}
+
 TEST(MapSequence, AHopelessSpellIsShownOnce) {
   FakeSystem system([](Stamp frame, int) { return frame < 80 || frame > 99; });
   ProtocolConfig config;

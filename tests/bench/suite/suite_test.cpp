@@ -99,15 +99,21 @@ TEST_F(SuiteFile, SensesAreOfARobotThatDrives) {
   const Suite suite = load("senses: [odometry]\n");
   EXPECT_EQ(suite.senses, std::vector{Sense::kOdometry});
   for (const RunSpec& run : expand(suite)) EXPECT_EQ(run.senses, suite.senses);
+  EXPECT_EQ(load("senses: [imu, odometry]\n").senses, (std::vector{Sense::kImu, Sense::kOdometry}));
   EXPECT_NE(error("senses: [odometry, odometry]\n").find("'odometry' is listed twice"),
             std::string::npos);
   EXPECT_NE(error("senses: [sonar]\n").find("sonar"), std::string::npos);
-  std::ofstream(folder_ / "by_hand.yaml")
-      << "environments:\n- {category: house, scene: house.yaml, robot: robot.yaml, mapping_tour: "
-         "'handheld:0'}\nlevels: [pepper.yaml]\nsystems: [plain]\nlabels: [none]\nvocabulary: "
-         "words\nsenses: [odometry]\n";
+  const auto by_hand = [&](const char* sense) {
+    std::ofstream(folder_ / "by_hand.yaml")
+        << "environments:\n- {category: house, scene: house.yaml, robot: robot.yaml, mapping_tour: "
+           "'handheld:0'}\nlevels: [pepper.yaml]\nsystems: [plain]\nlabels: [none]\nvocabulary: "
+           "words\nsenses: ["
+        << sense << "]\n";
+    return load_suite(folder_ / "by_hand.yaml").senses;
+  };
+  EXPECT_EQ(by_hand("imu"), std::vector{Sense::kImu});
   try {
-    load_suite(folder_ / "by_hand.yaml");
+    by_hand("odometry");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("'house' is mapped by hand"), std::string::npos)

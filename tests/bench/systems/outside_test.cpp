@@ -162,6 +162,48 @@ TEST(Odometry, IsToldInAConversationAndWrittenIntoADataset) {
   fs::remove_all(folder);
 }
 
+TEST(Imu, IsToldInAConversationAndWrittenIntoADataset) {
+  const fs::path folder = fs::temp_directory_path() / ("mh_imu_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  RgbdFrame frame;
+  frame.stamp_ns = 1'000'000'000;
+  frame.color = Grid2d<Rgb8>(64, 48);
+  frame.depth_m = Grid2d<float>(64, 48);
+  Camera camera;
+  camera.width_px = 64, camera.height_px = 48, camera.cx_px = 31.5, camera.cy_px = 23.5;
+  camera.fx_px = camera.fy_px = 52;
+  RgbdFrame moved = frame;
+  moved.stamp_ns = 1'010'000'000;
+  moved.imu = {{1'005'000'000, {0.5, -0.25, 0}, {0, -9.75, 0.125}},
+               {1'010'000'000, {0.25, 0, 1}, {1, -9.5, 0}}};
+  const std::string program =
+      "n=0; while read -r line; do n=$((n+1)); printf '%s\\n' \"$line\" >>" +
+      (folder / "asked").string() +
+      "; if [ $n = 1 ]; then echo '{\"id\":1,\"protocol\":1}'; else echo "
+      "\"{\\\"id\\\":$n,\\\"pose\\\":null}\"; fi; done";
+  {
+    const auto system = make_conversation_system(
+        {.name = "told", .command = program, .mode = OutsideMode::kConversation}, camera, 0,
+        folder / "log");
+    system->track(frame, RandomStream(1));
+    system->track(moved, RandomStream(2));
+  }
+  const std::string asked = read_file(folder / "asked");
+  EXPECT_NE(asked.find(R"("imu":[["1.005000000",0.5,-0.25,0.0,0.0,-9.75,0.125],)"
+                       R"(["1.010000000",0.25,0.0,1.0,1.0,-9.5,0.0]])"),
+            std::string::npos)
+      << asked;
+  write_dataset(folder / "dataset", camera, 2,
+                [&](std::size_t i) { return std::optional(i == 0 ? frame : moved); });
+  EXPECT_EQ(read_file(folder / "dataset/imu.csv"),
+            "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+            "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n"
+            "1005000000,0.5,-0.25,0,0,-9.75,0.125\n1010000000,0.25,0,1,1,-9.5,0\n");
+  write_dataset(folder / "without", camera, 1, [&](std::size_t) { return std::optional(frame); });
+  EXPECT_FALSE(fs::exists(folder / "without/imu.csv"));
+  fs::remove_all(folder);
+}
+
 TEST(SettingsText, HasRealNumbersWhereReadersInsistOnThem) {
   const cv::FileStorage settings(settings_text(Camera{}), cv::FileStorage::READ |
                                                               cv::FileStorage::MEMORY |

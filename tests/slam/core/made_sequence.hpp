@@ -19,6 +19,9 @@ class MadeSequence : public Sequence {
   Stamp stamp_ns(std::size_t i) const override { return make_(i, RandomStream()).stamp_ns; }
   RgbdFrame frame(std::size_t i, RandomStream noise) const override { return make_(i, noise); }
   const Trajectory* truth() const override { return nullptr; }
+  std::span<const ImuReading> imu() const override { return readings; }
+
+  std::vector<ImuReading> readings;
 
  private:
   std::size_t count_;
