@@ -13,11 +13,11 @@ constexpr int kPlace = 0, kTurn = 3, kVelocity = 6, kGravity = 9, kTurnBias = 12
 
 // Twice to ten times what data sheets of cheap sensors state, as is usual: neither the sensor nor
 // the poses err as white noise does.
-constexpr double kTurnNoise = 1e-3, kTurnWalk = 1e-4;    // rad/s/sqrt(Hz), rad/s^2/sqrt(Hz)
-constexpr double kForceNoise = 1e-2, kForceWalk = 3e-3;  // m/s^2/sqrt(Hz), m/s^3/sqrt(Hz)
+constexpr double kGyroNoise = 1e-3, kGyroWalk = 1e-4;    // rad/s/sqrt(Hz), rad/s^2/sqrt(Hz)
+constexpr double kAccelNoise = 1e-2, kAccelWalk = 3e-3;  // m/s^2/sqrt(Hz), m/s^3/sqrt(Hz)
 
-constexpr double kFastest_m_per_s = 2;
-constexpr double kTurnBias_rad_per_s = 0.03, kForceBias_m_per_s2 = 0.2;
+constexpr double kAnySpeed_m_per_s = 2;
+constexpr double kGyroOffset_rad_per_s = 0.03, kAccelOffset_m_per_s2 = 0.2;
 constexpr double kShaken_m_per_s2 = 1;  // how far a hand's accelerometer is from gravity
 constexpr double kGravity_m_per_s2 = 9.81;
 
@@ -28,8 +28,8 @@ void set_block(Matrix18d& covariance, int at, double sigma) {
 }
 
 /// One step with constant rates.
-SE3 step(InertialMotion& motion, const Vector3d& turn_rad_per_s,
-         const Vector3d& specific_force_m_per_s2, double t) {
+SE3 move_on(InertialMotion& motion, const Vector3d& turn_rad_per_s,
+            const Vector3d& specific_force_m_per_s2, double t) {
   const Vector3d turn = turn_rad_per_s - motion.turn_bias_rad_per_s;
   const Vector3d acceleration =
       specific_force_m_per_s2 - motion.force_bias_m_per_s2 + motion.gravity_m_per_s2;
@@ -54,10 +54,10 @@ SE3 step(InertialMotion& motion, const Vector3d& turn_rad_per_s,
   const auto add = [&](int at, double density) {
     motion.covariance.diagonal().segment<3>(at).array() += density * density * t;
   };
-  add(kTurn, kTurnNoise);
-  add(kVelocity, kForceNoise);
-  add(kTurnBias, kTurnWalk);
-  add(kForceBias, kForceWalk);
+  add(kTurn, kGyroNoise);
+  add(kVelocity, kAccelNoise);
+  add(kTurnBias, kGyroWalk);
+  add(kForceBias, kAccelWalk);
   return {turned, way};
 }
 
@@ -80,7 +80,7 @@ InertialMotion InertialMotion::begin(const ImuReading& reading, const Matrix6d& 
   motion.before = reading;
   motion.covariance.setZero();
   motion.covariance.topLeftCorner<6, 6>() = pose_covariance;
-  set_block(motion.covariance, kVelocity, kFastest_m_per_s);
+  set_block(motion.covariance, kVelocity, kAnySpeed_m_per_s);
   if (known) {
     const Matrix3d& to_camera = camera_from_world.rotation();
     motion.gravity_m_per_s2 = to_camera * known->gravity_in_world_m_per_s2;
@@ -96,8 +96,8 @@ InertialMotion InertialMotion::begin(const ImuReading& reading, const Matrix6d& 
   motion.turn_bias_rad_per_s.setZero();
   motion.force_bias_m_per_s2.setZero();
   set_block(motion.covariance, kGravity, kShaken_m_per_s2);
-  set_block(motion.covariance, kTurnBias, kTurnBias_rad_per_s);
-  set_block(motion.covariance, kForceBias, kForceBias_m_per_s2);
+  set_block(motion.covariance, kTurnBias, kGyroOffset_rad_per_s);
+  set_block(motion.covariance, kForceBias, kAccelOffset_m_per_s2);
   return motion;
 }
 
@@ -109,7 +109,7 @@ std::optional<SE3> InertialMotion::advance(std::span<const ImuReading> readings,
     const double t = static_cast<double>(stamp_ns - at_ns) * kNanosecond_s;
     if (t <= 0) return true;
     if (t > kLongestGap_s) return false;
-    before_from_now = before_from_now * step(*this, turn, force, t);
+    before_from_now = before_from_now * move_on(*this, turn, force, t);
     at_ns = stamp_ns;
     return true;
   };
