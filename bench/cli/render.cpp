@@ -23,8 +23,10 @@
 #include "bench/suite/inputs.hpp"
 #include "bench/suite/labels.hpp"
 #include "scenes/load.hpp"
+#include "scenes/recordings/euroc.hpp"
 #include "scenes/recordings/ros/recorder.hpp"
 #include "scenes/scannet/files.hpp"
+#include "sim/sensors/imu.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/render_sequence.hpp"
@@ -47,6 +49,7 @@ struct RenderArguments {
   DetectorOption detector;
   RenderSequenceOptions sequence;
   PngCompression png_compression;
+  double stereo_m = 0;
   RosOption ros;
   bool json = false;
 };
@@ -83,6 +86,7 @@ std::string settings_of(const RenderArguments& o, const Scene& scene, const Traj
     json["detector_digest"] = digest_of(inputs, "detector");
     json["detector_settings"] = format_detector_settings(spec->settings, false);
   }
+  if (o.stereo_m > 0) json["stereo"] = o.stereo_m;
   if (o.png_compression) json["png_compression"] = *o.png_compression;
   if (o.sequence.frames != SIZE_MAX) json["frames"] = o.sequence.frames;
   return json.dump(2) + "\n";
@@ -90,7 +94,7 @@ std::string settings_of(const RenderArguments& o, const Scene& scene, const Traj
 
 /// The first part of a sequence that a folder holds; empty if it holds none.
 fs::path part_of_sequence(const fs::path& folder) {
-  for (const char* part : {"rgb", "rgb.txt", "color", "intrinsic"})
+  for (const char* part : {"rgb", "rgb.txt", "color", "intrinsic", "mav0"})
     if (fs::exists(folder / part)) return folder / part;
   for (const char* whole : {"*.sens", "*.bag", "*.mcap"})
     if (const auto files = list_folder(folder, whole); !files.empty())
@@ -115,6 +119,7 @@ std::vector<std::string> names_written(const fs::path& out) {
                                  "groundtruth.txt",
                                  "camera.yaml",
                                  "camera_info.yaml",
+                                 "mav0",
                                  "_info.txt",
                                  kLabelTableV2,
                                  name + "_2d-label-filt.zip",
@@ -156,6 +161,13 @@ Trajectory path_of(const MountedCamera& mounted, const Equipment& e, const Drive
   return camera;
 }
 
+/// The path of a second camera beside the first.
+Trajectory beside(Trajectory path, double right_m) {
+  const SE3 first_from_second(Eigen::Matrix3d::Identity(), {right_m, 0, 0});
+  for (TimedPose& pose : path) pose.world_from_camera = pose.world_from_camera * first_from_second;
+  return path;
+}
+
 void print_json(const RenderedSequence& done) {
   fmt::print("{}\n", nlohmann::ordered_json({{"frames", done.frames},
                                              {"resumed", done.resumed},
@@ -174,6 +186,9 @@ void run(RenderArguments options) {
     if (options.labels == name(mode)) options.sequence.labels = mode;
   refuse_older_sequence(out);
   options.ros.check(options.format);
+  if (options.stereo_m > 0 && options.format != "euroc")
+    throw InputError(fmt::format("--stereo {:g}: only --format euroc has a second camera, not {}",
+                                 options.stereo_m, options.format));
   make_renderer(options.renderer, Scene{});  // fails at once if the machine lacks it
   const OutputFolder folder(out, "render", names_written(out));
   options.motion.read();
@@ -243,7 +258,8 @@ void run(RenderArguments options) {
     options.sequence.resume = true;
   }
   write_atomically(out / "render.json", settings);
-  const bool goes_on = options.format == "tum" || options.format == "scannet-frames";
+  const bool goes_on =
+      options.format == "tum" || options.format == "scannet-frames" || options.format == "euroc";
   const SignalWatch watch;
   const auto report = [&](double share) {
     if (watch.signal() != 0) throw Interrupted{watch.signal(), goes_on};
@@ -251,11 +267,13 @@ void run(RenderArguments options) {
   };
   std::shared_ptr<const PedestrianScene> pedestrian_scene;
   if (pedestrian) pedestrian_scene = make_pedestrian_scene(scene, renderer, *pedestrian);
-  const Shutter shutter =
-      pedestrian_scene
-          ? Shutter([pedestrian_scene](Stamp stamp) { return pedestrian_scene->at(stamp); }, camera,
-                    path, sensors)
-          : Shutter(renderer, camera, path, sensors);
+  const auto shutter_along = [&](const Trajectory& along) {
+    return pedestrian_scene
+               ? Shutter([pedestrian_scene](Stamp stamp) { return pedestrian_scene->at(stamp); },
+                         camera, along, sensors)
+               : Shutter(renderer, camera, along, sensors);
+  };
+  const Shutter shutter = shutter_along(path);
   const Camera reported_camera = recorded_camera(shutter.camera(), options.sequence);
   if (options.format == "scannet") {  // one file for all: frames in order, one by one
     const std::vector<std::size_t> wanted = moments(shutter, sensors, options.sequence);
@@ -274,6 +292,31 @@ void run(RenderArguments options) {
     });
     done.encode_s = seconds_since(start) - done.render_s;
     progress.share(1);
+    progress.end();
+    if (options.json) print_json(done);
+    return;
+  }
+  if (options.format == "euroc") {
+    const int cameras = options.stereo_m > 0 ? 2 : 1;
+    EurocCameraWriter left(out, 0, 0, reported_camera, options.png_compression);
+    RenderedSequence done = render_sequence(shutter, sensors, left, options.sequence,
+                                            [&](double share) { report(share / cameras); });
+    if (cameras == 2) {
+      EurocCameraWriter right(out, 1, options.stereo_m, reported_camera, options.png_compression);
+      RenderSequenceOptions other = options.sequence;
+      other.is_second = true;
+      const RenderedSequence more =
+          render_sequence(shutter_along(beside(path, options.stereo_m)), sensors, right, other,
+                          [&](double share) { report(0.5 + share / 2); });
+      done.frames += more.frames;
+      done.resumed += more.resumed;
+      done.render_s += more.render_s;
+      done.encode_s += more.encode_s;
+    }
+    const ImuConfig& imu = sensors.imu;
+    write_euroc_states(
+        out, left.truth(), path, imu_along(path, imu, RandomStream(options.sequence.seed)),
+        {imu.rate_hz, imu.gyro_noise, imu.gyro_walk, imu.accel_noise, imu.accel_walk});
     progress.end();
     if (options.json) print_json(done);
     return;
@@ -323,10 +366,15 @@ void add_render(CLI::App& app) {
       ->required();
   command
       ->add_option("--format", options->format,
-                   "tum: folders and lists; scannet: .sens, label images; "
+                   "tum: folders and lists; euroc: gray images, inertial readings, truth; scannet: "
+                   ".sens, label images; "
                    "scannet-frames: folders as extracted from a .sens; mcap, rosbag: NAME.mcap "
                    "(ROS 2) or NAME.bag (ROS 1), with all that the robot measures")
-      ->check(one_of_words({"tum", "scannet", "scannet-frames", "mcap", "rosbag"}));
+      ->check(one_of_words({"tum", "euroc", "scannet", "scannet-frames", "mcap", "rosbag"}));
+  command
+      ->add_option("--stereo", options->stereo_m,
+                   "euroc: adds a second camera so many meters to the right")
+      ->check(CLI::Range(0.001, 10.0));
   options->ros.add_to(*command);
   command->add_option("--frames", options->sequence.frames, "At most so many frames of the path")
       ->default_str("all")

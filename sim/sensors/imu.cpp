@@ -94,11 +94,14 @@ Vector3d normals(RandomStream stream, std::uint64_t first) {
 
 }  // namespace
 
-std::vector<ImuReading> imu_along(const Trajectory& world_from_camera, const ImuConfig& config,
-                                  RandomStream noise) {
-  std::vector<ImuReading> readings;
-  if (world_from_camera.size() < 3) return readings;
+ImuPath imu_along(const Trajectory& world_from_camera, const ImuConfig& config,
+                  RandomStream noise) {
+  ImuPath made;
+  if (world_from_camera.size() < 3) return made;
   const SmoothPath path(world_from_camera);
+  for (const TimedPose& pose : world_from_camera)
+    made.velocities_m_per_s.push_back(path.velocity(
+        static_cast<double>(pose.stamp_ns - world_from_camera.front().stamp_ns) * kNanosecond_s));
   const double period_s = 1 / config.rate_hz, root_s = std::sqrt(period_s);
   Vector3d gyro_bias = config.gyro_bias * normals(noise, 0);
   Vector3d accel_bias = config.accel_bias * normals(noise, 3);
@@ -113,16 +116,16 @@ std::vector<ImuReading> imu_along(const Trajectory& world_from_camera, const Imu
                            ((path.velocity(to_s) - path.velocity(from_s)) / (to_s - from_s) +
                             Vector3d(0, 0, kGravity_m_per_s2));
     const RandomStream draw = noise.fork(k);
-    readings.push_back(
-        {.stamp_ns = world_from_camera.front().stamp_ns +
-                     static_cast<Stamp>(std::llround(t_s / kNanosecond_s)),
-         .turn_rad_per_s = turn + gyro_bias + config.gyro_noise / root_s * normals(draw, 0),
-         .specific_force_m_per_s2 =
-             force + accel_bias + config.accel_noise / root_s * normals(draw, 3)});
+    const Stamp stamp_ns =
+        world_from_camera.front().stamp_ns + static_cast<Stamp>(std::llround(t_s / kNanosecond_s));
+    made.biases.push_back({stamp_ns, gyro_bias, accel_bias});
+    made.readings.push_back({stamp_ns,
+                             turn + gyro_bias + config.gyro_noise / root_s * normals(draw, 0),
+                             force + accel_bias + config.accel_noise / root_s * normals(draw, 3)});
     gyro_bias += config.gyro_walk * root_s * normals(draw, 6);
     accel_bias += config.accel_walk * root_s * normals(draw, 9);
   }
-  return readings;
+  return made;
 }
 
 }  // namespace mh

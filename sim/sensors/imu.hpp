@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "sim/sensors/config.hpp"
+#include "slam/core/imu.hpp"
 #include "slam/core/random.hpp"
 #include "slam/core/trajectory.hpp"
 
@@ -15,7 +14,6 @@ namespace mh {
 /// reading is the mean over its period, centered on its stamp, plus a bias that walks and white
 /// noise. z of the world is up; gravity is 9.81 m/s^2.
 /// @returns readings from the first pose to the last; none for fewer than three poses
-std::vector<ImuReading> imu_along(const Trajectory& world_from_camera, const ImuConfig& config,
-                                  RandomStream noise);
+ImuPath imu_along(const Trajectory& world_from_camera, const ImuConfig& config, RandomStream noise);
 
 }  // namespace mh

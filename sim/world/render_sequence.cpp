@@ -30,8 +30,10 @@ std::vector<std::size_t> moments(const Shutter& shutter, const SensorConfig& sen
 
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t i) {
-  auto [seen, exact] =
-      sense_moment(shutter, sensors, options.labels, i, RandomStream(options.seed));
+  constexpr std::uint64_t kSecond = ~std::uint64_t{0};  // no frame's number
+  const RandomStream seed(options.seed);
+  auto [seen, exact] = sense_moment(shutter, sensors, options.labels, i,
+                                    options.is_second ? seed.fork(kSecond) : seed);
   if (options.relabel) options.relabel(seen, i);
   const bool labels_are_exact = !options.relabel && is_per_pixel(options.labels) &&
                                 sensors.blank_frames.lost() == 0.0 && sensors.labels.noise.none();

@@ -15,6 +15,7 @@ struct RenderSequenceOptions {
   std::size_t every = 1;          ///< only every n-th of them
   LabelMode labels = LabelMode::kExact;
   std::uint64_t seed = 0;  ///< of the sensors' noise
+  bool is_second = false;  ///< camera of a pair: its noise is its own, and it loses the same frames
   int threads = 2;         ///< each works on its own frame, from rays to files
   bool resume = false;     ///< skips frames that already exist
   /// Replaces a frame's labels, if set: of the path's i-th moment. Called by several threads.

@@ -206,7 +206,7 @@ std::vector<SE3> odometry_along(const DrivenPath& path, const Robot& robot,
 
 void append(std::vector<ImuReading>& readings, const Trajectory& path, const SensorConfig& sensors,
             std::uint64_t seed) {
-  const auto more = imu_along(path, sensors.imu, RandomStream(seed).fork(readings.size()));
+  const auto more = imu_along(path, sensors.imu, RandomStream(seed).fork(readings.size())).readings;
   readings.insert(readings.end(), more.begin(), more.end());
 }
 

@@ -38,7 +38,7 @@ TEST(Imu, AtRestFeelsGravityAlone) {
   const Eigen::Matrix3d tilted = so3_exp({0.3, -0.4, 0.2});
   Trajectory path;
   for (int i = 0; i < 30; ++i) path.push_back({i * 33'333'333, {tilted, {1, 2, 3}}});
-  const auto readings = imu_along(path, exact(), RandomStream(1));
+  const auto readings = imu_along(path, exact(), RandomStream(1)).readings;
   ASSERT_EQ(readings.size(), 194u);  // 29 steps of 1/30 s at 200 Hz
   for (const ImuReading& r : readings) {
     EXPECT_LT(r.turn_rad_per_s.norm(), 1e-12);
@@ -53,7 +53,7 @@ TEST(Imu, IntegratesToThePath) {
   const double period_s = 1.0 / 2000;
   ImuConfig fine = exact();
   fine.rate_hz = 2000;
-  const auto readings = imu_along(path, fine, RandomStream(1));
+  const auto readings = imu_along(path, fine, RandomStream(1)).readings;
   Eigen::Matrix3d rotation = path.front().world_from_camera.rotation();
   Vector3d place = path.front().world_from_camera.translation();
   Vector3d velocity(0.5, 0.6, 0);  // of a_path() at 0
@@ -69,11 +69,14 @@ TEST(Imu, IntegratesToThePath) {
   const SE3& end = path.back().world_from_camera;
   EXPECT_LT(so3_log(rotation.transpose() * end.rotation()).norm(), 1e-3);
   EXPECT_LT((place - end.translation()).norm(), 0.02);
+  const ImuPath truth = imu_along(path, fine, RandomStream(1));
+  ASSERT_EQ(truth.velocities_m_per_s.size(), path.size());
+  EXPECT_LT((truth.velocities_m_per_s.back() - velocity).norm(), 0.01);
 }
 
 TEST(Imu, TurnsByThePathsRotationBetweenAnyTwoPoses) {
   const Trajectory path = a_path(60);
-  const auto readings = imu_along(path, exact(), RandomStream(1));
+  const auto readings = imu_along(path, exact(), RandomStream(1)).readings;
   double worst_rad_per_s = 0;
   for (const ImuReading& r : readings) {
     // Analytically, by small differences of a_path()'s own formula.
@@ -92,7 +95,7 @@ TEST(Imu, ErrsByItsNoiseBiasAndWalk) {
   Trajectory path;
   for (int i = 0; i < 3000; ++i) path.push_back({i * 33'333'333LL, SE3()});
   const auto spread = [&](const ImuConfig& config) {
-    const auto readings = imu_along(path, config, RandomStream(4));
+    const auto readings = imu_along(path, config, RandomStream(4)).readings;
     double sum = 0;
     for (const ImuReading& r : readings) sum += r.turn_rad_per_s.squaredNorm() / 3;
     return std::sqrt(sum / static_cast<double>(readings.size()));
@@ -106,14 +109,21 @@ TEST(Imu, ErrsByItsNoiseBiasAndWalk) {
   EXPECT_LT(spread(walks), 2e-2);
   ImuConfig biased = exact();
   biased.accel_bias = 0.1;
-  const auto readings = imu_along(path, biased, RandomStream(4));
+  const auto readings = imu_along(path, biased, RandomStream(4)).readings;
   const Vector3d bias = readings.front().specific_force_m_per_s2 - Vector3d(0, 0, 9.81);
   EXPECT_GT(bias.norm(), 0.01);
   EXPECT_LT(bias.norm(), 0.4);
   EXPECT_LT((readings.back().specific_force_m_per_s2 - Vector3d(0, 0, 9.81) - bias).norm(), 1e-9);
   // Equal streams, equal bits; another stream, another bias.
-  EXPECT_EQ(imu_along(path, biased, RandomStream(4)), readings);
-  EXPECT_NE(imu_along(path, biased, RandomStream(5)), readings);
+  EXPECT_EQ(imu_along(path, biased, RandomStream(4)).readings, readings);
+  EXPECT_NE(imu_along(path, biased, RandomStream(5)).readings, readings);
+  // The truth says what they err by.
+  const ImuPath truth = imu_along(path, {}, RandomStream(4));
+  ASSERT_EQ(truth.biases.size(), truth.readings.size());
+  Vector3d off = Vector3d::Zero();
+  for (std::size_t k = 0; k < truth.readings.size(); ++k)
+    off += truth.readings[k].turn_rad_per_s - truth.biases[k].turn_rad_per_s;
+  EXPECT_LT(off.norm() / static_cast<double>(truth.readings.size()), 1e-4);
 }
 
 TEST(Imu, ReadingsBetweenTwoMomentsBelongToTheLater) {
