@@ -3,9 +3,11 @@
 // all that a system needs to take part; OpenCV parses the requests.
 #include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <opencv2/imgcodecs.hpp>
@@ -19,6 +21,15 @@ FILE* open_replies() {
   FILE* replies = fdopen(dup(STDOUT_FILENO), "w");
   dup2(STDERR_FILENO, STDOUT_FILENO);
   return replies;
+}
+
+/// Where the wheels place the camera, if the request says it.
+std::optional<cv::Affine3d> wheels_of(const cv::FileStorage& request) {
+  const cv::FileNode told = request["odometry"];
+  if (told.size() != 7) return {};
+  std::array<double, 7> values{};
+  for (int i = 0; i < 7; ++i) values[static_cast<std::size_t>(i)] = told[i].real();
+  return example::pose_of(values);
 }
 
 std::string about(const example::Found& found) {
@@ -55,7 +66,7 @@ int main() try {
     } else if (!odometry) {
       reply = R"(,"error":"hello comes first")";
     } else if (what == "track") {
-      reply = about(odometry->track(color, depth));
+      reply = about(odometry->track(color, depth, wheels_of(request)));
     } else if (what == "rewind") {
       odometry->lose();
     } else if (what == "reset") {

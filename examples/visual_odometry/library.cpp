@@ -3,8 +3,10 @@
 #include <modelhouse/system.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -43,6 +45,11 @@ cv::Mat depth_of(const mh_frame& frame) {
   return {frame.height_px, frame.width_px, CV_16UC1, const_cast<uint16_t*>(frame.depth)};
 }
 
+std::optional<cv::Affine3d> wheels_of(const mh_frame& frame) {
+  if (frame.odometry == nullptr) return {};
+  return example::pose_of(std::to_array(frame.odometry->values));
+}
+
 void report(const example::Found& found, mh_reply& reply) {
   if (found.world_from_camera) {
     reply.has_pose = 1;
@@ -58,7 +65,7 @@ void report(const example::Found& found, mh_reply& reply) {
 
 int track(void* self, const mh_frame* frame, mh_reply* reply) {
   return guarded(self, [&](example::VisualOdometry& odometry) {
-    report(odometry.track(bgr_of(*frame), depth_of(*frame)), *reply);
+    report(odometry.track(bgr_of(*frame), depth_of(*frame), wheels_of(*frame)), *reply);
   });
 }
 int relocalize(void* self, const mh_frame* frame, mh_reply* reply) {

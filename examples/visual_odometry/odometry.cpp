@@ -57,6 +57,10 @@ Camera read_settings(const std::string& file) {
   return camera;
 }
 
+cv::Affine3d pose_of(const std::array<double, 7>& v) {
+  return {cv::Quatd(v[6], v[3], v[4], v[5]).toRotMat3x3(), cv::Vec3d(v[0], v[1], v[2])};
+}
+
 std::array<double, 7> pose_values(const cv::Affine3d& pose) {
   const cv::Vec3d t = pose.translation();
   const cv::Quatd q = cv::Quatd::createFromRotMat(pose.rotation());
@@ -81,6 +85,7 @@ VisualOdometry::VisualOdometry(Camera camera)
 
 void VisualOdometry::forget_map() {
   keyframes_.clear();
+  world_from_odom_.reset();
   lose();
 }
 
@@ -160,7 +165,8 @@ void VisualOdometry::add_keyframe(View view, const cv::Affine3d& world_from_came
   keyframes_.push_back({std::move(view), world_from_camera});
 }
 
-Found VisualOdometry::track(const cv::Mat& bgr, const cv::Mat& depth) {
+Found VisualOdometry::track(const cv::Mat& bgr, const cv::Mat& depth,
+                            const std::optional<cv::Affine3d>& wheels) {
   View view = look(bgr, depth);
   Found found;
   if (keyframes_.empty()) {
@@ -168,14 +174,17 @@ Found VisualOdometry::track(const cv::Mat& bgr, const cv::Mat& depth) {
     found.world_from_camera = cv::Affine3d::Identity();
     found.keyframe_added = true;
     add_keyframe(std::move(view), *found.world_from_camera);
+    if (wheels) world_from_odom_ = *found.world_from_camera * wheels->inv();
     return found;
   }
   if (reference_) found = place(view, keyframes_[*reference_], kMinTracked);
   if (!found.world_from_camera) found = find(view);
   if (!found.world_from_camera) {
     lose();
+    if (wheels && world_from_odom_) found.world_from_camera = *world_from_odom_ * *wheels;
     return found;
   }
+  if (wheels) world_from_odom_ = *found.world_from_camera * wheels->inv();
   const auto moved = [&](const Keyframe& keyframe) {
     const cv::Affine3d motion = keyframe.world_from_camera.inv() * *found.world_from_camera;
     return cv::norm(motion.translation()) > kKeyframeDistance_m ||

@@ -11,8 +11,8 @@
 #include <opencv2/features2d.hpp>
 
 /// A small RGB-D visual odometry: each frame is matched to a keyframe (ORB, ratio test) and
-/// localized by PnP. No bundle adjustment, no loop closing: an example of a user's own system, not
-/// a competitor.
+/// localized by PnP, or where that fails, by wheel odometry, if there is any. No bundle adjustment,
+/// no loop closing: an example of a user's own system, not a competitor.
 namespace example {
 
 struct Camera {
@@ -24,6 +24,8 @@ struct Camera {
 /// Reads Camera.fx, ... from a settings file. @throws cv::Exception if it cannot be read.
 Camera read_settings(const std::string& file);
 
+/// From x, y, z, qx, qy, qz, qw.
+cv::Affine3d pose_of(const std::array<double, 7>& values);
 /// x, y, z, qx, qy, qz, qw.
 std::array<double, 7> pose_values(const cv::Affine3d& pose);
 /// The same as text, with all digits that a double has.
@@ -54,7 +56,9 @@ class VisualOdometry {
   explicit VisualOdometry(Camera camera);
 
   /// Localizes the next frame and extends the map. The first frame is the origin.
-  Found track(const cv::Mat& bgr, const cv::Mat& depth);
+  /// @param wheels  where odometry places the camera in its own world, if it is known
+  Found track(const cv::Mat& bgr, const cv::Mat& depth,
+              const std::optional<cv::Affine3d>& wheels = {});
   /// Localizes a frame in the map without a prior pose. Changes nothing, so that the answer depends
   /// only on the map and the frame.
   Found relocalize(const cv::Mat& bgr, const cv::Mat& depth) const;
@@ -71,7 +75,8 @@ class VisualOdometry {
   Camera camera_;
   cv::Ptr<cv::ORB> orb_;
   std::vector<Keyframe> keyframes_;
-  std::optional<std::size_t> reference_;  ///< the keyframe being tracked against; none: lost
+  std::optional<std::size_t> reference_;         ///< the keyframe being tracked against; none: lost
+  std::optional<cv::Affine3d> world_from_odom_;  ///< as of the last frame that was found by image
 };
 
 }  // namespace example

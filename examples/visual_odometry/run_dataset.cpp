@@ -1,13 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trajectory mode: reads a folder in TUM's layout, writes a trajectory.
+#include <array>
 #include <fstream>
 #include <iostream>
+#include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 
 #include <opencv2/imgcodecs.hpp>
 
 #include "odometry.hpp"
+
+namespace {
+
+/// Where the wheels place the camera, by stamp, if the folder says it.
+std::map<std::string, cv::Affine3d> read_wheels(const std::string& file) {
+  std::map<std::string, cv::Affine3d> wheels;
+  std::ifstream lines(file);
+  std::string line, stamp;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::array<double, 7> values{};
+    words >> stamp;
+    for (double& value : values) words >> value;
+    if (words) wheels[stamp] = example::pose_of(values);
+  }
+  return wheels;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) try {
   if (argc != 5) {
@@ -22,6 +44,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   example::VisualOdometry odometry(example::read_settings(argv[3]));
+  const auto wheels = read_wheels(dataset + "/odometry.txt");
   std::string line, stamp, color_file, depth_stamp, depth_file;
   while (std::getline(associations, line)) {
     if (!(std::istringstream(line) >> stamp >> color_file >> depth_stamp >> depth_file)) continue;
@@ -31,7 +54,9 @@ int main(int argc, char** argv) try {
       std::cerr << color_file << " or " << depth_file << " is not an image of its kind\n";
       return 2;
     }
-    const example::Found found = odometry.track(color, depth);
+    const auto told = wheels.find(stamp);
+    const example::Found found = odometry.track(
+        color, depth, told == wheels.end() ? std::nullopt : std::optional(told->second));
     if (found.world_from_camera)
       trajectory << stamp << ' ' << example::pose_numbers(*found.world_from_camera, ' ') << '\n';
   }
