@@ -331,7 +331,7 @@ TEST_F(OutsideOdometry, FallsBackOnTheWheels) {
     RgbdFrame shown = frame(i, noise);
     if (i >= 40 && i < 55) {
       shown.color = Grid2d<Rgb8>(camera().width_px, camera().height_px, {90, 90, 90});
-      shown.depth_m.fill(0);
+      shown.depth_m = Grid2d<float>(camera().width_px, camera().height_px);
     }
     Vector6d drift = Vector6d::Zero();
     drift[0] = 0.01 * path_[i].world_from_camera.translation().norm();
