@@ -42,6 +42,7 @@ RunAudit execute(const RunSpec& spec, const std::string& key, const AuditOptions
   }();
   RunAudit audit =
       audit_run(run, *world, frozen, [&](double share) { progress(0.5 + 0.5 * share, "audit"); });
+  require_unchanged(world->held);
   audit.run_s = run_s;
   return audit;
 }

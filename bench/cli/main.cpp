@@ -23,6 +23,7 @@
 #include "bench/run/signal_watch.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/file_errors.hpp"
+#include "slam/io/held_bytes.hpp"
 #include "slam/io/printable.hpp"
 
 namespace {
@@ -67,7 +68,9 @@ bool has_commands(const CLI::App& app) {
 
 int run(int argc, char** argv) {
   // The process that started a run must see that it was killed, not a line about it.
-  if (argc < 2 || std::string_view(argv[1]) != "run-one") mh::tell_of_interrupts();
+  const bool is_run = argc >= 2 && std::string_view(argv[1]) == "run-one";
+  if (!is_run) mh::tell_of_interrupts();
+  mh::end_at_lost_pages(mh::kErrorMark, is_run ? mh::kInputChangedCode : kBadInput);
   // A file beyond `ulimit -f` is a failed write that is reported, not a silent end.
   std::signal(SIGXFSZ, SIG_IGN);
   // Same bits at any load: OpenCV must not split its work by the number of processors.

@@ -98,7 +98,7 @@ void run(const ReportArguments& options) {
   const OutputFolder folder(options.out, "report", names_of_pages());
   if (!options.replay.empty()) add_replays(sources, options);
   for (PagesSource& source : sources)
-    if (source.suite) source.frames = frames_json(*source.suite);
+    if (source.suite) source.frames = frames_json(source);
   const WrittenPages written = write_pages(options.out, sources);
   for (const PagesSource& source : sources)
     if (!source.problem.empty())

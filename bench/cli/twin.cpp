@@ -143,7 +143,7 @@ void print(const std::vector<TwinFrame>& frames, const std::vector<TwinRow>& row
 }
 
 /// Up to six frames, evenly spaced, each recorded image beside its rendering.
-void draw_pairs(const Sequence& recorded, const Sequence& twin, const fs::path& file) {
+cv::Mat draw_pairs(const Sequence& recorded, const Sequence& twin) {
   constexpr std::size_t kPairs = 6;
   std::vector<View> views;
   const std::size_t count = std::min(kPairs, recorded.size());
@@ -157,7 +157,7 @@ void draw_pairs(const Sequence& recorded, const Sequence& twin, const fs::path& 
     }
     views.push_back({"rendered", twin.frame(i, RandomStream(1).fork(i)).color, {}, {}});
   }
-  write_image(file, draw_gallery(views, 2, true));
+  return draw_gallery(views, 2, true);
 }
 
 void run(TwinArguments options) {
@@ -207,8 +207,9 @@ void run(TwinArguments options) {
   }
   progress.end();
 
+  const cv::Mat pairs = draw_pairs(*recorded, *twin);
   require_unchanged(reading.record());
-  draw_pairs(*recorded, *twin, fs::path(options.out) / "pairs.png");
+  write_image(fs::path(options.out) / "pairs.png", pairs);
   const std::vector<TwinRow> rows = summarize(frames);
   nlohmann::ordered_json json = {{"recording", options.recording},
                                  {"scene", options.scene},

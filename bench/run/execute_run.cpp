@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "bench/run/one/run_streams.hpp"
 #include "bench/store/store.hpp"
 #include "bench/suite/cache.hpp"
+#include "bench/suite/inputs.hpp"
 #include "bench/suite/run_key.hpp"
 #include "bench/suite/spec_json.hpp"
 #include "bench/systems/timed.hpp"
@@ -52,6 +54,25 @@ RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s
                             .load = load_per_processor()}};
 }
 
+/// Builds the world of a run. The command could read every input before it began, so that one which
+/// cannot be read now has changed.
+World build_as_planned(const RunSpec& spec, const std::string& key,
+                       const std::function<World()>& build) {
+  try {
+    return build();
+  } catch (const InputChanged&) {
+    throw;
+  } catch (const InputError&) {
+    try {
+      InputReader now;
+      require_key(spec, now.inputs_of(spec), key);
+    } catch (const InputError&) {
+      throw_changed(spec);
+    }
+  }
+  return build();  // of what the key names: an error is now the run's own
+}
+
 }  // namespace
 
 void execute_run(const SingleRunOptions& order) {
@@ -59,7 +80,7 @@ void execute_run(const SingleRunOptions& order) {
   const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
   const RunSpec spec = run_spec_from_json(json);
   double world_s = 0, products_s = 0;
-  const World world = [&] {
+  const World world = build_as_planned(spec, order.key, [&] {
     const ProcessorTimer timer(world_s);
     const auto baked = [&](double share) {
       order.status(fmt::format("light {:.0f} %", 100 * share));
@@ -67,12 +88,15 @@ void execute_run(const SingleRunOptions& order) {
     SharedImages images = order.images;
     if (order.share_noise) images.noises = shared_noises(spec);
     return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, images);
-  }();
+  });
   require_key(spec, world.inputs, order.key);
   const fs::path folder = order.folder / spec.name;
   const fs::path ended = folder / "episodes";
   make_output_folder(folder);
   if (!order.metrics_only) remove_run(folder);
+  std::error_code no_matter;
+  // Another map would be made than the one that the first episodes drove on.
+  if (!spec.system.repeatable) fs::remove_all(ended, no_matter);
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
                                  .hidden = {order.folder, order.cache},
@@ -93,7 +117,6 @@ void execute_run(const SingleRunOptions& order) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Store(order.store)
       .put(order.key, run, cost_of_this_process(run, wall_s, world_s, products_s, order));
-  std::error_code no_matter;
   fs::remove_all(ended, no_matter);
 }
 

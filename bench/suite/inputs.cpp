@@ -117,10 +117,7 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of(spec.environment);
   if (!spec.environment.is_recorded()) inputs.push_back(level(spec.level));
   if (const auto& detector = labels_of_frames(spec).detector)
-    inputs.push_back(
-        read("detector",
-             fmt::format("detector {} {}", detector->config.string(), detector->classes.string()),
-             source_of(*detector), [&](const fs::path&) { open_detector(*detector); }));
+    inputs.push_back(this->detector(*detector));
   if (!spec.vocabulary.empty()) inputs.push_back(vocabulary(spec.vocabulary));
   if (spec.episodes) std::ranges::move(inputs_of(*spec.episodes), std::back_inserter(inputs));
   std::ranges::copy(program(spec.system), std::back_inserter(inputs));
@@ -130,6 +127,12 @@ std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
 
 InputDigest InputReader::level(const fs::path& file) {
   return read("level", "level", file, [](const fs::path& f) { load_sensor_config(f); });
+}
+
+InputDigest InputReader::detector(const DetectorSpec& spec) {
+  return read("detector",
+              fmt::format("detector {} {}", spec.config.string(), spec.classes.string()),
+              source_of(spec), [&](const fs::path&) { open_detector(spec); });
 }
 
 InputDigest InputReader::vocabulary(const fs::path& file) {

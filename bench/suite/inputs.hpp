@@ -56,6 +56,7 @@ class InputReader {
   /// One of them alone.
   InputDigest level(const std::filesystem::path& file);
   InputDigest vocabulary(const std::filesystem::path& file);
+  InputDigest detector(const DetectorSpec& spec);
   const std::vector<InputDigest>& program(const SystemSpec& system);
 
   /// Whether two recordings have most images of the shorter one in common, whatever their files are

@@ -7,7 +7,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <string>
 #include <utility>
 
 #include "slam/io/error.hpp"
@@ -47,6 +50,58 @@ const char* reason_of(int error) {
 
 }  // namespace
 
+namespace {
+
+// Read by a signal handler: nodes are never freed, and a file that is unmapped has size 0.
+struct Mapped {
+  const char* begin;
+  std::atomic<std::size_t> size;
+  std::string file;
+  Mapped* next;
+};
+std::atomic<Mapped*> g_mapped = nullptr;
+std::string g_error_mark;
+int g_exit_code = 0;
+
+Mapped* note_mapped(const void* begin, std::size_t size, const std::filesystem::path& file) {
+  auto* const node =
+      new Mapped{static_cast<const char*>(begin), size, file.string(), g_mapped.load()};
+  while (!g_mapped.compare_exchange_weak(node->next, node)) {
+  }
+  return node;
+}
+
+void write_all(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+    if (written <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void at_lost_page(int signal, siginfo_t* info, void*) {
+  const auto* const at = static_cast<const char*>(info->si_addr);
+  for (const Mapped* node = g_mapped.load(); node != nullptr; node = node->next)
+    if (at >= node->begin && at < node->begin + node->size.load()) {
+      write_all(g_error_mark);
+      write_all(node->file);
+      write_all(": was changed while it was in use: start the command again\n");
+      _exit(g_exit_code);
+    }
+  std::signal(signal, SIG_DFL);  // not ours: it comes again
+}
+
+}  // namespace
+
+void end_at_lost_pages(std::string_view error_mark, int code) {
+  g_error_mark = error_mark;
+  g_exit_code = code;
+  struct sigaction action {};
+  action.sa_sigaction = at_lost_page;
+  action.sa_flags = SA_SIGINFO;
+  sigaction(SIGBUS, &action, nullptr);
+}
+
 HeldBytes hold(std::string bytes) {
   const auto owner = std::make_shared<const std::string>(std::move(bytes));
   return {owner, *owner};
@@ -74,8 +129,12 @@ HeldBytes map_file(const std::filesystem::path& file, MapPages pages) {
                            pages == MapPages::kAtOnce ? MAP_PRIVATE | MAP_POPULATE : MAP_PRIVATE,
                            descriptor.value(), 0);
   if (start == MAP_FAILED) throw refusal(reason_of(errno));
-  HeldBytes held{std::shared_ptr<const void>(
-                     start, [size](const void* p) { munmap(const_cast<void*>(p), size); }),
+  Mapped* const noted = note_mapped(start, size, file);
+  HeldBytes held{std::shared_ptr<const void>(start,
+                                             [size, noted](const void* p) {
+                                               noted->size = 0;
+                                               munmap(const_cast<void*>(p), size);
+                                             }),
                  {static_cast<const char*>(start), size}};
   report_read(file, held.view, before);
   return held;

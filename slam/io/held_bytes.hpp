@@ -19,9 +19,14 @@ HeldBytes hold(std::string bytes);
 /// When the pages of a mapped file are read.
 enum class MapPages { kAtOnce, kAsTouched };
 
-/// Maps a file read-only into memory; the pages are shared with other processes. While mapped, the
-/// file must only be replaced by renaming, never rewritten in place. @throws InputError naming the
-/// file: missing, a folder, no permission.
+/// Maps a file read-only into memory; the pages are shared with other processes. A file that is
+/// truncated while it is mapped ends the process, see end_at_lost_pages(). @throws InputError
+/// naming the file: missing, a folder, no permission.
 HeldBytes map_file(const std::filesystem::path& file, MapPages pages = MapPages::kAtOnce);
+
+/// From now on, a mapped file that was truncated ends the process with a line that names it, when a
+/// page beyond its end is touched.
+/// @param code  exit code
+void end_at_lost_pages(std::string_view error_mark, int code);
 
 }  // namespace mh

@@ -159,7 +159,9 @@ Replay make_replay(const RunResult& result, const ReplayTools& tools) {
                 {"mesh", mesh_json(*world.simulated->scene)},
                 {"landmarks", landmarks_json(frozen.map, to_dock)},
                 {"keyframes", keyframes_json(frozen.map, to_dock)}};
-  return {.scene = std::move(scene), .views = views_json(run, world, frozen)};
+  Replay replay{.scene = std::move(scene), .views = views_json(run, world, frozen)};
+  require_unchanged(world.held);
+  return replay;
 }
 
 }  // namespace mh

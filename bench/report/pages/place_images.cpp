@@ -8,6 +8,7 @@
 #include "bench/report/packed.hpp"
 #include "bench/report/pages/run_page.hpp"
 #include "bench/report/pages/tables.hpp"
+#include "bench/suite/inputs.hpp"
 #include "bench/suite/recorded_camera.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
@@ -28,6 +29,7 @@ std::string plan_of(const PagesSource& source, const RunResult& run) {
   constexpr std::uintmax_t kLargest = 2'000'000;
   constexpr std::string_view kPng = "\x89PNG";
   if (source.folder.empty()) return "";
+  if (!grid_of(source, run)) return "";  // the files of another run may be there
   for (const char* name : {"topdown_second_tour.png", "topdown.png"}) {
     const fs::path file = source.folder / run.spec.name / name;
     if (!is_file(file) || fs::file_size(file) > kLargest) continue;
@@ -50,6 +52,17 @@ std::vector<const RunResult*> side_by_side(const Suite& suite, const std::vector
         break;
       }
   return found;
+}
+
+/// Whether an environment's runs used this input.
+bool is_of_results(const InputDigest& input, const std::string& environment,
+                   const std::vector<RunResult>& runs) {
+  return std::ranges::none_of(runs, [&](const RunResult& run) {
+    return run.spec.environment.name == environment &&
+           std::ranges::any_of(run.place.inputs, [&](const InputDigest& used) {
+             return used.name == input.name && used.digest != input.digest;
+           });
+  });
 }
 
 }  // namespace
@@ -80,13 +93,19 @@ Json place_images_json(const PagesSource& source) {
           {"frames", source.frames}};
 }
 
-Json frames_json(const Suite& suite) {
+Json frames_json(const PagesSource& source) {
+  const Suite& suite = *source.suite;
   const auto recorded = std::ranges::find_if(suite.environments, &Environment::is_recorded);
   if (recorded == suite.environments.end()) return nullptr;
   Json list = Json::array();
   std::string problem;
   try {
-    const OpenedRecording opened = open_recorded(*recorded, recorded->sequence, false);
+    std::vector<InputDigest> now;
+    const OpenedRecording opened =
+        noted(now, "sequence", split_sequence(recorded->sequence).second,
+              [&] { return open_recorded(*recorded, recorded->sequence, false); });
+    if (!is_of_results(now.front(), recorded->name, source.results.runs))
+      throw InputError("has changed since these results were made");
     const std::size_t size =
         std::min(opened.sequence->size(), suite.max_frames.value_or(opened.sequence->size()));
     for (std::size_t k = 0; k < kFrames && k < size; ++k) {

@@ -14,6 +14,6 @@ nlohmann::ordered_json place_images_json(const PagesSource& source);
 
 /// Some frames of a suite's first recording, evenly spaced, as small JPEGs; why there are none, if
 /// it is not at hand. Null if the suite has no recording.
-nlohmann::ordered_json frames_json(const Suite& suite);
+nlohmann::ordered_json frames_json(const PagesSource& source);
 
 }  // namespace mh

@@ -75,6 +75,18 @@ std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
   return text;
 }
 
+/// What decides labels. A kind alone is its name.
+std::string labels_text(const Labels& labels, InputReader& reader) {
+  std::string text = fmt::format("labels={};", name(labels));
+  if (labels.dials) text += fmt::format("dials={};", json_of(*labels.dials).dump());
+  if (labels.detector)
+    text += fmt::format(
+        "{}settings={};",
+        content("detector", source_of(*labels.detector), reader.detector(*labels.detector)),
+        format_detector_settings(labels.detector->settings, false));
+  return text;
+}
+
 }  // namespace
 
 RunFigures figures(const RunResult& run) {
@@ -110,7 +122,9 @@ std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
   if (suite.graded) text += fmt::format("graded={};", json_of(*suite.graded).dump());
   if (suite.episodes) text += episodes_text(*suite.episodes, reader);
   for (const SystemSpec& system : suite.systems) text += fmt::format("system={};", system.name);
-  for (const Labels& labels : suite.labels) text += fmt::format("labels={};", name(labels));
+  for (const Labels& labels : suite.labels) text += labels_text(labels, reader);
+  for (const Sense sense : suite.senses)
+    text += fmt::format("sense={};", name_of(sense, words(sense)));
   for (const auto& level : suite.levels)
     text += level == kRecordedLevel ? "recorded;"
                                     : content(level_name(level), level, reader.level(level));

@@ -318,7 +318,7 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
                    "environments:\n- {category: office, sequence: 'tum:office'}\n"
                    "vocabulary: v.mhvoc\nsystems: [semantic, plain]\nlabels: [none]\n");
   PagesSource source = source_of_suite(parse_suite(read_file(file), file, {}, false));
-  source.frames = frames_json(*source.suite);
+  source.frames = frames_json(source);
   write_pages(out(), std::array{source});
   Json frames = piece(out(), "0/place").at("frames");
   EXPECT_TRUE(frames.at("problem").is_null()) << frames.at("problem").dump();
@@ -327,10 +327,10 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
   EXPECT_EQ(frames.at("list").at(3).at("frame"), 6);
   EXPECT_NE(frames.at("list").at(0).at("jpeg"), frames.at("list").at(3).at("jpeg"));
   fs::remove_all(work_.path() / "office");  // on another machine
-  frames = frames_json(*source.suite);
+  frames = frames_json(source);
   EXPECT_TRUE(frames.at("list").empty());
   EXPECT_FALSE(frames.at("problem").is_null());
-  EXPECT_TRUE(frames_json(*source_of({"den"}).suite).is_null());
+  EXPECT_TRUE(frames_json(source_of({"den"})).is_null());
 }
 
 TEST_F(Reports, Figure4OfARecordingIsOverTruthAtOtherMomentsThanItsFrames) {
