@@ -21,8 +21,8 @@ struct TrackConfig {
   /// not, up to this drift (one standard deviation).
   double reckon_position_m = 0.3;
   double reckon_angle_rad = 0.2;
-  /// While mapping, a camera that was lost is found again only where it can have come to, at this
-  /// speed, from where it was before; 0: anywhere.
+  /// While mapping, a pose counts only if the camera can have come there, at this speed, from where
+  /// it was before; 0: any does.
   double max_speed_m_s = 0;
   double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
   /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.
@@ -55,7 +55,7 @@ void fields(C& c, Visit& v) {
     "odometry or IMU place frames that the image does not, up to this drift (0: never) and");
   v("reckon_angle_rad", reckon_angle_rad, setting::kAngle_rad, "this");
   v("max_speed_m_s", max_speed_m_s, {0, 100},
-    "while mapping, a lost camera is found again only where it can have come to; 0: anywhere");
+    "while mapping, no pose counts that the camera cannot have come to; 0: any does");
   v("coast_s", coast_s, {0, 10},
     "how long a lost camera is searched for along its predicted motion");
   v("readout_s", readout_s, {0, 1}, "of a rolling shutter, first row to last; 0: all at once");

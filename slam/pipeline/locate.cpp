@@ -19,7 +19,8 @@ int inliers_needed(const Features& features, const TrackConfig& config) {
 /// @param reckoned  predicts the motion in the place of the last step
 std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
                               const std::optional<Reckoned>& reckoned, PreparedFrame& frame,
-                              const SlamContext& context, const StepObservers& observers) {
+                              const SlamContext& context, const StepObservers& observers,
+                              const IsPossible& is_possible) {
   if (!tracker.last) return std::nullopt;
   const auto by_motion = [&] {
     return track_motion(without_words(frame), *tracker.last,
@@ -43,7 +44,7 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
     }
     if (!tracked) continue;
     if (auto located = confirm_in_local_map(frame, *tracked, min_inliers, context, observers))
-      return located;
+      if (!is_possible || is_possible(located->tracked.camera_from_world)) return located;
   }
   return std::nullopt;
 }
@@ -122,7 +123,7 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
   const SlamContext context = context_of(state, observers, report);
   const auto reckoned =
       reckon(tracker, frame.stamp_ns, frame.odom_from_camera, frame.imu, config.track);
-  auto located = follow(state, tracker, reckoned, frame, context, observers);
+  auto located = follow(state, tracker, reckoned, frame, context, observers, is_possible);
   if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
   if (!located && reckoned)
     located = follow_reckoned(state, tracker, *reckoned, frame, context, observers);

@@ -14,7 +14,7 @@ SlamContext context_of(const SlamState& state, const StepObservers& observers, S
 
 /// Localizes a frame in the map: by tracking from previous frames; if that fails, by
 /// relocalization. Reads the map, never writes it; of the tracker, only stale_scores changes.
-/// @param is_possible  of a pose that relocalization finds
+/// @param is_possible  of a pose that an image tells
 std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report, const IsPossible& is_possible = {});

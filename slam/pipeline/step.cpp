@@ -61,23 +61,25 @@ void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Featu
                                                                state.depth_frames++, *disagreement);
 }
 
-/// Whether a camera that was lost can have come to a pose, at TrackConfig::max_speed_m_s, from
-/// where frames before it were, and on to where frames after it were before a rewind.
+/// Whether a camera can have come to a pose, at TrackConfig::max_speed_m_s, from where the frame
+/// before was, and on to where frames after it were before a rewind.
 bool within_reach(const SlamState& state, Stamp stamp_ns, const SE3& camera_from_world) {
   const double max_speed_m_s = state.config.track.max_speed_m_s;
   if (max_speed_m_s == 0) return true;
-  constexpr double kLeast_m = 0.3, kNanosecond_s = 1e-9;
-  const auto from = [&](const auto& other) {
+  constexpr double kLeast_m = 0.3, kLeast_rad = 0.2, kNanosecond_s = 1e-9;
+  constexpr double kMaxTurn_rad_s = 3;  // faster than any robot's head, about that of a hand
+  const auto reaches = [&](const auto& other) {
     const auto& [other_ns, frame] = *other;
     const SE3 pose = frame.camera_from_reference * state.map.camera_from_world(frame.reference);
     const double moved_m =
         (pose.inverse().translation() - camera_from_world.inverse().translation()).norm();
     const double elapsed_s = std::abs(static_cast<double>(stamp_ns - other_ns)) * kNanosecond_s;
-    return moved_m <= kLeast_m + max_speed_m_s * elapsed_s;
+    return moved_m <= kLeast_m + max_speed_m_s * elapsed_s &&
+           angle_between_rad(pose, camera_from_world) <= kLeast_rad + kMaxTurn_rad_s * elapsed_s;
   };
   const auto after = state.tracked_frames.lower_bound(stamp_ns);
-  return (after == state.tracked_frames.end() || from(after)) &&
-         (after == state.tracked_frames.begin() || from(std::prev(after)));
+  return (after == state.tracked_frames.end() || reaches(after)) &&
+         (after == state.tracked_frames.begin() || reaches(std::prev(after)));
 }
 
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
