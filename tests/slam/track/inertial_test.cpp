@@ -97,8 +97,9 @@ TEST(InertialMotion, WhatItKnowsBeginsItAnewElsewhere) {
   const Vector3d down = there.rotation() * Vector3d(0, 0, -9.81);
   EXPECT_LT((anew.gravity_m_per_s2 - down).norm(), 0.2);
   EXPECT_EQ(anew.turn_bias_rad_per_s, fed.motion.turn_bias_rad_per_s);
-  EXPECT_NEAR(anew.covariance.trace(),
-              fed.motion.covariance.bottomRightCorner<9, 9>().trace() + 6 * 4e-6 + 3 * 4, 1e-9);
+  const Matrix18d& before = fed.motion.covariance;
+  const double learned = before.bottomRightCorner<9, 9>().trace();
+  EXPECT_NEAR(anew.covariance.trace(), learned + 6 * 4e-6 + 3 * 4, 1e-9);
 }
 
 TEST(InertialMotion, AGapInTheReadingsEndsIt) {
