@@ -178,21 +178,59 @@ TEST_F(ChangedInputs, AProgramThatIsReplacedDuringItsRunHasNoResult) {
   }
 }
 
-// It is a view of its file: written in place, its words change under the run.
-TEST_F(ChangedInputs, AVocabularyThatIsWrittenDuringItsRunLeavesNoResult) {
-  const std::string shipped = MH_SOURCE_DIR "/assets/vocabulary.mhvoc";
-  fs::copy_file(shipped, path("words.mhvoc"));
-  test::SmallSuite{.systems = "[plain]", .labels = "[exact]"}.write(path("suite.yaml"));
-  std::string suite = content(path("suite.yaml"));
-  suite.replace(suite.find(shipped), shipped.size(), path("words.mhvoc"));
-  write_atomically(path("suite.yaml"), suite);
-  const std::string said =
-      disturbed("bench " + path("suite.yaml") + " --out " + path("out"), "frame 1", [&] {
-        std::fstream file(path("words.mhvoc"), std::ios::in | std::ios::out | std::ios::binary);
-        file.seekp(100000).write("another word", 12);
-      });
-  expect_refused(said, "words.mhvoc: was changed while it was in use");
+/// Commands over a vocabulary of their own: a view of its file, whose words change under a run if
+/// it is written in place.
+class ChangedWords : public ChangedInputs {
+ protected:
+  ChangedWords() {
+    const std::string shipped = MH_SOURCE_DIR "/assets/vocabulary.mhvoc";
+    fs::copy_file(shipped, path("words.mhvoc"));
+    test::SmallSuite{.systems = "[plain]", .labels = "[exact]"}.write(path("suite.yaml"));
+    std::string suite = content(path("suite.yaml"));
+    suite.replace(suite.find(shipped), shipped.size(), path("words.mhvoc"));
+    write_atomically(path("suite.yaml"), suite);
+  }
+  void write_in_place() const {
+    std::fstream file(path("words.mhvoc"), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(100000).write("another word", 12);
+  }
+  void expect_changed(const std::string& said) const {
+    expect_refused(said, "words.mhvoc: was changed while it was in use");
+  }
+};
+
+TEST_F(ChangedWords, DuringARunLeaveNoResult) {
+  expect_changed(disturbed("bench " + path("suite.yaml") + " --out " + path("out"), "frame 1",
+                           [&] { write_in_place(); }));
   EXPECT_EQ(stored("out/results.sqlite", "runs"), 0);
+}
+
+TEST_F(ChangedWords, AreNoCrashWhereTheyAreCutOff) {
+  expect_changed(disturbed("bench " + path("suite.yaml") + " --out " + path("out"), "frame 1",
+                           [&] { fs::resize_file(path("words.mhvoc"), 4096); }));
+  EXPECT_EQ(stored("out/results.sqlite", "runs"), 0);
+}
+
+TEST_F(ChangedWords, DuringAnAuditLeaveNone) {
+  expect_changed(disturbed("audit " + path("suite.yaml") + " --out " + path("out"), ", audit",
+                           [&] { write_in_place(); }));
+  EXPECT_FALSE(fs::exists(path("out/audit.json")));
+}
+
+TEST_F(ChangedWords, DuringAReplayLeaveNoPages) {
+  ASSERT_EQ(run("bench " + path("suite.yaml") + " --out " + path("out")), 0) << said_;
+  expect_changed(disturbed("report " + path("out") + " --replay all --out " + path("pages"),
+                           "runs again", [&] { write_in_place(); }));
+  EXPECT_FALSE(fs::exists(path("pages/index.html")));
+}
+
+// The first run's program takes away what the second reads.
+TEST_F(ChangedInputs, AFileThatIsAwayForAMomentIsNoFailureOfItsRun) {
+  const std::string suite = two_rooms("[{name: p, protocol: trajectory, command: 'mv " +
+                                      path("other.yaml") + " " + path("away") + "; exit 3'}]");
+  code_ = run("bench " + suite + " --frames 45 --out " + path("out"));
+  expect_refused(said_, "other-p-exact-pepper-0: a file that it reads was changed");
+  EXPECT_EQ(stored("out/results.sqlite", "runs"), 1) << "the first one's failure";
 }
 
 TEST_F(ChangedInputs, AVariableThatACommandNamesIsAnInput) {

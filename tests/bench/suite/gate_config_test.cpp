@@ -102,6 +102,19 @@ TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   const std::string turned = digest_of("house.obj, up: y");
   EXPECT_NE(turned, before);
   EXPECT_NE(digest_of("house.obj, up: y, floor_z_m: 0.5"), turned);
+  EXPECT_NE(digest("senses: [imu]"), before);
+  const auto labels = [&](const std::string& of) {
+    digest();  // writes the suite
+    std::string suite = read_file(folder_ / "suite.yaml");
+    const std::string exact = "labels: [exact]";
+    suite.replace(suite.find(exact), exact.size(), "labels: [" + of + "]");
+    write("suite.yaml", suite);
+    return gate_digest(folder_ / "suite.yaml");
+  };
+  EXPECT_EQ(labels("exact"), before);
+  const std::string confused = labels("{of: exact, name: noisy, confusion: 0.1}");
+  EXPECT_NE(confused, before);
+  EXPECT_NE(labels("{of: exact, name: noisy, confusion: 0.6}"), confused);
   const std::string graded = digest("graded: {distance_m: [0, 1], angle_deg: [0, 30]}");
   EXPECT_NE(graded, before);
   EXPECT_NE(digest("graded: {distance_m: [0, 2], angle_deg: [0, 30]}"), graded);

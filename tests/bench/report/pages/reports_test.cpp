@@ -326,6 +326,15 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
   EXPECT_EQ(frames.at("list").at(0).at("frame"), 0);
   EXPECT_EQ(frames.at("list").at(3).at("frame"), 6);
   EXPECT_NE(frames.at("list").at(0).at("jpeg"), frames.at("list").at(3).at("jpeg"));
+  // Of results that were made of another recording of this name, none is shown.
+  RunResult run;
+  run.spec.environment.name = source.suite->environments.front().name;
+  run.place.inputs = {{"sequence", 1, {}}};
+  source.results.runs = {run};
+  frames = frames_json(source);
+  EXPECT_TRUE(frames.at("list").empty());
+  EXPECT_EQ(frames.at("problem"), "has changed since these results were made");
+  source.results.runs.clear();
   fs::remove_all(work_.path() / "office");  // on another machine
   frames = frames_json(source);
   EXPECT_TRUE(frames.at("list").empty());
