@@ -53,6 +53,18 @@ std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& 
                         by);
 }
 
+std::optional<bool> is_in_map(const Trajectory& estimate, const Trajectory& mapping_truth,
+                              const QueryMoment& query) {
+  constexpr double kNear_m = 1, kNear_rad = 30 * std::numbers::pi / 180;
+  if (!query.true_world_from_camera) return std::nullopt;
+  const SE3& place = *query.true_world_from_camera;
+  return std::ranges::any_of(estimate, [&](const TimedPose& mapped) {
+    const auto truth = interpolated_pose(mapping_truth, mapped.stamp_ns, kMaxTruthGap_ns);
+    return truth && (truth->translation() - place.translation()).norm() <= kNear_m &&
+           angle_between_rad(*truth, place) <= kNear_rad;
+  });
+}
+
 QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
                  const std::optional<Anchor>& anchor, const SE3& truth_from_estimate,
                  const ProtocolConfig& config) {

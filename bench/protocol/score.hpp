@@ -56,6 +56,11 @@ std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& 
                                   const QueryMoment& query, NearestBy by,
                                   const ProtocolConfig& config);
 
+/// Whether a query's place is in the map: a mapped frame is within 1 m and 30 degrees of it, by
+/// true poses. Absent if the query's true pose is unknown.
+std::optional<bool> is_in_map(const Trajectory& estimate, const Trajectory& mapping_truth,
+                              const QueryMoment& query);
+
 /// One answer compared with the truth.
 struct QueryScore {
   QueryAnswer answer;
@@ -66,6 +71,7 @@ struct QueryScore {
   bool correct = false;  ///< returned, and within the protocol's limits
   bool false_positive =
       false;  ///< returned, and outside them (or nothing was mapped to compare with)
+  std::optional<bool> in_map = {};  ///< is_in_map()
   // Absent if no pose was returned or there is no anchor: nothing was mapped, or the truth is
   // unknown. The aligned distance is also absent if the true pose is unknown.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
@@ -75,14 +81,15 @@ struct QueryScore {
 
 template <MaybeConst<QueryScore> S, class Visit>
 void fields(S& score, Visit& v) {
-  auto& [answer, stamp_ns, true_world_from_camera, success, correct, false_positive, distance_m,
-         angle_deg, aligned_distance_m, grade] = score;
+  auto& [answer, stamp_ns, true_world_from_camera, success, correct, false_positive, in_map,
+         distance_m, angle_deg, aligned_distance_m, grade] = score;
   fields(answer, v);
   v("stamp_ns", stamp_ns);
   v("truth", true_world_from_camera);
   v("success", success);
   v("correct", correct);
   v("false_positive", false_positive);
+  v("in_map", in_map);
   v("distance_m", distance_m);
   v("angle_deg", angle_deg);
   v("aligned_distance_m", aligned_distance_m);

@@ -39,6 +39,15 @@ QuerySummary summarize(std::span<const QueryScore> queries) {
     if (q.aligned_distance_m) aligned.push_back(*q.aligned_distance_m);
   }
   s.queries = static_cast<double>(queries.size());
+  double placed = 0, in_map = 0, found_there = 0;
+  for (const QueryScore& q : queries) {
+    if (!q.in_map) continue;
+    ++placed;
+    in_map += *q.in_map;
+    found_there += *q.in_map && q.success;
+  }
+  if (placed > 0) s.in_map = in_map / placed;
+  if (in_map > 0) s.success_in_map = found_there / in_map;
   for (double* share : {&s.success, &s.attempts}) *share /= s.queries;
   if (std::ranges::any_of(queries, is_judged)) {
     s.correct = correct / s.queries;

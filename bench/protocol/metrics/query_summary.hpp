@@ -33,6 +33,8 @@ struct QuerySummary {
   double success = 0;  ///< share of all queries
   /// Shares of all queries; absent if none can be judged because the truth is unknown.
   std::optional<double> correct, false_positive;
+  std::optional<double> in_map;          ///< share of those whose place is in the map
+  std::optional<double> success_in_map;  ///< share of these
   /// Over the answered queries, to the local truth; absent if none was answered.
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
@@ -50,13 +52,16 @@ struct QuerySummary {
 template <MaybeConst<QuerySummary> S, class Visit>
 void fields(S& summary, Visit& v) {
   using enum Better;
-  auto& [queries, success, correct, false_positive, distance_mean_m, distance_median_m,
-         aligned_distance_mean_m, attempts, keyframes, c1, c2, c3, final, single_candidate,
-         label_mass, gamma, unscored, stale, stale_weight, stale_age] = summary;
+  auto& [queries, success, correct, false_positive, in_map, success_in_map, distance_mean_m,
+         distance_median_m, aligned_distance_mean_m, attempts, keyframes, c1, c2, c3, final,
+         single_candidate, label_mass, gamma, unscored, stale, stale_weight, stale_age] = summary;
   v(Metric{.name = "queries"}, queries);
   v(Metric{"success", "success", "%", 2, kMore, "queries", true}, success);
   v(Metric{"correct", "correct", "%", 2, kMore, "queries", true}, correct);
   v(Metric{"false_positive", "false pos.", "%", 2, kLess, "queries", true}, false_positive);
+  v(Metric{.name = "in_map", .heading = "in map", .unit = "%", .decimals = 2}, in_map);
+  v(Metric{.name = "success_in_map", .heading = "success there", .unit = "%", .decimals = 2},
+    success_in_map);
   v(Metric{"distance_mean_m", "mean m", "m", 4, kLess, "", true}, distance_mean_m);
   v(Metric{"distance_median_m", "median m", "m", 4, kLess}, distance_median_m);
   v(Metric{"aligned_distance_mean_m", "aligned m", "m", 4, kLess}, aligned_distance_mean_m);

@@ -60,6 +60,7 @@ class QueryRound {
       if (truth != nullptr && !moment.true_world_from_camera) continue;
       const auto anchor =
           find_anchor(run_.estimate, run_.truth, moment, nearest_by(set_), spec_.protocol);
+      const auto in_map = is_in_map(run_.estimate, run_.truth, moment);
       const bool once = end - first == 1;  // nothing to share
       const FramesMadeOnce shared(frames_);
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
@@ -71,6 +72,7 @@ class QueryRound {
               query(frozen, index, frames, spec_.protocol, stream_, memo.get());
           scores[p]->push_back(
               score(answer, moment, anchor, run_.alignment.truth_from_estimate, spec_.protocol));
+          scores[p]->back().in_map = in_map;
           if (set_ == QuerySet::kGraded)
             scores[p]->back().grade = world_.simulated->graded.list[index].grade;
         } catch (const UnusableFrame& error) {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/protocol/score.hpp"
+#include "bench/protocol/summarize.hpp"
 #include "tests/bench/protocol/fake_system.hpp"
 
 namespace mh {
@@ -399,6 +400,36 @@ TEST(Score, AnAnswerWithoutAnyMapIsFalseAndItsDistanceUnknown) {
   const QueryScore s = score(answer, {0, at(0, 0, 0)}, std::nullopt, SE3(), {});
   EXPECT_TRUE(s.success && !s.correct && s.false_positive);
   EXPECT_FALSE(s.distance_m || s.angle_deg || s.aligned_distance_m);
+}
+
+TEST(QueryScore, APlaceIsInTheMapWhereAFrameWasMapped) {
+  const auto at = [](Stamp stamp, double x, double turn) {
+    return TimedPose{stamp, {so3_exp({0, 0, turn}), Eigen::Vector3d(x, 0, 0)}};
+  };
+  const Trajectory truth{at(0, 0, 0), at(10, 5, 0), at(20, 10, 1)};
+  // The map is where it likes; what counts is which frames are in it.
+  const Trajectory estimate{at(0, 70, 2), at(20, 90, 2)};
+  const auto is = [&](const TimedPose& query) {
+    return is_in_map(estimate, truth, query).value_or(false);
+  };
+  EXPECT_TRUE(is(at(5, 0.99, 0)));
+  EXPECT_FALSE(is(at(5, 1.01, 0)));
+  EXPECT_FALSE(is(at(10, 5, 0))) << "this frame was not mapped";
+  EXPECT_TRUE(is(at(15, 10, 1.5)));
+  EXPECT_FALSE(is(at(15, 10, 1.6)));
+  EXPECT_FALSE(is_in_map({}, truth, at(0, 0, 0)).value());
+  EXPECT_FALSE(is_in_map(estimate, truth, QueryMoment(0, std::nullopt)).has_value());
+}
+
+TEST(QueryScore, SuccessInTheMapIsAmongThoseWhosePlaceIsThere) {
+  std::vector<QueryScore> queries(5);
+  queries[0].in_map = queries[1].in_map = queries[2].in_map = true;
+  queries[3].in_map = false;  // the fifth: unknown
+  queries[0].success = queries[3].success = queries[4].success = true;
+  const QuerySummary s = summarize(queries);
+  EXPECT_DOUBLE_EQ(s.in_map.value(), 0.75);
+  EXPECT_DOUBLE_EQ(s.success_in_map.value(), 1.0 / 3);
+  EXPECT_FALSE(summarize(std::vector<QueryScore>(2)).in_map);
 }
 
 }  // namespace

@@ -148,20 +148,22 @@ Cells below(const std::string& text, const Cells& heading, const std::string& na
 
 TEST_F(Figures, OfTheTextTableStandUnderTheirHeadings) {
   const std::string table = results_table(suite_, runs_);
-  const Cells held_out = {"held out", "success",  "correct",   "false pos.",
-                          "mean m",   "median m", "aligned m", "attempts"};
+  const Cells held_out = {"held out",      "success", "correct",  "false pos.", "in map",
+                          "success there", "mean m",  "median m", "aligned m",  "attempts"};
   EXPECT_EQ(below(table, held_out, "semantic"),
-            (Cells{"semantic", "75.00%", "62.50%", "12.50%", "0.2000", "0.0350", "0.7000", "2.25"}))
+            (Cells{"semantic", "75.00%", "62.50%", "12.50%", "-", "-", "0.2000", "0.0350", "0.7000",
+                   "2.25"}))
       << table;
-  EXPECT_EQ(below(table, held_out, "plain"),
-            (Cells{"plain", "62.50%", "25.00%", "37.50%", "0.5000", "0.4500", "0.6250", "2.75"}));
+  EXPECT_EQ(below(table, held_out, "plain"), (Cells{"plain", "62.50%", "25.00%", "37.50%", "-", "-",
+                                                    "0.5000", "0.4500", "0.6250", "2.75"}));
   Cells second_tour = held_out;
   second_tour[0] = "2nd tour";
   EXPECT_EQ(below(table, second_tour, "semantic"),
-            (Cells{"semantic", "60.00%", "40.00%", "20.00%", "0.2400", "0.0700", "0.4900", "3.20"}))
+            (Cells{"semantic", "60.00%", "40.00%", "20.00%", "-", "-", "0.2400", "0.0700", "0.4900",
+                   "3.20"}))
       << table;
-  EXPECT_EQ(below(table, second_tour, "plain"),
-            (Cells{"plain", "80.00%", "20.00%", "60.00%", "0.7000", "0.7500", "1.0750", "2.40"}));
+  EXPECT_EQ(below(table, second_tour, "plain"), (Cells{"plain", "80.00%", "20.00%", "60.00%", "-",
+                                                       "-", "0.7000", "0.7500", "1.0750", "2.40"}));
 }
 
 TEST_F(Figures, OfTheTextTablesHeadAreSuccessCorrectAndMeanDistance) {
@@ -326,12 +328,12 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
   EXPECT_EQ(semantic["mapping"], nlohmann::json::parse(R"({"failures": 0.0, "restarts": 6.0,
       "dropped": 7.0, "penalized": null})"));
   EXPECT_EQ(semantic["held_out"], nlohmann::json::parse(R"({"queries": 8.0, "success": 0.75,
-      "correct": 0.625, "false_positive": 0.125, "distance_mean_m": 0.2, "distance_median_m": 0.035,
+      "correct": 0.625, "false_positive": 0.125, "in_map": null, "success_in_map": null, "distance_mean_m": 0.2, "distance_median_m": 0.035,
       "aligned_distance_mean_m": 0.7, "attempts": 2.25, "candidates": {"keyframes": 120.0,
       "c1": 60.0, "c2": 30.0, "c3": 12.0, "final": 4.0, "single": 0.375, "label_mass": 0.31,
       "gamma": 1.75, "unscored": 0.11, "stale": 0.22, "stale_weight": 0.33, "stale_age": 4.4}})"));
   EXPECT_EQ(semantic["second_tour"], nlohmann::json::parse(R"({"queries": 5.0, "success": 0.6,
-      "correct": 0.4, "false_positive": 0.2, "distance_mean_m": 0.24, "distance_median_m": 0.07,
+      "correct": 0.4, "false_positive": 0.2, "in_map": null, "success_in_map": null, "distance_mean_m": 0.24, "distance_median_m": 0.07,
       "aligned_distance_mean_m": 0.49, "attempts": 3.2, "candidates": {"keyframes": 100.0,
       "c1": 64.0, "c2": 32.0, "c3": 16.0, "final": 2.4, "single": 0.2, "label_mass": 0.17,
       "gamma": 0.85, "unscored": null, "stale": null, "stale_weight": null,
@@ -354,7 +356,7 @@ TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   nlohmann::json query = run["points"][0]["held_out"][5];  // a false one
   for (const char* pose : {"truth", "estimate"}) query.erase(pose);
   EXPECT_EQ(query, nlohmann::json::parse(R"({"frame": 179, "stamp_ns": 179, "success": true,
-      "correct": false, "false_positive": true, "stage": "verified", "attempts": 3, "blank_frames": 0,
+      "correct": false, "false_positive": true, "in_map": null, "stage": "verified", "attempts": 3, "blank_frames": 0,
       "distance_m": 1.0, "angle_deg": 10.0, "aligned_distance_m": 1.5, "candidates":
       {"keyframes": 120, "c1": 60, "c2": 30, "c3": 12, "final": 5, "label_mass": 0.31, "gamma": 1.75,
       "unscored": 0.11, "stale": 0.22, "stale_weight": 0.33, "stale_age": 4.4},
