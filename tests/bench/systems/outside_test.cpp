@@ -118,90 +118,79 @@ TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
   EXPECT_EQ(labels.at<std::uint8_t>(0, 0), kVoid);
 }
 
-TEST(Odometry, IsToldInAConversationAndWrittenIntoADataset) {
-  const fs::path folder = fs::temp_directory_path() / ("mh_odometry_" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  RgbdFrame frame;
-  frame.stamp_ns = 1'000'000'000;
-  frame.color = Grid2d<Rgb8>(64, 48);
-  frame.depth_m = Grid2d<float>(64, 48);
-  Camera camera;
-  camera.width_px = 64, camera.height_px = 48, camera.cx_px = 31.5, camera.cy_px = 23.5;
-  camera.fx_px = camera.fy_px = 52;
-  RgbdFrame moved = frame;
-  moved.stamp_ns = 2'000'000'000;
-  moved.odom_from_camera = SE3(Eigen::Quaterniond(0.6, 0, 0, 0.8), Eigen::Vector3d(0.5, -0.25, 1));
-
-  // Answers that it is lost, and keeps what it was asked.
-  const std::string program =
-      "n=0; while read -r line; do n=$((n+1)); printf '%s\\n' \"$line\" >>" +
-      (folder / "asked").string() +
-      "; if [ $n = 1 ]; then echo '{\"id\":1,\"protocol\":1}'; else echo "
-      "\"{\\\"id\\\":$n,\\\"pose\\\":null}\"; fi; done";
-  {
-    const auto system = make_conversation_system(
-        {.name = "told", .command = program, .mode = OutsideMode::kConversation}, camera, 0,
-        folder / "log");
-    EXPECT_FALSE(system->track(frame, RandomStream(1)).world_from_camera);
-    system->track(moved, RandomStream(2));
+/// What systems are given besides images, in two small frames.
+class OtherSenses : public testing::Test {
+ protected:
+  OtherSenses() {
+    fs::create_directories(folder_);
+    camera_.width_px = 64, camera_.height_px = 48, camera_.cx_px = 31.5, camera_.cy_px = 23.5;
+    camera_.fx_px = camera_.fy_px = 52;
+    first_.stamp_ns = 1'000'000'000;
+    first_.color = Grid2d<Rgb8>(64, 48);
+    first_.depth_m = Grid2d<float>(64, 48);
+    second_ = first_;
+    second_.stamp_ns = 1'010'000'000;
   }
-  const std::string asked = read_file(folder / "asked");
-  const std::size_t told = asked.find(R"("odometry":[0.5,-0.25,1.0,0.0,0.0,0.8)");
-  ASSERT_NE(told, std::string::npos) << asked;
-  EXPECT_EQ(asked.find("odometry"), told + 1) << "the first frame has none";
+  ~OtherSenses() override { fs::remove_all(folder_); }
 
-  write_dataset(folder / "dataset", camera, 2,
-                [&](std::size_t i) { return std::optional(i == 0 ? frame : moved); });
+  /// All that a program is asked which answers that it is lost.
+  std::string asked() const {
+    const std::string program =
+        "n=0; while read -r line; do n=$((n+1)); printf '%s\\n' \"$line\" >>" +
+        (folder_ / "asked").string() +
+        "; if [ $n = 1 ]; then echo '{\"id\":1,\"protocol\":1}'; else echo "
+        "\"{\\\"id\\\":$n,\\\"pose\\\":null}\"; fi; done";
+    {
+      const auto system = make_conversation_system(
+          {.name = "told", .command = program, .mode = OutsideMode::kConversation}, camera_, 0,
+          folder_ / "log");
+      EXPECT_FALSE(system->track(first_, RandomStream(1)).world_from_camera);
+      system->track(second_, RandomStream(2));
+    }
+    return read_file(folder_ / "asked");
+  }
+  /// Writes a data set of the first frame, or of both.
+  fs::path dataset(std::size_t frames) const {
+    const fs::path folder = folder_ / std::to_string(frames);
+    write_dataset(folder, camera_, frames,
+                  [&](std::size_t i) { return std::optional(i == 0 ? first_ : second_); });
+    return folder;
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / ("mh_senses_" + std::to_string(getpid()));
+  Camera camera_;
+  RgbdFrame first_, second_;
+};
+
+TEST_F(OtherSenses, OdometryIsToldInAConversationAndWrittenIntoADataset) {
+  second_.odom_from_camera =
+      SE3(Eigen::Quaterniond(0.6, 0, 0, 0.8), Eigen::Vector3d(0.5, -0.25, 1));
+  const std::string said = asked();
+  const std::size_t told = said.find(R"("odometry":[0.5,-0.25,1.0,0.0,0.0,0.8)");
+  ASSERT_NE(told, std::string::npos) << said;
+  EXPECT_EQ(said.find("odometry"), told + 1) << "the first frame has none";
   const Trajectory odometry =
-      parse_trajectory(read_file(folder / "dataset/odometry.txt"), "odometry.txt");
+      parse_trajectory(read_file(dataset(2) / "odometry.txt"), "odometry.txt");
   ASSERT_EQ(odometry.size(), 1U);
-  EXPECT_EQ(odometry[0].stamp_ns, moved.stamp_ns);
-  EXPECT_LT((odometry[0].world_from_camera.inverse() * *moved.odom_from_camera).log().norm(), 1e-6);
-  write_dataset(folder / "without", camera, 1, [&](std::size_t) { return std::optional(frame); });
-  EXPECT_FALSE(fs::exists(folder / "without/odometry.txt"));
-  fs::remove_all(folder);
+  EXPECT_EQ(odometry[0].stamp_ns, second_.stamp_ns);
+  EXPECT_LT((odometry[0].world_from_camera.inverse() * *second_.odom_from_camera).log().norm(),
+            1e-6);
+  EXPECT_FALSE(fs::exists(dataset(1) / "odometry.txt"));
 }
 
-TEST(Imu, IsToldInAConversationAndWrittenIntoADataset) {
-  const fs::path folder = fs::temp_directory_path() / ("mh_imu_" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  RgbdFrame frame;
-  frame.stamp_ns = 1'000'000'000;
-  frame.color = Grid2d<Rgb8>(64, 48);
-  frame.depth_m = Grid2d<float>(64, 48);
-  Camera camera;
-  camera.width_px = 64, camera.height_px = 48, camera.cx_px = 31.5, camera.cy_px = 23.5;
-  camera.fx_px = camera.fy_px = 52;
-  RgbdFrame moved = frame;
-  moved.stamp_ns = 1'010'000'000;
-  moved.imu = {{1'005'000'000, {0.5, -0.25, 0}, {0, -9.75, 0.125}},
-               {1'010'000'000, {0.25, 0, 1}, {1, -9.5, 0}}};
-  const std::string program =
-      "n=0; while read -r line; do n=$((n+1)); printf '%s\\n' \"$line\" >>" +
-      (folder / "asked").string() +
-      "; if [ $n = 1 ]; then echo '{\"id\":1,\"protocol\":1}'; else echo "
-      "\"{\\\"id\\\":$n,\\\"pose\\\":null}\"; fi; done";
-  {
-    const auto system = make_conversation_system(
-        {.name = "told", .command = program, .mode = OutsideMode::kConversation}, camera, 0,
-        folder / "log");
-    system->track(frame, RandomStream(1));
-    system->track(moved, RandomStream(2));
-  }
-  const std::string asked = read_file(folder / "asked");
-  EXPECT_NE(asked.find(R"("imu":[["1.005000000",0.5,-0.25,0.0,0.0,-9.75,0.125],)"
-                       R"(["1.010000000",0.25,0.0,1.0,1.0,-9.5,0.0]])"),
+TEST_F(OtherSenses, InertialReadingsAreToldInAConversationAndWrittenIntoADataset) {
+  second_.imu = {{1'005'000'000, {0.5, -0.25, 0}, {0, -9.75, 0.125}},
+                 {1'010'000'000, {0.25, 0, 1}, {1, -9.5, 0}}};
+  const std::string said = asked();
+  EXPECT_NE(said.find(R"("imu":[["1.005000000",0.5,-0.25,0.0,0.0,-9.75,0.125],)"
+                      R"(["1.010000000",0.25,0.0,1.0,1.0,-9.5,0.0]])"),
             std::string::npos)
-      << asked;
-  write_dataset(folder / "dataset", camera, 2,
-                [&](std::size_t i) { return std::optional(i == 0 ? frame : moved); });
-  EXPECT_EQ(read_file(folder / "dataset/imu.csv"),
+      << said;
+  EXPECT_EQ(read_file(dataset(2) / "imu.csv"),
             "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
             "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n"
             "1005000000,0.5,-0.25,0,0,-9.75,0.125\n1010000000,0.25,0,1,1,-9.5,0\n");
-  write_dataset(folder / "without", camera, 1, [&](std::size_t) { return std::optional(frame); });
-  EXPECT_FALSE(fs::exists(folder / "without/imu.csv"));
-  fs::remove_all(folder);
+  EXPECT_FALSE(fs::exists(dataset(1) / "imu.csv"));
 }
 
 TEST(SettingsText, HasRealNumbersWhereReadersInsistOnThem) {
