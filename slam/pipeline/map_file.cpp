@@ -52,10 +52,11 @@ void fields(A& a, T& reading) {
 }
 template <class A, MaybeConst<InertialMotion> T>
 void fields(A& a, T& motion) {
-  auto& [velocity_m_per_s, gravity_m_per_s2, turn_bias, force_bias, covariance, before] = motion;
+  auto& [velocity_m_per_s, gravity_m_per_s2, turn_bias, force_bias, covariance, before,
+         own_from_tracked] = motion;
   a(velocity_m_per_s, gravity_m_per_s2, turn_bias, force_bias);
   list(a, covariance);
-  a(before);
+  a(before, own_from_tracked);
 }
 template <class A, MaybeConst<InertialMotion::Known> T>
 void fields(A& a, T& known) {

@@ -93,14 +93,13 @@ std::optional<Reckoned> reckon_by_imu(const Tracker& tracker, Stamp stamp_ns,
   if (!tracker.inertial || imu.empty()) return std::nullopt;
   Reckoned found;
   found.inertial = tracker.inertial;
-  const auto last_from_now = found.inertial->advance(imu, tracker.last->stamp_ns, stamp_ns);
-  if (!last_from_now) return std::nullopt;
+  const auto step = found.inertial->advance(imu, tracker.last->stamp_ns, stamp_ns);
+  if (!step) return std::nullopt;
   const PoseSigma sigma = worst_sigma(found.inertial->pose_covariance());
   if (sigma.position_m > config.reckon_position_m || sigma.angle_rad > config.reckon_angle_rad)
     return std::nullopt;
-  const SE3 step = last_from_now->inverse();
-  found.reckoning = longer(tracker.reckoning, step);
-  found.camera_from_world = step * tracker.last->camera_from_world;
+  found.reckoning = longer(tracker.reckoning, *step);
+  found.camera_from_world = *step * tracker.last->camera_from_world;
   found.covariance = with_map(found.inertial->pose_covariance());
   return found;
 }
@@ -126,7 +125,10 @@ void follow_inertially(Located& located, const std::optional<Reckoned>& reckoned
   const Matrix6d measured = with_map(located.tracked.information.inverse());
   if (reckoned && reckoned->inertial) {
     located.inertial = reckoned->inertial;
-    located.inertial->correct((pose * reckoned->camera_from_world.inverse()).log(), measured);
+    if (located.tracked.unsure)  // it holds the prediction already
+      located.inertial->own_from_tracked = reckoned->camera_from_world * pose.inverse();
+    else
+      located.inertial->correct((pose * reckoned->camera_from_world.inverse()).log(), measured);
   } else {
     located.inertial = InertialMotion::begin(imu.back(), measured, pose, tracker.inertial_known);
   }

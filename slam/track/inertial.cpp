@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/track/inertial.hpp"
 
+#include <utility>
+
 #include <Eigen/Cholesky>
 
 namespace mh {
@@ -103,7 +105,7 @@ InertialMotion InertialMotion::begin(const ImuReading& reading, const Matrix6d& 
 
 std::optional<SE3> InertialMotion::advance(std::span<const ImuReading> readings, Stamp from_ns,
                                            Stamp to_ns) {
-  SE3 before_from_now;
+  SE3 before_from_now;  // of the filter's own poses
   Stamp at_ns = from_ns;
   const auto go_to = [&](Stamp stamp_ns, const Vector3d& turn, const Vector3d& force) {
     const double t = static_cast<double>(stamp_ns - at_ns) * kNanosecond_s;
@@ -121,7 +123,7 @@ std::optional<SE3> InertialMotion::advance(std::span<const ImuReading> readings,
     before = reading;
   }
   if (!go_to(to_ns, before.turn_rad_per_s, before.specific_force_m_per_s2)) return std::nullopt;
-  return before_from_now;
+  return before_from_now.inverse() * std::exchange(own_from_tracked, SE3());
 }
 
 void InertialMotion::correct(const Vector6d& seen_off, const Matrix6d& measured) {
@@ -133,6 +135,7 @@ void InertialMotion::correct(const Vector6d& seen_off, const Matrix6d& measured)
   gravity_m_per_s2 += off.segment<3>(kGravity);
   turn_bias_rad_per_s += off.segment<3>(kTurnBias);
   force_bias_m_per_s2 += off.segment<3>(kForceBias);
+  own_from_tracked = SE3::exp(-off.head<6>()) * SE3::exp(-seen_off);
   covariance -= gain * covariance.topRows<6>();
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
 }

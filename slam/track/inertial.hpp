@@ -23,7 +23,8 @@ struct InertialMotion {
   Eigen::Vector3d turn_bias_rad_per_s, force_bias_m_per_s2;
   /// Of position, rotation, velocity, gravity, and both biases, in this order.
   Matrix18d covariance;
-  ImuReading before;  ///< the last reading
+  ImuReading before;          ///< the last reading
+  SE3 own_from_tracked = {};  ///< the pose by all that was seen, from that by the last image alone
 
   /// What the sensor taught, to begin anew where the map is found again.
   struct Known {
@@ -40,11 +41,12 @@ struct InertialMotion {
 
   /// Moves the state on to a later moment.
   /// @param readings  since the last one, in order
-  /// @returns camera_before_from_camera_now; nothing if readings are missing for too long
+  /// @returns camera_now_from_camera_before, where the latter is the tracked one; nothing if
+  /// readings are missing for too long
   std::optional<SE3> advance(std::span<const ImuReading> readings, Stamp from_ns, Stamp to_ns);
 
   Matrix6d pose_covariance() const { return covariance.topLeftCorner<6, 6>(); }
-  /// Updates the state with a measured pose.
+  /// Updates the state with a measured pose, which becomes the tracked one.
   /// @param seen_off    twist from the predicted camera_from_world to the measured one
   /// @param covariance  of the measurement
   void correct(const Vector6d& seen_off, const Matrix6d& covariance);

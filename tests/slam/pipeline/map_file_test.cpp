@@ -415,8 +415,8 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
   EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
-  other[8] = 11;
-  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 11, but this program reads 10");
+  other[8] = 12;
+  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 12, but this program reads 11");
   EXPECT_NE(refusal_of(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));

@@ -42,7 +42,7 @@ struct Fed {
     const Stamp from_ns = path[from].stamp_ns, to_ns = path[to].stamp_ns;
     const auto moved = motion.advance(imu_between(imu, from_ns, to_ns), from_ns, to_ns);
     EXPECT_TRUE(moved);
-    return moved->inverse();
+    return *moved;
   }
   void see(std::size_t until) {
     SE3 at = camera_from_world(0);
