@@ -49,6 +49,20 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
   return std::nullopt;
 }
 
+/// Localizes a frame in the map around a pose.
+std::optional<Located> find_near(const SE3& camera_from_world, double radius_px,
+                                 const PreparedFrame& frame, const SlamContext& context,
+                                 const StepObservers& observers) {
+  std::optional<TrackedPose> near;
+  {
+    const InStage stage(observers, Stage::kTracking);
+    near = track_near(without_words(frame), camera_from_world, radius_px, context);
+  }
+  if (!near) return std::nullopt;
+  return confirm_in_local_map(frame, *near, inliers_needed(frame.features, context.config.track),
+                              context, observers);
+}
+
 /// Localizes a frame where another sensor has it: in the map around, or, if the image cannot
 /// contradict, by that sensor alone.
 std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tracker,
@@ -56,17 +70,9 @@ std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tr
                                        const SlamContext& context, const StepObservers& observers) {
   const TrackConfig& config = state.config.track;
   const PoseSigma sigma = worst_sigma(reckoned.covariance);
-  std::optional<TrackedPose> near;
-  {
-    const InStage stage(observers, Stage::kTracking);
-    near =
-        track_near(without_words(frame), reckoned.camera_from_world,
-                   config.search_radius_px + 2 * sigma.angle_rad * context.camera.fx_px, context);
-  }
-  if (near)
-    if (auto located = confirm_in_local_map(frame, *near, inliers_needed(frame.features, config),
-                                            context, observers))
-      if (reckoned.allows(located->tracked, config)) return located;
+  const double radius_px = config.search_radius_px + 2 * sigma.angle_rad * context.camera.fx_px;
+  if (auto located = find_near(reckoned.camera_from_world, radius_px, frame, context, observers))
+    if (reckoned.allows(located->tracked, config)) return located;
   // Where the place is well known, what the last frame showed should be seen, and enough is seen,
   // but not that: the wheels slipped, or the robot was carried away.
   constexpr double kKnown_m = 0.05, kKnown_rad = 0.03;
@@ -118,12 +124,12 @@ std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const Tr
 
 std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
-                              StepReport& report, const IsPossible& is_possible) {
+                              StepReport& report, const KnownBefore& known) {
   const SlamConfig& config = state.config;
   const SlamContext context = context_of(state, observers, report);
   const auto reckoned =
       reckon(tracker, frame.stamp_ns, frame.odom_from_camera, frame.imu, config.track);
-  auto located = follow(state, tracker, reckoned, frame, context, observers, is_possible);
+  auto located = follow(state, tracker, reckoned, frame, context, observers, known.is_possible);
   if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
   if (!located && reckoned)
     located = follow_reckoned(state, tracker, *reckoned, frame, context, observers);
@@ -134,8 +140,17 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }
+  if (known.camera_from_world)
+    located = find_near(*known.camera_from_world, config.track.search_radius_px, frame, context,
+                        observers);
+  if (located) {
+    located->motion = Motion::at_rest(located->tracked.information.inverse());
+    follow_inertially(*located, {}, frame.imu, tracker);
+    report.status = TrackStatus::kRelocalized;
+    return located;
+  }
   const auto found =
-      search_everywhere(state, tracker, frame, stream, observers, report, is_possible);
+      search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);
   if (!found) return std::nullopt;
   located = confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
   // As long as another sensor knows the place, a far one only looks like it.

@@ -12,12 +12,17 @@ namespace mh {
 /// The context for one frame's step; matches are counted in its report.
 SlamContext context_of(const SlamState& state, const StepObservers& observers, StepReport& report);
 
+/// What mapping knows of a frame before it is located.
+struct KnownBefore {
+  IsPossible is_possible = {};                ///< of a pose that an image tells
+  std::optional<SE3> camera_from_world = {};  ///< where the frame was before a rewind
+};
+
 /// Localizes a frame in the map: by tracking from previous frames; if that fails, by
 /// relocalization. Reads the map, never writes it; of the tracker, only stale_scores changes.
-/// @param is_possible  of a pose that an image tells
 std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
-                              StepReport& report, const IsPossible& is_possible = {});
+                              StepReport& report, const KnownBefore& known = {});
 
 /// Refines a pose on the local map.
 /// @returns nullopt below `min_inliers`.

@@ -82,6 +82,13 @@ bool within_reach(const SlamState& state, Stamp stamp_ns, const SE3& camera_from
          (after == state.tracked_frames.begin() || reaches(std::prev(after)));
 }
 
+/// Where a frame was when it was shown before, if that is to be used.
+std::optional<SE3> earlier_pose(const SlamState& state, Stamp stamp_ns) {
+  const auto frame = state.tracked_frames.find(stamp_ns);
+  if (!state.config.track.earlier_poses || frame == state.tracked_frames.end()) return std::nullopt;
+  return frame->second.camera_from_reference * state.map.camera_from_world(frame->second.reference);
+}
+
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
 void count_sightings(Map& map, const Located& located) {
   for (const LandmarkId id : located.expected) map.count_visible(id);
@@ -117,8 +124,10 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   }
   if (state.map.empty()) return initialize(state, std::move(frame), observers, report);
 
-  auto located = locate(state, state.tracker, frame, stream, observers, report,
-                        [&](const SE3& pose) { return within_reach(state, stamp_ns, pose); });
+  auto located =
+      locate(state, state.tracker, frame, stream, observers, report,
+             {.is_possible = [&](const SE3& pose) { return within_reach(state, stamp_ns, pose); },
+              .camera_from_world = earlier_pose(state, stamp_ns)});
   state.tracked_frames.erase(stamp_ns);
   if (!located) {
     located = dead_reckon(state.tracker, stamp_ns, frame.features, context);

@@ -117,26 +117,33 @@ TEST(Reach, ACameraThatWasCarriedIsFoundWhenItCanHaveComeThere) {
   EXPECT_EQ(first_found_s(0.1), 10);
 }
 
-TEST(Odometry, KnowsThePlaceAfterARewind) {
-  const auto after_a_rewind = [](bool given) {
-    SlamState state = a_run();
-    state.config.relocalize.min_word_matches = 100'000;  // the whole map is of no help
-    Walk walk;
-    walk.blind_to = walk.blind_from;
-    const auto odometry = [&](std::size_t i) {
-      return given ? std::optional(walk.odometry(i)) : std::nullopt;
-    };
-    for (std::size_t i = 0; i < 120; ++i) walk.feed(state, i, odometry(i));
-    rewind(state);
-    walk.next = 71;
-    const StepReport report = walk.feed(state, 70, odometry(70));
-    if (report.world_from_camera) {
-      EXPECT_LT(walk.error(70, report).translation().norm(), 0.1);
-    }
-    return report.status;
+/// What follows a rewind of 50 frames where the whole map is of no help.
+TrackStatus after_a_rewind(bool odometry_is_given, bool earlier_poses) {
+  SlamState state = a_run();
+  state.config.relocalize.min_word_matches = 100'000;
+  state.config.track.earlier_poses = earlier_poses;
+  Walk walk;
+  walk.blind_to = walk.blind_from;
+  const auto odometry = [&](std::size_t i) {
+    return odometry_is_given ? std::optional(walk.odometry(i)) : std::nullopt;
   };
-  EXPECT_EQ(after_a_rewind(true), TrackStatus::kRelocalized);
-  EXPECT_EQ(after_a_rewind(false), TrackStatus::kLost);
+  for (std::size_t i = 0; i < 120; ++i) walk.feed(state, i, odometry(i));
+  rewind(state);
+  walk.next = 71;
+  const StepReport report = walk.feed(state, 70, odometry(70));
+  if (report.world_from_camera) {
+    EXPECT_LT(walk.error(70, report).translation().norm(), 0.1);
+  }
+  return report.status;
+}
+
+TEST(Rewind, OdometryKnowsThePlace) {
+  EXPECT_EQ(after_a_rewind(true, false), TrackStatus::kRelocalized);
+  EXPECT_EQ(after_a_rewind(false, false), TrackStatus::kLost);
+}
+
+TEST(Rewind, AFrameIsWhereItWasBefore) {
+  EXPECT_EQ(after_a_rewind(false, true), TrackStatus::kRelocalized);
 }
 
 TEST(Odometry, TooMuchDriftIsLost) {
