@@ -29,7 +29,8 @@ std::string plan_of(const PagesSource& source, const RunResult& run) {
   constexpr std::uintmax_t kLargest = 2'000'000;
   constexpr std::string_view kPng = "\x89PNG";
   if (source.folder.empty()) return "";
-  if (!grid_of(source, run)) return "";  // the files of another run may be there
+  // The files of another run may be there.
+  if (is_file(source.folder / run.spec.name / "map.yaml") && !grid_of(source, run)) return "";
   for (const char* name : {"topdown_second_tour.png", "topdown.png"}) {
     const fs::path file = source.folder / run.spec.name / name;
     if (!is_file(file) || fs::file_size(file) > kLargest) continue;

@@ -293,6 +293,10 @@ TEST_F(Reports, ShowThePlanThatBenchDrewOrElseThePaths) {
   write_atomically(source.folder / first / "topdown_second_tour.png", "no image");
   write_pages(out(), std::array{source});
   EXPECT_EQ(piece(out(), "0/place").at("plans").at(0).at("png"), base64("\x89PNG of held out"));
+  // A map that is not this run's: another run's files stand there.
+  write_atomically(source.folder / first / "map.yaml", "image: map.pgm\n");
+  write_pages(out(), std::array{source});
+  EXPECT_EQ(piece(out(), "0/place").at("plans").size(), 1U);
 }
 
 TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
