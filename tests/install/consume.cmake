@@ -26,7 +26,7 @@ execute_process(COMMAND ${program} render office auto --level instaled --out ren
 if(NOT code EQUAL 2 OR NOT told MATCHES "did you mean 'installed'")
   message(FATAL_ERROR "a level beside the installed ones was not found: ${told}")
 endif()
-run(${program} bench model_house --frames 40 --trials 1 --out bench --cache ${BUILD_DIR}/cache_of_tests
+run(${program} bench model_house --frames 20 --trials 1 --out bench --cache ${BUILD_DIR}/cache_of_tests
     WORKING_DIRECTORY ${elsewhere})
 file(STRINGS ${elsewhere}/bench/table.txt table)
 if(NOT table MATCHES "the paper's semantic system")
@@ -71,7 +71,7 @@ run(${work}/build/consumer)
 file(READ ${data}/examples/visual_odometry/suite.yaml suite)
 string(REGEX REPLACE "systems:.*labels:" "systems: [{name: standing, library: ${work}/build/libstanding.so}]\nlabels:" suite "${suite}")
 file(WRITE ${data}/examples/visual_odometry/standing.yaml "${suite}")
-run(${program} bench ${data}/examples/visual_odometry/standing.yaml --frames 40 --out standing
+run(${program} bench ${data}/examples/visual_odometry/standing.yaml --frames 20 --out standing
     --cache ${BUILD_DIR}/cache_of_tests WORKING_DIRECTORY ${elsewhere})
 file(STRINGS ${elsewhere}/standing/table.txt table)
 if(NOT table MATCHES "standing")
