@@ -226,8 +226,9 @@ TEST_F(ChangedWords, DuringAReplayLeaveNoPages) {
 
 // The first run's program takes away what the second reads.
 TEST_F(ChangedInputs, AFileThatIsAwayForAMomentIsNoFailureOfItsRun) {
-  const std::string suite = two_rooms("[{name: p, protocol: trajectory, command: 'mv " +
-                                      path("other.yaml") + " " + path("away") + "; exit 3'}]");
+  const std::string suite =
+      two_rooms("[{name: p, protocol: trajectory, command: 'echo {trajectory}; mv " +
+                path("other.yaml") + " " + path("away") + "; exit 3'}]");
   code_ = run("bench " + suite + " --frames 45 --out " + path("out"));
   expect_refused(said_, "other-p-exact-pepper-0: a file that it reads was changed");
   EXPECT_EQ(stored("out/results.sqlite", "runs"), 1) << "the first one's failure";

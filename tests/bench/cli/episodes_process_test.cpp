@@ -119,7 +119,8 @@ TEST_F(EpisodeCommands, ARunThatIsKilledGoesOnWithTheNextEpisode) {
 TEST_F(EpisodeCommands, OfAnUnrepeatableSystemAllAreDrivenOnOneMap) {
   write_atomically(work_.path() / "p.sh",
                    "n=0; while read -r line; do n=$((n+1)); case $line in *'\"session\":2,'*) exit "
-                   "3;; *hello*) echo '{\"id\":1,\"protocol\":1}';; *) echo "
+                   "3;; *hello*) echo '{\"id\":1,\"protocol\":1}';; *freeze*) echo "
+                   "\"{\\\"id\\\":$n}\";; *) echo "
                    "\"{\\\"id\\\":$n,\\\"pose\\\":[0,0,0,0,0,0,1]}\";; esac; done\n");
   for (const std::string repeatable : {"true", "false"}) {
     write_suite(
@@ -128,7 +129,7 @@ TEST_F(EpisodeCommands, OfAnUnrepeatableSystemAllAreDrivenOnOneMap) {
             repeatable + "}]",
         "starts: 2, limit_s: 2");
     const std::string bench =
-        "bench " + suite().string() + " --out " + out(repeatable.c_str()) + kCache;
+        "bench " + suite().string() + " --frames 30 --out " + out(repeatable.c_str()) + kCache;
     const fs::path kept =
         out(repeatable.c_str()) + "/p-exact-pepper-0/episodes/modelhouse-cache/episode";
     const auto when = [&] {
