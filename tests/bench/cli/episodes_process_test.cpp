@@ -114,36 +114,6 @@ TEST_F(EpisodeCommands, ARunThatIsKilledGoesOnWithTheNextEpisode) {
   EXPECT_FALSE(fs::exists(kept));
 }
 
-// A system that is not repeatable would make another map than the one that the first episode drove
-// on: this one ends in its second episode, and is tried again.
-TEST_F(EpisodeCommands, OfAnUnrepeatableSystemAllAreDrivenOnOneMap) {
-  write_atomically(work_.path() / "p.sh",
-                   "n=0; while read -r line; do n=$((n+1)); case $line in *'\"session\":2,'*) exit "
-                   "3;; *hello*) echo '{\"id\":1,\"protocol\":1}';; *freeze*) echo "
-                   "\"{\\\"id\\\":$n}\";; *) echo "
-                   "\"{\\\"id\\\":$n,\\\"pose\\\":[0,0,0,0,0,0,1]}\";; esac; done\n");
-  for (const std::string repeatable : {"true", "false"}) {
-    write_suite(
-        "sofa",
-        "[{name: p, protocol: conversation, command: sh p.sh, inputs: [p.sh], repeatable: " +
-            repeatable + "}]",
-        "starts: 2, limit_s: 2");
-    const std::string bench =
-        "bench " + suite().string() + " --frames 30 --out " + out(repeatable.c_str()) + kCache;
-    const fs::path kept =
-        out(repeatable.c_str()) + "/p-exact-pepper-0/episodes/modelhouse-cache/episode";
-    const auto when = [&] {
-      const auto files = list_folder(kept, "*");
-      EXPECT_EQ(files.size(), 1U) << said();
-      return files.empty() ? fs::file_time_type() : fs::last_write_time(kept / files.front());
-    };
-    EXPECT_EQ(run(bench), 3) << said();
-    const auto before = when();
-    EXPECT_EQ(run(bench + " --retry-failed"), 3) << said();
-    EXPECT_EQ(when() == before, repeatable == "true");
-  }
-}
-
 TEST_F(EpisodeCommands, ACrashOfALibraryFailsItsRunAlone) {
   fs::copy_file(TINY_LIBRARY, work_.path() / "libtiny.so");
   for (const char* word : {"crash", "exit"}) std::ofstream(work_.path() / word) << word;
