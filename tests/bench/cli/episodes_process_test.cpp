@@ -32,7 +32,8 @@ class EpisodeCommands : public testing::Test {
   void write_suite(const std::string& goal, const std::string& systems = "[plain]",
                    const std::string& settings = "starts: 2, limit_s: 25") const {
     const std::string root = MH_SOURCE_DIR;
-    std::ofstream(suite()) << "robot: " << root << "/robots/pepper/pepper.yaml\nenvironments:\n"
+    std::ofstream(suite()) << "robot: " << test::write_small_pepper(work_.path() / "robot.yaml")
+                           << "\nenvironments:\n"
                            << "- {category: room, scene: " << root
                            << "/bench/scenarios/room.yaml, mapping_tour: " << root
                            << "/bench/scenarios/tours/room.yaml}\nvocabulary: " << root

@@ -26,6 +26,20 @@ inline int code_of(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
+/// Writes Pepper with a picture of a quarter of the pixels: rendered in a quarter of the time.
+inline std::string write_small_pepper(const std::filesystem::path& file) {
+  const std::filesystem::path whole = MH_SOURCE_DIR "/robots/pepper/pepper.yaml";
+  std::string text = content(whole);
+  const auto exchange = [&](const std::string& old, const std::string& with) {
+    text.replace(text.find(old), old.size(), with);
+  };
+  exchange("width_px: 640", "width_px: 320");
+  exchange("height_px: 480", "height_px: 240");
+  exchange("urdf: ", "urdf: " + whole.parent_path().string() + "/");
+  std::ofstream(file) << text;
+  return file.string();
+}
+
 /// Three short runs per trial in a small room.
 struct SmallSuite {
   std::string scene = MH_SOURCE_DIR "/bench/scenarios/room.yaml";

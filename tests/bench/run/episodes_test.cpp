@@ -45,7 +45,7 @@ systems: )" + systems + "\n" +
 struct Place {
   explicit Place(const Suite& suite) : spec(expand(suite).front()) {}
   RunSpec spec;
-  World world = build_world(spec, 2, Cache(), {});
+  World world = build_world(spec, 2, Cache(MH_TEST_CACHE), {});
 };
 
 TEST(Episodes, WhatHasEndedIsNotRepeated) {
@@ -80,8 +80,8 @@ TEST(Episodes, EverySystemIsPutAtTheSamePlaces) {
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[1].labels, Labels());
   EXPECT_EQ(runs[1].map_labels, Labels(LabelMode::kExact));
-  const World one = build_world(runs[0], 2, Cache(), {}),
-              two = build_world(runs[1], 2, Cache(), {});
+  const World one = build_world(runs[0], 2, Cache(MH_TEST_CACHE), {}),
+              two = build_world(runs[1], 2, Cache(MH_TEST_CACHE), {});
   for (std::size_t s = 0; s < 2; ++s)
     EXPECT_EQ(one.variants[0].starts[s].place_m, two.variants[0].starts[s].place_m);
   EXPECT_FALSE(two.mapping->frame(0, RandomStream(0)).semantics.index.empty())
@@ -186,7 +186,7 @@ TEST(Episodes, ARobotWithoutLasersOrWheelsIsRefused) {
     write_atomically(work.path() / "robot.yaml", robot);
     suite.environments.front().robot = work.path() / "robot.yaml";
     try {
-      build_world(expand(suite).front(), 2, Cache(), {});
+      build_world(expand(suite).front(), 2, Cache(MH_TEST_CACHE), {});
       ADD_FAILURE() << "was taken without " << lacks;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(std::string("has no ") + lacks), std::string::npos)
