@@ -2,13 +2,18 @@
 #include "scenes/recordings/euroc.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "scenes/recordings/images/write_image.hpp"
+#include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
+#include "slam/io/text_file.hpp"
 
 namespace mh {
 namespace {
@@ -31,6 +36,76 @@ std::string comma(const Eigen::Vector3d& v) {
 std::string euroc_line(const ImuReading& reading) {
   return fmt::format("{}{}{}\n", reading.stamp_ns, comma(reading.turn_rad_per_s),
                      comma(reading.specific_force_m_per_s2));
+}
+
+namespace {
+
+/// Seven numbers of a line; the first as it is written.
+std::optional<ImuReading> parse_reading(std::string_view line, const std::string& place) {
+  std::array<double, 6> values{};
+  const std::size_t comma = line.find(',');
+  Stamp stamp_ns = 0;
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  const auto stamp = std::from_chars(at, end, stamp_ns);
+  if (stamp.ec != std::errc() || comma == std::string_view::npos ||
+      stamp.ptr != line.data() + comma)
+    throw InputError(
+        fmt::format("{}: '{}' does not begin with a stamp in ns", place, line.substr(0, comma)));
+  at = stamp.ptr;
+  for (double& value : values) {
+    while (at < end && (*at == ',' || *at == ' ')) ++at;
+    const auto read = std::from_chars(at, end, value);
+    if (read.ec != std::errc())
+      throw InputError(
+          fmt::format("{}: '{}' has not seven numbers: stamp, 3 of the gyroscope, 3 of "
+                      "the accelerometer",
+                      place, line));
+    at = read.ptr;
+  }
+  const ImuReading reading{
+      stamp_ns, {values[0], values[1], values[2]}, {values[3], values[4], values[5]}};
+  if (!reading.turn_rad_per_s.allFinite() || !reading.specific_force_m_per_s2.allFinite())
+    return std::nullopt;
+  return reading;
+}
+
+}  // namespace
+
+std::vector<ImuReading> read_euroc_imu(const fs::path& file, std::vector<std::string>& notes) {
+  const std::string text = read_text(file);
+  std::vector<ImuReading> readings;
+  std::size_t unknown = 0, backward = 0, number = 0;
+  double sum = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line(text.data() + begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty() || line.front() == '#') continue;
+    const auto reading = parse_reading(line, fmt::format("{}:{}", file.string(), number));
+    if (!reading)
+      ++unknown;
+    else if (!readings.empty() && reading->stamp_ns <= readings.back().stamp_ns)
+      ++backward;
+    else
+      readings.push_back(*reading), sum += reading->specific_force_m_per_s2.norm();
+  }
+  if (readings.empty()) throw InputError(fmt::format("{}: holds no reading", file.string()));
+  const double mean = sum / static_cast<double>(readings.size());
+  if (mean < 5 || mean > 15)
+    throw InputError(fmt::format("{}: accelerations are {:.3g} on average, not near 9.81 m/s^2{}",
+                                 file.string(), mean,
+                                 mean > 0.8 && mean < 1.2 ? ": they are in units of g" : ""));
+  const auto note = [&](std::size_t count, const char* what) {
+    if (count > 0)
+      notes.push_back(
+          fmt::format("{}: {} left out: {}", file.string(), counted(count, "reading"), what));
+  };
+  note(unknown, "not a number");
+  note(backward, "the stamp does not increase");
+  return readings;
 }
 
 EurocCameraWriter::EurocCameraWriter(const fs::path& folder, int number, double right_m,

@@ -23,6 +23,14 @@ inline constexpr std::string_view kEurocImuColumns =
     "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]";
 std::string euroc_line(const ImuReading& reading);
 
+/// Reads what an inertial sensor delivered, in these columns. Readings that are not numbers and
+/// those whose stamp does not increase are left out and counted.
+/// @param notes  receives how many were left out
+/// @throws InputError naming file, line and value: not seven numbers, no reading, accelerations
+/// that are not in m/s^2 (the mean of a sensor that is not falling is near 9.81)
+std::vector<ImuReading> read_euroc_imu(const std::filesystem::path& file,
+                                       std::vector<std::string>& notes);
+
 /// One camera's images, gray, without depth or labels.
 class EurocCameraWriter : public SequenceWriter {
  public:

@@ -12,6 +12,7 @@
 
 #include "scenes/image_file.hpp"
 #include "scenes/recordings/class_map.hpp"
+#include "scenes/recordings/euroc.hpp"
 #include "scenes/recordings/nearest_stamp.hpp"
 #include "scenes/recordings/valid_poses.hpp"
 #include "slam/io/error.hpp"
@@ -37,6 +38,7 @@ class ListedSequence : public Sequence {
     return frame;
   }
   const Trajectory* truth() const override { return listed_.truth ? &*listed_.truth : nullptr; }
+  std::span<const ImuReading> imu() const override { return listed_.imu; }
 
  private:
   ListedFrames listed_;
@@ -65,6 +67,7 @@ ListedFrames list_tum_folder(std::vector<RecordedFrame> frames, const fs::path& 
       listed.truth = read_truth(folder / name, notes);
     else if (!listed.truth)
       note_no_file(folder / name, notes);
+  if (is_file(folder / "imu.csv")) listed.imu = read_euroc_imu(folder / "imu.csv", notes);
   return listed;
 }
 

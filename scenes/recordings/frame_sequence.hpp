@@ -22,6 +22,7 @@ struct ListedFrames {
   std::optional<ClassMap> classes;  ///< of its label images; absent: they are our classes
   std::optional<Trajectory> truth;
   std::optional<DepthCamera> depth_camera;  ///< absent: depth is registered to color in the files
+  std::vector<ImuReading> imu = {};
 };
 
 /// Notes a calibration file that states a depth scale other than the one that is used.

@@ -10,8 +10,8 @@ namespace {
 class FirstFrames : public Sequence {
  public:
   FirstFrames(std::unique_ptr<Sequence> all, std::size_t at_most,
-              const std::optional<Trajectory>& truth)
-      : all_(std::move(all)), size_(std::min(at_most, all_->size())) {
+              const std::optional<Trajectory>& truth, bool gives_imu)
+      : all_(std::move(all)), gives_imu_(gives_imu), size_(std::min(at_most, all_->size())) {
     const Trajectory* known = truth ? &*truth : all_->truth();
     if (known == nullptr || size_ == 0) return;
     Stamp first_ns = stamp_ns(0), last_ns = first_ns;
@@ -34,10 +34,13 @@ class FirstFrames : public Sequence {
   const Trajectory* truth() const override {
     return truth_ && !truth_->empty() ? &*truth_ : nullptr;
   }
-  std::span<const ImuReading> imu() const override { return all_->imu(); }
+  std::span<const ImuReading> imu() const override {
+    return gives_imu_ ? all_->imu() : std::span<const ImuReading>();
+  }
 
  private:
   std::unique_ptr<Sequence> all_;
+  bool gives_imu_;
   std::size_t size_;
   std::optional<Trajectory> truth_;
 };
@@ -45,8 +48,8 @@ class FirstFrames : public Sequence {
 }  // namespace
 
 std::shared_ptr<const Sequence> first_frames(std::unique_ptr<Sequence> all, std::size_t at_most,
-                                             std::optional<Trajectory> truth) {
-  return std::make_shared<const FirstFrames>(std::move(all), at_most, truth);
+                                             std::optional<Trajectory> truth, bool gives_imu) {
+  return std::make_shared<const FirstFrames>(std::move(all), at_most, truth, gives_imu);
 }
 
 }  // namespace mh

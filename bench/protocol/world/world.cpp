@@ -159,7 +159,14 @@ World open_recordings(const RunSpec& spec) {
       world.notes.push_back(without_place(note, sequence));
     const std::size_t all = opened.sequence->size();
     world.cut = world.cut || (spec.max_frames && *spec.max_frames < all);
-    return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all));
+    const bool gives_imu = std::ranges::count(spec.senses, Sense::kImu) > 0;
+    if (gives_imu && opened.sequence->imu().empty())
+      throw InputError(
+          fmt::format("{}: has no inertial sensor (imu.csv), and the suite gives one "
+                      "(`senses`)",
+                      sequence));
+    return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all), std::nullopt,
+                        gives_imu);
   };
   world.mapping = open("sequence", e.sequence);
   if (e.queries) world.second = open("queries", *e.queries);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/recordings/euroc.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <opencv2/imgcodecs.hpp>
@@ -59,6 +60,49 @@ TEST_F(Euroc, WritesACameraAsTheDataSetHasIt) {
   EXPECT_TRUE(again.resume(0, path_[0].stamp_ns, path_[0].world_from_camera));
   EXPECT_FALSE(again.resume(2, path_[2].stamp_ns, path_[2].world_from_camera));
   EXPECT_EQ(again.truth().size(), 1U);
+}
+
+TEST_F(Euroc, ReadsReadingsAndCountsWhatItLeavesOut) {
+  fs::create_directories(folder_);
+  const fs::path file = folder_ / "imu.csv";
+  std::vector<std::string> notes;
+  const auto read = [&](const std::string& text) {
+    notes.clear();
+    write_atomically(file, text);
+    return read_euroc_imu(file, notes);
+  };
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::vector<ImuReading> two = {
+      {1'403'636'580'838'555'648, {0.5, -0.25, 1e-3}, {0, -9.75, 0}},
+      {1'403'636'580'843'555'648, {0, 0, 0}, {0, -9.5, 1}}};
+  std::string text = fmt::format("{}\r\n", kEurocImuColumns);
+  for (const ImuReading& reading : two) text += euroc_line(reading);
+  EXPECT_EQ(read(text), two);
+  EXPECT_TRUE(notes.empty());
+  const std::string dirty = text +
+                            "1403636580848555648,nan,0,0,0,-9.8,0\n"
+                            "1403636580843555648, 0, 0, 0, 0, -9.8, 0\n";
+  EXPECT_EQ(read(dirty), two);
+  ASSERT_EQ(notes.size(), 2U);
+  EXPECT_NE(notes[0].find("1 reading left out: not a number"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[1].find("the stamp does not increase"), std::string::npos) << notes[1];
+  EXPECT_NE(refusal(text + "1403636580848555648,0,0,0,0,-9.8\n").find("imu.csv:4: "),
+            std::string::npos);
+  EXPECT_NE(refusal("1.5,0,0,0,0,-9.8,0\n").find("'1.5' does not begin with a stamp in ns"),
+            std::string::npos);
+  EXPECT_NE(refusal("10,0,0,0,0,-1.01,0\n")
+                .find("1.01 on average, not near 9.81 m/s^2: they are "
+                      "in units of g"),
+            std::string::npos);
+  EXPECT_NE(refusal("10,0,0,0,0,-98,0\n").find("98 on average"), std::string::npos);
+  EXPECT_NE(refusal("# nothing\n").find("holds no reading"), std::string::npos);
 }
 
 TEST_F(Euroc, RefusesALensThatTheLayoutCannotHold) {
