@@ -383,6 +383,22 @@ TEST_F(Recorded, AFrameWithADamagedLabelImageIsSkippedForTheSystemsThatSeeIt) {
   }
 }
 
+TEST_F(Recorded, ItsInertialReadingsAreGivenIfTheSuiteAsks) {
+  record(room(), "tum", 0, 3);
+  spec_.senses = {Sense::kImu};
+  try {
+    world();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("has no inertial sensor"), std::string::npos)
+        << error.what();
+  }
+  write(room() / "imu.csv", "10,0,0,0,0,-9.8,0\n20,0,0,0,0,-9.8,0\n");
+  EXPECT_EQ(world().mapping->imu().size(), 2U);
+  spec_.senses = {};
+  EXPECT_TRUE(world().mapping->imu().empty());
+}
+
 TEST_F(Recorded, HalfATruthIsSaid) {
   record(room(), "tum", 0, 60);
   Trajectory truth = read_trajectory(room() / "groundtruth.txt");
