@@ -59,9 +59,9 @@ parse() {
 
 cd "$work/clone"
 # The house's light is baked once for all tests.
-mkdir -p "$build/cache_of_tests/home"
-ln -sfn .. "$build/cache_of_tests/home/modelhouse"
-export HOME=$work/home XDG_CACHE_HOME=$build/cache_of_tests/home
+mkdir -p "$build/cache_of_tests/shared"
+ln -sfn .. "$build/cache_of_tests/shared/modelhouse"
+export HOME=$work/home XDG_CACHE_HOME=$build/cache_of_tests/shared
 run=0 parsed=0
 while IFS= read -r line; do
   [[ $line =~ ^[[:space:]]*(#.*)?$ || $line == sudo\ * ]] && continue
