@@ -35,6 +35,5 @@ done
 [[ $install == no ]] || install_packages
 configure "$preset"
 build "$preset"
-# One more than the compilers: browsers and outside programs let a processor idle.
 exec ctest --test-dir "$root/build/$preset" --output-on-failure --no-tests=error \
-  --parallel "$((build_jobs + 1))" "$@" </dev/null
+  --parallel "$build_jobs" "$@" </dev/null
