@@ -38,6 +38,12 @@ std::string euroc_line(const ImuReading& reading) {
                      comma(reading.specific_force_m_per_s2));
 }
 
+void write_euroc_imu(const fs::path& file, std::span<const ImuReading> readings) {
+  std::string text = fmt::format("{}\n", kEurocImuColumns);
+  for (const ImuReading& reading : readings) text += euroc_line(reading);
+  write_atomically(file, text);
+}
+
 namespace {
 
 /// Seven numbers of a line; the first as it is written.
@@ -167,9 +173,7 @@ void write_euroc_states(const fs::path& folder, const Trajectory& frames, const 
                         const ImuPath& imu, const EurocImuNoise& noise) {
   const fs::path mav = folder / "mav0";
   for (const char* part : {"imu0", "state_groundtruth_estimate0"}) make_output_folder(mav / part);
-  std::string readings = fmt::format("{}\n", kEurocImuColumns);
-  for (const ImuReading& reading : imu.readings) readings += euroc_line(reading);
-  write_atomically(mav / "imu0" / "data.csv", readings);
+  write_euroc_imu(mav / "imu0" / "data.csv", imu.readings);
   write_atomically(
       mav / "imu0" / "sensor.yaml",
       fmt::format("sensor_type: imu\ncomment: Modelhouse\n{}rate_hz: {:#g}\n"

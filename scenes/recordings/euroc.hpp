@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@ inline constexpr std::string_view kEurocImuColumns =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
     "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]";
 std::string euroc_line(const ImuReading& reading);
+void write_euroc_imu(const std::filesystem::path& file, std::span<const ImuReading> readings);
 
 /// Reads what an inertial sensor delivered, in these columns. Readings that are not numbers and
 /// those whose stamp does not increase are left out and counted.

@@ -292,9 +292,9 @@ void TumWriter::finish() {
     if (!path.empty()) write_tum(folder_ / name, path);
   }
   if (!imu_.empty()) {
-    std::string text = fmt::format("{}\n", kEurocImuColumns);
-    for (const auto& [stamp, reading] : imu_) text += euroc_line(reading);
-    write_atomically(folder_ / "imu.csv", text);
+    std::vector<ImuReading> readings;
+    for (const auto& [stamp, reading] : imu_) readings.push_back(reading);
+    write_euroc_imu(folder_ / "imu.csv", readings);
   }
   write_atomically(folder_ / "camera_info.yaml", camera_info_text(camera_));
   write_atomically(folder_ / "camera.yaml", settings_text(camera_));

@@ -136,9 +136,14 @@ template <class A, MaybeConst<Eigen::Vector3d> T>
 void fields(A& a, T& v) {
   a(v.x(), v.y(), v.z());
 }
+/// The elements of a matrix by rows.
+template <class A, class M>
+void elements(A& a, M& m) {
+  for (Eigen::Index i = 0; i < m.size(); ++i) a(m(i / m.cols(), i % m.cols()));
+}
 template <class A, MaybeConst<Matrix6d> T>
 void fields(A& a, T& m) {
-  for (Eigen::Index i = 0; i < 36; ++i) a(m(i / 6, i % 6));
+  elements(a, m);
 }
 template <class A, MaybeConst<Vector6d> T>
 void fields(A& a, T& v) {

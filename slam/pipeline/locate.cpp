@@ -143,25 +143,22 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
   if (known.camera_from_world)
     located = find_near(*known.camera_from_world, config.track.search_radius_px, frame, context,
                         observers);
-  if (located) {
-    located->motion = Motion::at_rest(located->tracked.information.inverse());
-    follow_inertially(*located, {}, frame.imu, tracker);
-    report.status = TrackStatus::kRelocalized;
-    return located;
+  if (!located) {
+    const auto found =
+        search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);
+    if (!found) return std::nullopt;
+    located =
+        confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
+    // As long as another sensor knows the place, a far one only looks like it.
+    if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
+    if (!located) {
+      report.relocalization = RelocalizationStage::kInliers;
+      return std::nullopt;
+    }
   }
-  const auto found =
-      search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);
-  if (!found) return std::nullopt;
-  located = confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
-  // As long as another sensor knows the place, a far one only looks like it.
-  if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
-  if (located) {
-    located->motion = Motion::at_rest(located->tracked.information.inverse());
-    follow_inertially(*located, {}, frame.imu, tracker);
-    report.status = TrackStatus::kRelocalized;
-  } else {
-    report.relocalization = RelocalizationStage::kInliers;
-  }
+  located->motion = Motion::at_rest(located->tracked.information.inverse());
+  follow_inertially(*located, {}, frame.imu, tracker);
+  report.status = TrackStatus::kRelocalized;
   return located;
 }
 

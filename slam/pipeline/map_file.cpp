@@ -37,14 +37,6 @@ void fields(A& a, T& motion) {
   auto& [velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance] = motion;
   a(velocity_per_s, pose_covariance, pose_velocity_covariance, velocity_covariance);
 }
-template <class A, class T, int kRows, int kColumns>
-void list(A& a, Eigen::Matrix<T, kRows, kColumns>& m) {
-  for (Eigen::Index i = 0; i < m.size(); ++i) a(m(i / m.cols(), i % m.cols()));
-}
-template <class A, class T, int kRows, int kColumns>
-void list(A& a, const Eigen::Matrix<T, kRows, kColumns>& m) {
-  for (Eigen::Index i = 0; i < m.size(); ++i) a(m(i / m.cols(), i % m.cols()));
-}
 template <class A, MaybeConst<ImuReading> T>
 void fields(A& a, T& reading) {
   auto& [stamp_ns, turn_rad_per_s, specific_force_m_per_s2] = reading;
@@ -55,14 +47,14 @@ void fields(A& a, T& motion) {
   auto& [velocity_m_per_s, gravity_m_per_s2, turn_bias, force_bias, covariance, before,
          own_from_tracked] = motion;
   a(velocity_m_per_s, gravity_m_per_s2, turn_bias, force_bias);
-  list(a, covariance);
+  elements(a, covariance);
   a(before, own_from_tracked);
 }
 template <class A, MaybeConst<InertialMotion::Known> T>
 void fields(A& a, T& known) {
   auto& [gravity_in_world, turn_bias, force_bias, covariance] = known;
   a(gravity_in_world, turn_bias, force_bias);
-  list(a, covariance);
+  elements(a, covariance);
 }
 template <class A, MaybeConst<StaleScores::Score> T>
 void fields(A& a, T& score) {

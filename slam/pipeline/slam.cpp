@@ -79,12 +79,14 @@ void set_query_settings(SlamState& state, const SemanticConfig& settings) {
       state.map.set_words(keyframe.id, index_words(keyframe.features, *state.vocabulary, own));
 }
 
+SE3 camera_from_world(const SlamState& state, const TrackedFrame& frame) {
+  return frame.camera_from_reference * state.map.camera_from_world(frame.reference);
+}
+
 Trajectory trajectory(const SlamState& state) {
   Trajectory poses;
   for (const auto& [stamp_ns, frame] : state.tracked_frames)
-    poses.push_back(
-        {stamp_ns,
-         (frame.camera_from_reference * state.map.camera_from_world(frame.reference)).inverse()});
+    poses.push_back({stamp_ns, camera_from_world(state, frame).inverse()});
   return poses;
 }
 

@@ -100,6 +100,9 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
 /// @throws InputError naming the setting that is out of range; the state is then unchanged.
 void set_query_settings(SlamState& state, const SemanticConfig& settings);
 
+/// Where a tracked frame is in the map as it is now.
+SE3 camera_from_world(const SlamState& state, const TrackedFrame& frame);
+
 /// Each tracked frame once (its last attempt), ordered by stamp: its pose relative to its reference
 /// keyframe, composed with that keyframe's current pose. The world origin is the first camera pose.
 Trajectory trajectory(const SlamState& state);

@@ -70,7 +70,7 @@ bool within_reach(const SlamState& state, Stamp stamp_ns, const SE3& camera_from
   constexpr double kMaxTurn_rad_s = 3;  // faster than any robot's head, about that of a hand
   const auto reaches = [&](const auto& other) {
     const auto& [other_ns, frame] = *other;
-    const SE3 pose = frame.camera_from_reference * state.map.camera_from_world(frame.reference);
+    const SE3 pose = mh::camera_from_world(state, frame);
     const double moved_m =
         (pose.inverse().translation() - camera_from_world.inverse().translation()).norm();
     const double elapsed_s = std::abs(static_cast<double>(stamp_ns - other_ns)) * kNanosecond_s;
@@ -84,9 +84,10 @@ bool within_reach(const SlamState& state, Stamp stamp_ns, const SE3& camera_from
 
 /// Where a frame was when it was shown before, if that is to be used.
 std::optional<SE3> earlier_pose(const SlamState& state, Stamp stamp_ns) {
+  if (!state.config.track.earlier_poses) return std::nullopt;
   const auto frame = state.tracked_frames.find(stamp_ns);
-  if (!state.config.track.earlier_poses || frame == state.tracked_frames.end()) return std::nullopt;
-  return frame->second.camera_from_reference * state.map.camera_from_world(frame->second.reference);
+  if (frame == state.tracked_frames.end()) return std::nullopt;
+  return camera_from_world(state, frame->second);
 }
 
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
