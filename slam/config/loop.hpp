@@ -25,6 +25,9 @@ struct LoopConfig {
   double max_drift_rad = 0.35;
   double negligible_m = 0.01;  ///< below this, landmarks are merged but poses stay
   double negligible_rad = 0.003;
+  /// Pieces of a map are joined where this many keyframes agree on it, over this way of the camera.
+  int joining = 8;
+  double joining_m = 2;
   friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };
 
@@ -32,7 +35,7 @@ template <MaybeConst<LoopConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, augmented, min_gap, loosely_shared, min_similarity_share, agreeing, patience,
          same_drift_m, same_drift_rad, max_drift_m, max_drift_share, max_drift_rad, negligible_m,
-         negligible_rad] = c;
+         negligible_rad, joining, joining_m] = c;
   v("enabled", enabled, setting::kSwitch, "whether loops are looked for");
   v("augmented", augmented, setting::kSwitch,
     "candidates by equation 1 with labels; else by words alone");
@@ -51,6 +54,8 @@ void fields(C& c, Visit& v) {
   v("max_drift_rad", max_drift_rad, setting::kAngle_rad, "nor turns it farther");
   v("negligible_m", negligible_m, setting::kLength_m, "below, landmarks are joined but poses stay");
   v("negligible_rad", negligible_rad, setting::kAngle_rad, "");
+  v("joining", joining, setting::kCount, "keyframes that must agree before pieces are joined,");
+  v("joining_m", joining_m, setting::kLength_m, "over this way of the camera");
 }
 
 }  // namespace mh

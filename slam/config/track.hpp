@@ -26,6 +26,9 @@ struct TrackConfig {
   double max_speed_m_s = 0;
   /// After a rewind, a frame that was tracked before is looked for where it was.
   bool earlier_poses = false;
+  /// While mapping, a camera that has been lost for this long begins a new piece of the map; 0:
+  /// never. Pieces are joined as LoopConfig::joining says.
+  double new_piece_after_s = 0;
   double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
   /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.
   /// 0: global shutter.
@@ -37,7 +40,8 @@ template <MaybeConst<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
          local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad,
-         reckon_position_m, reckon_angle_rad, max_speed_m_s, earlier_poses, coast_s, readout_s] = c;
+         reckon_position_m, reckon_angle_rad, max_speed_m_s, earlier_poses,
+         new_piece_after_s, coast_s, readout_s] = c;
   v("min_inliers", min_inliers, setting::kPoints, "after the local map, to count as tracked");
   v("min_inliers_sparse", min_inliers_sparse, setting::kPoints,
     "where that is more than a sixth of the keypoints");
@@ -60,6 +64,8 @@ void fields(C& c, Visit& v) {
     "while mapping, no pose counts that the camera cannot have come to; 0: any does");
   v("earlier_poses", earlier_poses, setting::kSwitch,
     "after a rewind, a frame is first looked for where it was before");
+  v("new_piece_after_s", new_piece_after_s, {0, 1000},
+    "while mapping, a camera lost for this long begins a new piece of the map; 0: never");
   v("coast_s", coast_s, {0, 10},
     "how long a lost camera is searched for along its predicted motion");
   v("readout_s", readout_s, {0, 1}, "of a rolling shutter, first row to last; 0: all at once");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "slam/core/rgbd_frame.hpp"
@@ -12,6 +13,7 @@ namespace mh {
 struct TimedPose {
   Stamp stamp_ns = 0;
   SE3 world_from_camera;
+  std::uint32_t map = 0;  ///< whose world it is, of a system that keeps several
 };
 
 /// Poses ordered by strictly increasing stamp.

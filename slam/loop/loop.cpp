@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
+#include <utility>
 
 #include "slam/config/slam.hpp"
 #include "slam/map/id_set.hpp"
@@ -16,7 +19,10 @@ namespace {
 /// Covisible keyframes that share this many landmarks constrain each other's relative pose well.
 constexpr int kStrongEdge = 100;
 
-/// Identifies the keyframes that may be the other end of a loop at the newest one.
+/// Which keyframes may be the other end of a loop.
+using IsEnd = std::function<bool(KeyframeId)>;
+
+/// Identifies the keyframes of the newest one's piece that may be the other end of a loop at it.
 class Unrelated {
  public:
   Unrelated(const Map& map, KeyframeId newest, const LoopConfig& config)
@@ -26,7 +32,8 @@ class Unrelated {
       if (n.shared >= config.loosely_shared) related_.insert(n.id);
   }
   bool operator()(KeyframeId id) const {
-    return id.value + min_gap_ <= newest_.value && !map_.at(id).erased && !related_.contains(id);
+    return id.value + min_gap_ <= newest_.value && !map_.at(id).erased &&
+           map_.at(id).origin == map_.at(newest_).origin && !related_.contains(id);
   }
 
  private:
@@ -36,9 +43,8 @@ class Unrelated {
   IdSet<KeyframeId> related_;
 };
 
-std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
+std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest, const IsEnd& is_end,
                                    const SemanticConfig& semantics, const LoopConfig& config) {
-  const Unrelated is_old(map, newest, config);
   const auto view = [&](KeyframeId k) {
     return config.augmented ? map.at(k).words.vector : words_alone(map.at(k).words.vector);
   };
@@ -53,7 +59,7 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   std::vector<KeyframeId> old;
   std::vector<int> shared(map.keyframes().size(), 0);
   for (const InvertedIndex::Score& s : map.sharing(query))
-    if (is_old(s.keyframe)) {
+    if (is_end(s.keyframe)) {
       old.push_back(s.keyframe);
       shared[s.keyframe.value] = s.shared_words + s.shared_labels;
     }
@@ -66,7 +72,7 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest,
   };
   const auto selection = select_candidates(
       std::span<const KeyframeId>(old), [&](KeyframeId k) { return shared[k.value]; },
-      [&](KeyframeId k) { return neighborhood(map, k, is_old); }, similarity, semantics.alpha,
+      [&](KeyframeId k) { return neighborhood(map, k, is_end); }, similarity, semantics.alpha,
       semantics.beta);
   std::vector<KeyframeId> result;
   for (const auto& candidate : selection.candidates)
@@ -83,7 +89,7 @@ double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const Lo
   std::optional<Eigen::Vector3d> before;
   double sum_m = 0;
   for (const Keyframe& k : map.keyframes()) {
-    if (k.erased) continue;
+    if (k.erased || k.origin != map.at(newest).origin) continue;
     const Eigen::Vector3d place = k.camera_from_world.inverse().translation();
     if (before) sum_m += (place - *before).norm();
     before = place;
@@ -108,7 +114,7 @@ bool plausible(const Map& map, KeyframeId old, KeyframeId newest, const SE3& cam
 }
 
 struct Graph {
-  std::vector<KeyframeId> keyframes;  // of each pose; the first is the map's first live one
+  std::vector<KeyframeId> keyframes;  // of each pose; the first is the piece's first one
   std::vector<SE3> poses;
   std::vector<PoseGraphEdge> edges;
 };
@@ -120,7 +126,7 @@ Graph essential_graph(const Map& map, const Loop& loop) {
   Graph graph;
   std::vector<std::uint32_t> index(map.keyframes().size(), UINT32_MAX);
   for (const Keyframe& k : map.keyframes()) {
-    if (k.erased) continue;
+    if (k.erased || k.origin != map.at(loop.keyframe).origin) continue;
     index[k.id.value] = static_cast<std::uint32_t>(graph.keyframes.size());
     graph.keyframes.push_back(k.id);
     graph.poses.push_back(k.camera_from_world);
@@ -186,8 +192,9 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
   const Keyframe& keyframe = map.at(newest);
   const auto found =
       try_candidates({keyframe.features, keyframe.grid, keyframe.words},
-                     candidates(map, newest, context.config.semantics, config), context, stream,
-                     {.words = Matcher::kLoop, .projection = Matcher::kLoop});
+                     candidates(map, newest, Unrelated(map, newest, config),
+                                context.config.semantics, config),
+                     context, stream, {.words = Matcher::kLoop, .projection = Matcher::kLoop});
   if (!found.camera_from_world ||
       !plausible(map, found.keyframe, newest, *found.camera_from_world, config))
     return std::nullopt;
@@ -197,14 +204,109 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
       newest.value - memory.keyframe.value <= static_cast<std::uint32_t>(config.patience) &&
       (memory.drift->translation() - drift.translation()).norm() < config.same_drift_m &&
       angle_between_rad(*memory.drift, drift) < config.same_drift_rad;
-  memory = {.drift = drift, .keyframe = newest, .agreeing = agrees ? memory.agreeing + 1 : 1};
+  memory.agreeing = agrees ? memory.agreeing + 1 : 1;
+  memory.drift = drift;
+  memory.keyframe = newest;
   if (memory.agreeing < config.agreeing) return std::nullopt;
-  memory = {};
+  memory = {.places = std::move(memory.places)};
   return Loop{newest, found.keyframe, *found.camera_from_world, found.landmarks};
 }
 
-void close_loop(Map& map, const Loop& loop, const SlamContext& context) {
+namespace {
+
+/// The keyframe's pose in the other world, as a place has it.
+SE3 pose_by(const PiecePlace& place, const Keyframe& keyframe) {
+  return keyframe.camera_from_world * place.other_from_own.inverse();
+}
+
+/// Notes where a keyframe would be in another piece. Each keyframe supports a place once.
+void support(std::vector<PiecePlace>& places, const Keyframe& keyframe, const MapPose& seen,
+             const Map& map, const LoopConfig& config) {
+  const Eigen::Vector3d now = keyframe.camera_from_world.inverse().translation();
+  const SE3 other_from_own = seen.camera_from_world.inverse() * keyframe.camera_from_world;
+  for (PiecePlace& place : places) {
+    if (place.origin != keyframe.origin || place.other != seen.origin) continue;
+    const Keyframe& last = map.at(map.live_keyframe(place.keyframe));
+    const double moved_m = (now - last.camera_from_world.inverse().translation()).norm();
+    const SE3 expected = pose_by(place, keyframe);
+    const double off_m = (expected.inverse().translation() -
+                          seen.camera_from_world.inverse().translation())
+                             .norm();
+    if (off_m > config.same_drift_m + config.max_drift_share * moved_m ||
+        angle_between_rad(expected, seen.camera_from_world) > config.same_drift_rad)
+      continue;
+    if (place.keyframe != keyframe.id) {
+      ++place.agreeing;
+      place.way_m += moved_m;
+    }
+    place.keyframe = keyframe.id;
+    place.other_from_own = other_from_own;
+    return;
+  }
+  places.push_back({keyframe.origin, seen.origin, other_from_own, keyframe.id, 1, 0});
+}
+
+}  // namespace
+
+std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
+                                    const SlamContext& context, RandomStream stream,
+                                    const IsPossible& is_reachable) {
+  const Map& map = context.map;
   const LoopConfig& config = context.config.loop;
+  const Keyframe& keyframe = map.at(newest);
+  const auto is_of_another = [&](KeyframeId id) { return map.at(id).origin != keyframe.origin; };
+  std::vector<Loop> found;
+  for (const KeyframeId candidate :
+       candidates(map, newest, is_of_another, context.config.semantics, config)) {
+    auto tried = try_candidates({keyframe.features, keyframe.grid, keyframe.words},
+                                std::span(&candidate, 1), context, stream,
+                                {.words = Matcher::kLoop, .projection = Matcher::kLoop});
+    if (!tried.camera_from_world) continue;
+    const MapPose seen{map.at(candidate).origin, *tried.camera_from_world};
+    const SE3 other_from_own = seen.camera_from_world.inverse() * keyframe.camera_from_world;
+    if (!is_reachable({seen.origin, other_from_own})) continue;
+    support(memory.places, keyframe, seen, map, config);
+    found.push_back({newest, candidate, seen.camera_from_world, std::move(tried.landmarks)});
+  }
+  for (const Loop& loop : found) {
+    const MapPose seen{map.at(loop.old_keyframe).origin, loop.camera_from_world};
+    const auto is_it = [&](const PiecePlace& place) {
+      return place.keyframe == newest && place.other == seen.origin &&
+             (place.other_from_own.inverse() * seen.camera_from_world.inverse() *
+              keyframe.camera_from_world)
+                     .log()
+                     .norm() < 1e-6;
+    };
+    const auto place = std::ranges::find_if(memory.places, is_it);
+    if (place == memory.places.end() || place->agreeing < config.joining ||
+        place->way_m < config.joining_m)
+      continue;
+    const bool has_rival = std::ranges::any_of(memory.places, [&](const PiecePlace& other) {
+      return &other != &*place && other.origin == keyframe.origin &&
+             2 * other.agreeing >= place->agreeing;
+    });
+    if (has_rival) continue;
+    std::erase_if(memory.places, [&](const PiecePlace& other) {
+      return other.origin == keyframe.origin || other.other == keyframe.origin;
+    });
+    return loop;
+  }
+  return std::nullopt;
+}
+
+void close_loop(Map& map, const Loop& found, const SlamContext& context) {
+  const LoopConfig& config = context.config.loop;
+  Loop loop = found;
+  const KeyframeId own = map.at(loop.keyframe).origin, other = map.at(loop.old_keyframe).origin;
+  if (own != other) {
+    const SE3 other_from_own =
+        loop.camera_from_world.inverse() * map.at(loop.keyframe).camera_from_world;
+    if (own < other)
+      map.join(other, own, other_from_own.inverse());
+    else
+      map.join(own, other, other_from_own);
+    loop.camera_from_world = map.at(loop.keyframe).camera_from_world;
+  }
   const SE3 drift = loop.camera_from_world * map.at(loop.keyframe).camera_from_world.inverse();
   const bool negligible = drift.translation().norm() < config.negligible_m &&
                           angle_between_rad(drift, SE3()) < config.negligible_rad;
@@ -214,12 +316,12 @@ void close_loop(Map& map, const Loop& loop, const SlamContext& context) {
   map.update_covisibility(loop.old_keyframe);
   fuse_with_neighbors(map, loop.keyframe, context);
   map.update_covisibility(loop.keyframe);
-  // Unless the drift is negligible, adjusts the whole map: with the parts that the loop hardly
+  // Unless the drift is negligible, adjusts the whole piece: with the parts that the loop hardly
   // moved held fixed, errors against ground truth in the house were larger by a third to a half.
-  if (negligible)
+  if (negligible && own == other)
     adjust_neighborhood(map, loop.keyframe, context);
   else
-    adjust_all(map, context);
+    adjust_piece(map, map.at(loop.keyframe).origin, context);
 }
 
 }  // namespace mh

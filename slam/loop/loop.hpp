@@ -2,11 +2,22 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "slam/core/random.hpp"
 #include "slam/match/context.hpp"
+#include "slam/relocalize/relocalize.hpp"
 
 namespace mh {
+
+/// Where a piece of the map may be in another one, and what supports it.
+struct PiecePlace {
+  KeyframeId origin, other;  ///< Keyframe::origin of the two
+  SE3 other_from_own;        ///< between their worlds, by the last keyframe that agreed
+  KeyframeId keyframe;       ///< that one
+  int agreeing = 0;          ///< keyframes that agreed so far
+  double way_m = 0;          ///< between them
+};
 
 /// What loop detection remembers between keyframes.
 struct LoopMemory {
@@ -15,13 +26,16 @@ struct LoopMemory {
   std::optional<SE3> drift;
   KeyframeId keyframe;  ///< the keyframe that found `drift`
   int agreeing = 0;     ///< keyframes that agreed on the drift so far
+  std::vector<PiecePlace> places = {};  ///< of pieces that are not joined yet
 };
 
-/// A recognized place: the newest keyframe, seen by a part of the map with which it shares little.
+/// A recognized place: the newest keyframe, seen by a part of the map with which it shares little,
+/// or of another piece of the map.
 struct Loop {
   KeyframeId keyframe;                ///< the newest
   KeyframeId old_keyframe;            ///< the keyframe of the recognized place
-  SE3 camera_from_world;              ///< the newest keyframe's pose from the old landmarks
+  SE3 camera_from_world;              ///< the newest keyframe's pose from the old landmarks, in the
+                                      ///< old keyframe's world
   std::vector<LandmarkId> landmarks;  ///< old landmarks per feature of the newest keyframe
 };
 
@@ -30,8 +44,18 @@ struct Loop {
 std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const SlamContext& context,
                                 RandomStream stream);
 
+/// Looks for the newest keyframe's place in other pieces of the map. A place counts once
+/// LoopConfig::joining keyframes agree on it, over LoopConfig::joining_m, and no other place is
+/// supported by half as many.
+/// @param is_reachable  whether the camera can have moved between two pieces: `origin` and
+///   `camera_from_world` are the other piece and other_from_own
+std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
+                                    const SlamContext& context, RandomStream stream,
+                                    const IsPossible& is_reachable);
+
 /// Closes a loop: distributes the drift over the keyframe graph, moves landmarks along, merges the
-/// landmarks of the two ends, and adjusts the whole map.
+/// landmarks of the two ends, and adjusts the whole piece of the map. If its ends are of different
+/// pieces, the later one first becomes part of the other.
 /// @param map  the context's own map, which is modified
 void close_loop(Map& map, const Loop& loop, const SlamContext& context);
 

@@ -59,6 +59,8 @@ void check_references(const Reader& reader, const std::vector<Keyframe>& keyfram
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const Keyframe& k = keyframes[i];
     reader.require(k.id.value == i, "a keyframe's id");
+    reader.require(keyframe_stands(k.origin) && keyframes[k.origin.value].origin == k.origin,
+                   "a keyframe's origin");
     check_features(reader, k, levels, words);
     reader.require(k.landmarks.size() == k.features.size(), "a keyframe's number of landmarks");
     for (const LandmarkId id : k.landmarks)

@@ -202,9 +202,9 @@ void fields(A& a, T& neighbor) {
 template <class A, MaybeConst<Keyframe> T>
 void fields(A& a, T& keyframe) {
   // The grid is rebuilt from the keypoints.
-  auto& [id, stamp_ns, camera_from_world, features, grid, words, landmarks, covisible, erased,
-         odom_from_camera, parent, camera_from_parent] = keyframe;
-  a(id, stamp_ns, camera_from_world, features, words, landmarks, covisible, erased,
+  auto& [id, origin, stamp_ns, camera_from_world, features, grid, words, landmarks, covisible,
+         erased, odom_from_camera, parent, camera_from_parent] = keyframe;
+  a(id, origin, stamp_ns, camera_from_world, features, words, landmarks, covisible, erased,
     odom_from_camera, parent, camera_from_parent);
 }
 template <class A, MaybeConst<Observation> T>

@@ -60,6 +60,7 @@ Map Map::restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmark
 
 KeyframeId Map::add(Keyframe keyframe) {
   keyframe.id = KeyframeId{static_cast<std::uint32_t>(keyframes_.size())};
+  if (!keyframe.origin.valid()) keyframe.origin = keyframe.id;
   keyframe.landmarks.assign(keyframe.features.size(), LandmarkId{});
   keyframe.covisible.clear();
   inverted_index_.add(keyframe.id, keyframe.words.vector);
@@ -137,11 +138,12 @@ void Map::fuse(LandmarkId from, LandmarkId into) {
 
 void Map::erase(KeyframeId keyframe) {
   Keyframe& k = mutable_at(keyframe);
-  if (k.erased || keyframe_count_ == 1) return;
+  if (k.erased || k.origin == keyframe) return;
   KeyframeId parent = k.covisible.empty() ? KeyframeId{} : k.covisible.front().id;
   if (!parent.valid())  // seen by no other: attach it to the nearest live keyframe in time
     for (const Keyframe& other : keyframes_)
-      if (!other.erased && other.id != keyframe && (!parent.valid() || other.id < keyframe))
+      if (!other.erased && other.origin == k.origin && other.id != keyframe &&
+          (!parent.valid() || other.id < keyframe))
         parent = other.id;
   for (std::uint32_t i = 0; i < k.landmarks.size(); ++i)
     if (k.landmarks[i].valid()) erase_observation(k.landmarks[i], keyframe);
@@ -157,6 +159,18 @@ void Map::erase(KeyframeId keyframe) {
   k.words = {};
   k.landmarks = {};
   --keyframe_count_;
+}
+
+void Map::join(KeyframeId origin, KeyframeId into, const SE3& into_from_origin) {
+  const SE3 origin_from_into = into_from_origin.inverse();
+  for (const Landmark& l : landmarks_)
+    if (!l.erased && at(l.observations.front().keyframe).origin == origin)
+      set_position(l.id, into_from_origin * l.position_in_world);
+  for (Keyframe& k : keyframes_) {
+    if (k.origin != origin) continue;
+    k.origin = into;
+    if (!k.erased) set_pose(k.id, k.camera_from_world * origin_from_into);
+  }
 }
 
 void Map::set_pose(KeyframeId id, const SE3& camera_from_world) {

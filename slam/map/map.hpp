@@ -24,6 +24,9 @@ namespace mh {
 
 struct Keyframe {
   KeyframeId id;
+  /// The first keyframe of its piece of the map, which defines that piece's world: nothing ties the
+  /// worlds of different pieces yet.
+  KeyframeId origin{0};
   Stamp stamp_ns = 0;
   SE3 camera_from_world;
   Features features;
@@ -41,6 +44,12 @@ struct Keyframe {
   std::optional<SE3> odom_from_camera = {};  ///< RgbdFrame::odom_from_camera
   KeyframeId parent;                         ///< an erased keyframe's pose is relative to this one
   SE3 camera_from_parent;                    ///< valid if erased
+};
+
+/// A pose in the world of one piece of the map.
+struct MapPose {
+  KeyframeId origin;  ///< Keyframe::origin
+  SE3 camera_from_world;
 };
 
 /// Keyframes, landmarks and the observations that link them. Entities are addressed by id; erased
@@ -64,7 +73,8 @@ class Map {
   /// std::logic_error naming the invariant that they violate.
   static Map restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks);
 
-  /// Adds a keyframe that has no landmarks yet and assigns its id.
+  /// Adds a keyframe that has no landmarks yet and assigns its id. If its origin is not valid, it
+  /// begins a piece of the map.
   KeyframeId add(Keyframe keyframe);
   LandmarkId add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
                           std::uint32_t feature);
@@ -76,9 +86,11 @@ class Map {
   /// Moves the observations of `from` to `into` (if a keyframe sees both, that of `into` stays),
   /// then erases `from`.
   void fuse(LandmarkId from, LandmarkId into);
-  /// Erases a keyframe; from then on its pose is stored relative to its best neighbor. The last
-  /// keyframe cannot be erased.
+  /// Erases a keyframe; from then on its pose is stored relative to its best neighbor. The first
+  /// keyframe of a piece cannot be erased.
   void erase(KeyframeId keyframe);
+  /// Makes a piece part of another: moves its keyframes and landmarks into the other's world.
+  void join(KeyframeId origin, KeyframeId into, const SE3& into_from_origin);
 
   void set_pose(KeyframeId id, const SE3& camera_from_world);
   void set_position(LandmarkId id, const Eigen::Vector3d& position_in_world) {
@@ -102,7 +114,8 @@ class Map {
   std::vector<InvertedIndex::Score> sharing(const AugmentedVector& view) const {
     return inverted_index_.query(view);
   }
-  /// Live keyframes whose cameras may be within a distance of a position (a superset), by id.
+  /// Live keyframes whose cameras may be within a distance of a position (a superset), by id;
+  /// those of other pieces, too, whose worlds are others.
   std::vector<KeyframeId> keyframes_near(const Eigen::Vector3d& place_in_world,
                                          double distance_m) const {
     return position_index_.near(place_in_world, distance_m);

@@ -277,7 +277,9 @@ std::vector<KeyframeId> observing_keyframes(const Map& map,
 std::array<KeyframeId, 2> beside_in_time(const Map& map, const Keyframe& keyframe) {
   std::array<KeyframeId, 2> beside;
   for (const Keyframe& k : map.keyframes()) {
-    if (k.erased || !k.odom_from_camera || k.stamp_ns == keyframe.stamp_ns) continue;
+    if (k.erased || !k.odom_from_camera || k.stamp_ns == keyframe.stamp_ns ||
+        k.origin != keyframe.origin)
+      continue;
     const bool is_later = k.stamp_ns > keyframe.stamp_ns;
     KeyframeId& nearest = beside[is_later ? 1 : 0];
     if (!nearest.valid() || (k.stamp_ns < map.at(nearest).stamp_ns) == is_later) nearest = k.id;
@@ -375,29 +377,29 @@ void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free, std::vector
 }  // namespace
 
 void adjust_neighborhood(Map& map, KeyframeId keyframe, const SlamContext& context) {
-  // Free: the keyframe and its best neighbors, but never the first keyframe, which defines the
-  // origin.
+  // Free: the keyframe and its best neighbors, but never the one that defines their world.
+  const KeyframeId origin = map.at(keyframe).origin;
   std::vector<KeyframeId> free;
-  if (keyframe.value != 0) free.push_back(keyframe);
+  if (keyframe != origin) free.push_back(keyframe);
   for (const KeyframeId id : best_neighbors(map, keyframe, kAdjustedNeighbors))
-    if (id.value != 0) free.push_back(id);
+    if (id != origin) free.push_back(id);
   std::vector<KeyframeId> fixed = observing_keyframes(map, free);
   if (fixed.size() > kFixedKeyframes) fixed.resize(kFixedKeyframes);
   adjust_keyframes(map, free, fixed, context);
 }
 
-void adjust_all(Map& map, const SlamContext& context) {
+void adjust_piece(Map& map, KeyframeId origin, const SlamContext& context) {
   std::vector<KeyframeId> free;
   for (const Keyframe& k : map.keyframes())
-    if (!k.erased && k.id.value != 0) free.push_back(k.id);
-  adjust_keyframes(map, free, {KeyframeId{0}}, context);
+    if (!k.erased && k.origin == origin && k.id != origin) free.push_back(k.id);
+  adjust_keyframes(map, free, {origin}, context);
 }
 
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context) {
   for (const KeyframeId id : best_neighbors(map, newest, map.keyframes().size())) {
-    // The first is the origin; tracking depends on the latest few.
-    if (id.value == 0 || newest.value - id.value < 3) continue;
     const Keyframe& k = map.at(id);
+    // Tracking depends on the latest few.
+    if (id == k.origin || newest.value - id.value < 3) continue;
     int total = 0, redundant = 0;
     for (std::size_t i = 0; i < k.landmarks.size(); ++i) {
       const Keypoint& keypoint = k.features.keypoints[i];

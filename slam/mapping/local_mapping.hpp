@@ -20,8 +20,8 @@ void cull_young_landmarks(Map& map, KeyframeId newest);
 void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& context);
 void fuse_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& context);
 void adjust_neighborhood(Map& map, KeyframeId keyframe, const SlamContext& context);
-/// Bundle adjustment of the whole map; the first keyframe is fixed.
-void adjust_all(Map& map, const SlamContext& context);
+/// Bundle adjustment of a whole piece of the map; its first keyframe is fixed.
+void adjust_piece(Map& map, KeyframeId origin, const SlamContext& context);
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context);
 
 }  // namespace mh

@@ -6,9 +6,11 @@
 
 namespace mh {
 
-/// Turns a frame into a keyframe: maps it, then looks for a loop and closes it. The frame keeps its
-/// features.
+/// Turns a frame into a keyframe: maps it, then looks for a loop and closes it, or joins its piece of
+/// the map to another. The frame keeps its features.
+/// @param origin  Keyframe::origin
 KeyframeId add_keyframe(SlamState& state, PreparedFrame& frame, const TrackedPose& tracked,
-                        RandomStream stream, const StepObservers& observers, StepReport& report);
+                        KeyframeId origin, RandomStream stream, const StepObservers& observers,
+                        StepReport& report);
 
 }  // namespace mh

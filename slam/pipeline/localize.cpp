@@ -22,6 +22,7 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
   report.inliers = located->tracked.inliers;
   update_velocity(tracker, frame.stamp_ns, located->tracked.camera_from_world);
   report.world_from_camera = located->tracked.camera_from_world.inverse();
+  report.origin = frozen.map.at(located->reference).origin;
   remember(tracker,
            {prepared.stamp_ns, located->tracked.camera_from_world, std::move(prepared.features),
             std::move(located->tracked.landmarks)},
@@ -71,7 +72,7 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
     StepReport of_refining;
     if (const auto located = confirm_in_local_map(
             *known.frame, {*found.camera_from_world, found.landmarks, found.inliers},
-            config.relocalize.min_inliers, context_of(frozen, observers, of_refining), observers)) {
+            frozen.map.at(found.keyframe).origin, config.relocalize.min_inliers, context_of(frozen, observers, of_refining), observers)) {
       refined.camera_from_world = located->tracked.camera_from_world;
       refined.inliers = located->tracked.inliers;
     }
@@ -85,6 +86,7 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
   report.status = TrackStatus::kRelocalized;
   report.inliers = refined.inliers;
   report.world_from_camera = refined.camera_from_world->inverse();
+  report.origin = frozen.map.at(found.keyframe).origin;
   return report;
 }
 

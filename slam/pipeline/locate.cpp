@@ -36,6 +36,7 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
                                            : inliers_needed(frame.features, state.config.track);
   // If the motion is not known yet, appearance needs no guess.
   const bool moving = tracker.velocity_per_s.has_value() || reckoned;
+  const KeyframeId origin = state.map.at(tracker.reference).origin;
   for (const bool use_motion : {moving, !moving}) {
     std::optional<TrackedPose> tracked;
     {
@@ -43,24 +44,25 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
       tracked = use_motion ? by_motion() : by_reference();
     }
     if (!tracked) continue;
-    if (auto located = confirm_in_local_map(frame, *tracked, min_inliers, context, observers))
-      if (!is_possible || is_possible(located->tracked.camera_from_world)) return located;
+    if (auto located =
+            confirm_in_local_map(frame, *tracked, origin, min_inliers, context, observers))
+      if (!is_possible || is_possible({origin, located->tracked.camera_from_world})) return located;
   }
   return std::nullopt;
 }
 
 /// Localizes a frame in the map around a pose.
-std::optional<Located> find_near(const SE3& camera_from_world, double radius_px,
-                                 const PreparedFrame& frame, const SlamContext& context,
-                                 const StepObservers& observers) {
+std::optional<Located> find_near(const MapPose& guess, double radius_px, const PreparedFrame& frame,
+                                 const SlamContext& context, const StepObservers& observers) {
   std::optional<TrackedPose> near;
   {
     const InStage stage(observers, Stage::kTracking);
-    near = track_near(without_words(frame), camera_from_world, radius_px, context);
+    near = track_near(without_words(frame), guess, radius_px, context);
   }
   if (!near) return std::nullopt;
-  return confirm_in_local_map(frame, *near, inliers_needed(frame.features, context.config.track),
-                              context, observers);
+  return confirm_in_local_map(frame, *near, guess.origin,
+                              inliers_needed(frame.features, context.config.track), context,
+                              observers);
 }
 
 /// Localizes a frame where another sensor has it: in the map around, or, if the image cannot
@@ -71,7 +73,8 @@ std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tr
   const TrackConfig& config = state.config.track;
   const PoseSigma sigma = worst_sigma(reckoned.covariance);
   const double radius_px = config.search_radius_px + 2 * sigma.angle_rad * context.camera.fx_px;
-  if (auto located = find_near(reckoned.camera_from_world, radius_px, frame, context, observers))
+  const MapPose guess{state.map.at(tracker.reference).origin, reckoned.camera_from_world};
+  if (auto located = find_near(guess, radius_px, frame, context, observers))
     if (reckoned.allows(located->tracked, config)) return located;
   // Where the place is well known, what the last frame showed should be seen, and enough is seen,
   // but not that: the wheels slipped, or the robot was carried away.
@@ -90,18 +93,24 @@ std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tr
   return located;
 }
 
-std::optional<TrackedPose> search_everywhere(const SlamState& state, Tracker& tracker,
-                                             PreparedFrame& frame, RandomStream stream,
-                                             const StepObservers& observers, StepReport& report,
-                                             const IsPossible& is_possible) {
-  const InStage stage(observers, Stage::kRelocalization);
-  RelocalizationResult found =
-      relocalize(with_words(frame, state, observers), context_of(state, observers, report), stream,
-                 nullptr, &tracker.stale_scores, is_possible);
+/// Localizes a frame by its words, wherever it is.
+std::optional<Located> search_everywhere(const SlamState& state, Tracker& tracker,
+                                         PreparedFrame& frame, RandomStream stream,
+                                         const StepObservers& observers, StepReport& report,
+                                         const IsPossible& is_possible) {
+  const SlamContext context = context_of(state, observers, report);
+  RelocalizationResult found;
+  {
+    const InStage stage(observers, Stage::kRelocalization);
+    found = relocalize(with_words(frame, state, observers), context, stream, nullptr,
+                       &tracker.stale_scores, is_possible);
+  }
   report.relocalization = found.stage;
   report.candidates = found.candidates;
   if (!found.camera_from_world) return std::nullopt;
-  return TrackedPose{*found.camera_from_world, std::move(found.landmarks), found.inliers};
+  return confirm_in_local_map(
+      frame, {*found.camera_from_world, std::move(found.landmarks), found.inliers},
+      state.map.at(found.keyframe).origin, state.config.relocalize.min_inliers, context, observers);
 }
 
 }  // namespace
@@ -112,10 +121,11 @@ SlamContext context_of(const SlamState& state, const StepObservers& observers, S
 }
 
 std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const TrackedPose& tracked,
-                                            int min_inliers, const SlamContext& context,
+                                            KeyframeId origin, int min_inliers,
+                                            const SlamContext& context,
                                             const StepObservers& observers) {
   const InStage stage(observers, Stage::kLocalMap);
-  const LocalMap local = local_map(tracked, context);
+  const LocalMap local = local_map(tracked, origin, context);
   auto refined = track_local_map(without_words(frame), tracked, local, context);
   if (!refined || refined->tracked.inliers < min_inliers) return std::nullopt;
   const KeyframeId reference = reference_of(refined->tracked, context.map);
@@ -140,19 +150,16 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
     report.status = tracker.coasting ? TrackStatus::kRelocalized : TrackStatus::kTracked;
     return located;
   }
-  if (known.camera_from_world)
-    located = find_near(*known.camera_from_world, config.track.search_radius_px, frame, context,
+  if (known.earlier_pose)
+    located = find_near(*known.earlier_pose, config.track.search_radius_px, frame, context,
                         observers);
   if (!located) {
-    const auto found =
-        search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);
-    if (!found) return std::nullopt;
     located =
-        confirm_in_local_map(frame, *found, config.relocalize.min_inliers, context, observers);
+        search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);
     // As long as another sensor knows the place, a far one only looks like it.
     if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
     if (!located) {
-      report.relocalization = RelocalizationStage::kInliers;
+      report.relocalization = std::min(report.relocalization, RelocalizationStage::kInliers);
       return std::nullopt;
     }
   }

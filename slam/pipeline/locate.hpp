@@ -14,8 +14,8 @@ SlamContext context_of(const SlamState& state, const StepObservers& observers, S
 
 /// What mapping knows of a frame before it is located.
 struct KnownBefore {
-  IsPossible is_possible = {};                ///< of a pose that an image tells
-  std::optional<SE3> camera_from_world = {};  ///< where the frame was before a rewind
+  IsPossible is_possible = {};            ///< of a pose that an image tells
+  std::optional<MapPose> earlier_pose{};  ///< where the frame was before a rewind
 };
 
 /// Localizes a frame in the map: by tracking from previous frames; if that fails, by
@@ -25,9 +25,11 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
                               StepReport& report, const KnownBefore& known = {});
 
 /// Refines a pose on the local map.
+/// @param origin  of the piece of the map that the pose is in
 /// @returns nullopt below `min_inliers`.
 std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const TrackedPose& tracked,
-                                            int min_inliers, const SlamContext& context,
+                                            KeyframeId origin, int min_inliers,
+                                            const SlamContext& context,
                                             const StepObservers& observers);
 
 }  // namespace mh

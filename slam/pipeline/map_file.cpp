@@ -73,10 +73,15 @@ void fields(A& a, T& tracker) {
   a(last, velocity_per_s, motion, reference, frames_since_keyframe, coasting, reckoning, inertial,
     inertial_known, stale_scores);
 }
+template <class A, MaybeConst<PiecePlace> T>
+void fields(A& a, T& place) {
+  auto& [origin, other, other_from_own, keyframe, agreeing, way_m] = place;
+  a(origin, other, other_from_own, keyframe, agreeing, way_m);
+}
 template <class A, MaybeConst<LoopMemory> T>
 void fields(A& a, T& memory) {
-  auto& [drift, keyframe, agreeing] = memory;
-  a(drift, keyframe, agreeing);
+  auto& [drift, keyframe, agreeing, places] = memory;
+  a(drift, keyframe, agreeing, places);
 }
 template <class A, MaybeConst<TrackedFrame> T>
 void fields(A& a, T& frame) {
@@ -208,6 +213,10 @@ SlamState decode_slam(const std::string& bytes, const std::string& name,
   state.map = read_map(content, camera, state.config.features.levels, state.vocabulary->size());
   content(state.tracker, state.loop_memory);
   check(content, state.tracker, state.map);
+  for (const PiecePlace& place : state.loop_memory.places)
+    content.require(std::max({place.origin, place.other, place.keyframe}).value <
+                        state.map.keyframes().size(),
+                    "a keyframe of a piece's place");
   state.tracked_frames = read_tracked_frames(content, state.map);
   content(state.last_stamp_ns);
   content.require(content.at_end(), "it goes on after its end");

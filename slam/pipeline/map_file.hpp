@@ -10,7 +10,7 @@
 
 namespace mh {
 
-inline constexpr std::uint32_t kMapFileVersion = 11;
+inline constexpr std::uint32_t kMapFileVersion = 12;
 
 /// Serializes all of a SlamState except the vocabulary, which is referenced by its digest: a run
 /// that is saved and loaded resumes bit-identically to one that was not. Equal states give equal

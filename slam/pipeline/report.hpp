@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "slam/core/ids.hpp"
 #include "slam/core/loop_closure.hpp"
 #include "slam/core/match_counts.hpp"
 #include "slam/core/relocalization_stage.hpp"
@@ -16,6 +17,7 @@ namespace mh {
 struct StepReport {
   TrackStatus status = TrackStatus::kLost;
   std::optional<SE3> world_from_camera;
+  KeyframeId origin;  ///< of the piece of the map in whose world the pose is; see Keyframe
   int keypoints = 0;
   int inliers = 0;
   bool keyframe_added = false;

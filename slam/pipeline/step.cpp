@@ -20,20 +20,23 @@ namespace {
 
 constexpr int kMinInitialPoints = 100;  // with depth, for a frame to define the origin
 
-/// The first frame with enough depth defines the world origin.
-StepReport initialize(SlamState& state, PreparedFrame frame, const StepObservers& observers,
-                      StepReport report) {
+/// Begins a piece of the map with a frame of enough depth, which defines the piece's world.
+StepReport begin_piece(SlamState& state, PreparedFrame frame, const SE3& camera_from_world,
+                       const StepObservers& observers, StepReport report) {
   const int with_depth = points_with_depth(frame.features);
   if (with_depth < kMinInitialPoints) return report;
-  const TrackedPose origin{SE3(), std::vector<LandmarkId>(frame.features.size())};
-  const KeyframeId id = add_keyframe(state, frame, origin, RandomStream(), observers, report);
+  const TrackedPose first{camera_from_world, std::vector<LandmarkId>(frame.features.size())};
+  const KeyframeId id =
+      add_keyframe(state, frame, first, KeyframeId(), RandomStream(), observers, report);
   state.tracked_frames[frame.stamp_ns] = {id, SE3()};
   report.status = TrackStatus::kInitialized;
-  report.world_from_camera = SE3();
+  report.world_from_camera = camera_from_world.inverse();
+  report.origin = id;
   report.inliers = with_depth;
+  forget(state.tracker);
   remember(state.tracker,
-           {frame.stamp_ns, SE3(), std::move(frame.features), state.map.at(id).landmarks,
-            frame.odom_from_camera},
+           {frame.stamp_ns, camera_from_world, std::move(frame.features),
+            state.map.at(id).landmarks, frame.odom_from_camera},
            id, std::nullopt);
   return report;
 }
@@ -61,33 +64,43 @@ void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Featu
                                                                state.depth_frames++, *disagreement);
 }
 
-/// Whether a camera can have come to a pose, at TrackConfig::max_speed_m_s, from where the frame
-/// before was, and on to where frames after it were before a rewind.
-bool within_reach(const SlamState& state, Stamp stamp_ns, const SE3& camera_from_world) {
-  const double max_speed_m_s = state.config.track.max_speed_m_s;
-  if (max_speed_m_s == 0) return true;
-  constexpr double kLeast_m = 0.3, kLeast_rad = 0.2, kNanosecond_s = 1e-9;
-  constexpr double kMaxTurn_rad_s = 3;  // faster than any robot's head, about that of a hand
-  const auto reaches = [&](const auto& other) {
-    const auto& [other_ns, frame] = *other;
-    const SE3 pose = mh::camera_from_world(state, frame);
-    const double moved_m =
-        (pose.inverse().translation() - camera_from_world.inverse().translation()).norm();
-    const double elapsed_s = std::abs(static_cast<double>(stamp_ns - other_ns)) * kNanosecond_s;
-    return moved_m <= kLeast_m + max_speed_m_s * elapsed_s &&
-           angle_between_rad(pose, camera_from_world) <= kLeast_rad + kMaxTurn_rad_s * elapsed_s;
+/// Whether a frame can have a pose: in the piece of the map of the frame before it, or of the one
+/// after it (which is known after a rewind), and within reach of those that are in its piece.
+bool is_possible(const SlamState& state, Stamp stamp_ns, const MapPose& pose) {
+  const auto& frames = state.tracked_frames;
+  if (frames.empty()) return true;
+  bool is_beside = false;
+  const auto allows = [&](const auto& other) {
+    if (map_pose(state, other->second).origin != pose.origin) return true;
+    is_beside = true;
+    return within_reach(map_pose(state, other->second).camera_from_world, pose.camera_from_world,
+                        stamp_ns - other->first, state.config.track.max_speed_m_s);
   };
-  const auto after = state.tracked_frames.lower_bound(stamp_ns);
-  return (after == state.tracked_frames.end() || reaches(after)) &&
-         (after == state.tracked_frames.begin() || reaches(std::prev(after)));
+  const auto after = frames.lower_bound(stamp_ns);
+  return (after == frames.end() || allows(after)) &&
+         (after == frames.begin() || allows(std::prev(after))) && is_beside;
 }
 
 /// Where a frame was when it was shown before, if that is to be used.
-std::optional<SE3> earlier_pose(const SlamState& state, Stamp stamp_ns) {
+std::optional<MapPose> earlier_pose(const SlamState& state, Stamp stamp_ns) {
   if (!state.config.track.earlier_poses) return std::nullopt;
   const auto frame = state.tracked_frames.find(stamp_ns);
   if (frame == state.tracked_frames.end()) return std::nullopt;
-  return camera_from_world(state, frame->second);
+  return map_pose(state, frame->second);
+}
+
+/// Where a new piece of the map begins with this frame, by the last frame that was located; nothing
+/// if that was not long ago, or if the frame was located when it was shown before.
+std::optional<SE3> place_of_new_piece(const SlamState& state, Stamp stamp_ns) {
+  constexpr double kSecond_ns = 1e9;
+  const double patience_s = state.config.track.new_piece_after_s;
+  if (patience_s == 0) return std::nullopt;
+  const auto after = state.tracked_frames.lower_bound(stamp_ns);
+  if (after != state.tracked_frames.end() && after->first == stamp_ns) return std::nullopt;
+  if (after == state.tracked_frames.begin()) return std::nullopt;
+  const auto& [before_ns, before] = *std::prev(after);
+  if (static_cast<double>(stamp_ns - before_ns) < patience_s * kSecond_ns) return std::nullopt;
+  return map_pose(state, before).camera_from_world;
 }
 
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
@@ -123,12 +136,13 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
     frame.odom_from_camera = odom_from_camera;
     frame.imu = imu;
   }
-  if (state.map.empty()) return initialize(state, std::move(frame), observers, report);
+  if (state.map.empty()) return begin_piece(state, std::move(frame), SE3(), observers, report);
 
   auto located =
       locate(state, state.tracker, frame, stream, observers, report,
-             {.is_possible = [&](const SE3& pose) { return within_reach(state, stamp_ns, pose); },
-              .camera_from_world = earlier_pose(state, stamp_ns)});
+             {.is_possible = [&](const MapPose& pose) { return is_possible(state, stamp_ns, pose); },
+              .earlier_pose = earlier_pose(state, stamp_ns)});
+  const auto new_piece = place_of_new_piece(state, stamp_ns);
   state.tracked_frames.erase(stamp_ns);
   if (!located) {
     located = dead_reckon(state.tracker, stamp_ns, frame.features, context);
@@ -136,6 +150,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   }
   if (!located) {
     lose(state.tracker, stamp_ns, state.config.track.coast_s);
+    if (new_piece) return begin_piece(state, std::move(frame), *new_piece, observers, report);
     return report;
   }
   TrackedPose& tracked = located->tracked;
@@ -153,13 +168,15 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
       needs_keyframe(tracked, frame.features, reference, state.tracker.frames_since_keyframe,
                      context) &&
       !is_keyframe(state.map, stamp_ns)) {
-    reference = add_keyframe(state, frame, tracked, stream.fork(1), observers, report);
+    reference = add_keyframe(state, frame, tracked, state.map.at(reference).origin, stream.fork(1),
+                             observers, report);
     const Keyframe& keyframe = state.map.at(reference);
     tracked.camera_from_world = keyframe.camera_from_world;
     tracked.landmarks = keyframe.landmarks;
   }
 
   report.world_from_camera = tracked.camera_from_world.inverse();
+  report.origin = state.map.at(reference).origin;
   state.tracked_frames[stamp_ns] = {
       reference, tracked.camera_from_world * state.map.camera_from_world(reference).inverse()};
   remember(state.tracker,

@@ -49,7 +49,7 @@ KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
 using AttemptMemo = std::map<KeyframeId, CandidateAttempt>;
 
 /// What is known of the camera's place: whether a pose is possible. Empty: any is.
-using IsPossible = std::function<bool(const SE3& camera_from_world)>;
+using IsPossible = std::function<bool(const MapPose& pose)>;
 
 /// Tries candidate keyframes in order: matching by words, PnP with RANSAC, refinement, guided
 /// search. The first success at a possible pose wins; `candidates` of the result stays empty. A

@@ -192,7 +192,7 @@ std::optional<TrackedPose> track_reference(const Query& query, KeyframeId refere
   return tracked;
 }
 
-LocalMap local_map(const TrackedPose& tracked, const SlamContext& context) {
+LocalMap local_map(const TrackedPose& tracked, KeyframeId origin, const SlamContext& context) {
   const Map& map = context.map;
   const auto voted = by_shared_landmarks(tracked, map);
 
@@ -211,6 +211,7 @@ LocalMap local_map(const TrackedPose& tracked, const SlamContext& context) {
   std::vector<std::pair<double, KeyframeId>> near;
   for (const KeyframeId id :
        map.keyframes_near(world_from_camera.translation(), context.config.track.near_distance_m)) {
+    if (map.at(id).origin != origin) continue;
     const SE3 world_from_keyframe = map.at(id).camera_from_world.inverse();
     const double distance =
         (world_from_keyframe.translation() - world_from_camera.translation()).norm();
@@ -281,13 +282,15 @@ void find_expected(const Expected& expected, const Query& query, double max_dist
 
 }  // namespace
 
-std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
+std::optional<TrackedPose> track_near(const Query& query, const MapPose& guess, double radius_px,
                                       const SlamContext& context) {
-  const LocalMap local = local_map({.camera_from_world = guess, .landmarks = {}}, context);
+  const SE3& pose = guess.camera_from_world;
+  const LocalMap local =
+      local_map({.camera_from_world = pose, .landmarks = {}}, guess.origin, context);
   std::vector<LandmarkId> landmarks(query.features.size());
-  find_expected(expect_in_view(local, {}, guess, radius_px, context), query,
+  find_expected(expect_in_view(local, {}, pose, radius_px, context), query,
                 context.config.match.max_distance, context, landmarks);
-  auto tracked = optimize_matches(query, landmarks, {}, guess, context);
+  auto tracked = optimize_matches(query, landmarks, {}, pose, context);
   if (tracked && tracked->inliers < context.config.track.min_inliers_frame) tracked.reset();
   return tracked;
 }

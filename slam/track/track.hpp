@@ -43,7 +43,7 @@ int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& 
 /// Estimates a frame's pose near one that is roughly known, from the landmarks around it.
 /// @param radius_px  of the search at octave 0
 /// @returns nullopt below TrackConfig::min_inliers_frame.
-std::optional<TrackedPose> track_near(const Query& query, const SE3& guess, double radius_px,
+std::optional<TrackedPose> track_near(const Query& query, const MapPose& guess, double radius_px,
                                       const SlamContext& context);
 
 /// Estimates a frame's pose by appearance: words shared with the reference keyframe.
@@ -63,7 +63,8 @@ KeyframeId reference_of(const TrackedPose& tracked, const Map& map);
 
 /// Keyframes that share landmarks with the frame, their neighbors, and those nearby with a similar
 /// view direction, even if they share no landmarks, so that revisited places are matched at once.
-LocalMap local_map(const TrackedPose& tracked, const SlamContext& context);
+/// @param origin  of the piece of the map that the pose is in
+LocalMap local_map(const TrackedPose& tracked, KeyframeId origin, const SlamContext& context);
 
 struct LocalMapResult {
   TrackedPose tracked;
