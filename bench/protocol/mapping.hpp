@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// One track call of the mapping, in order.
+/// One track call during mapping.
 struct MappedFrame {
   std::size_t index = 0;  ///< in the sequence
   Stamp stamp_ns = 0;
