@@ -122,7 +122,4 @@ Localization localize_sequence(const System& frozen, const Sequence& sequence,
                                const ProtocolConfig& config, RandomStream stream,
                                const MappingObserver& observe = {});
 
-/// Returns the noise stream of mapping frames after that many restarts; the same for every system.
-RandomStream mapping_noise(RandomStream stream, int restart);
-
 }  // namespace mh
