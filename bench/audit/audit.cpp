@@ -39,10 +39,6 @@ struct Asked {
   std::map<TrialKey, TrialMemo> tried = {};
 };
 
-double distance_of(const SE3& a, const SE3& b) {
-  return (a.translation() - b.translation()).norm() + angle_between_rad(a, b);
-}
-
 /// What Algorithm 1 does with one query.
 struct Retrieved {
   std::vector<KeyframeId> candidates;
@@ -92,14 +88,14 @@ class RunAuditor {
     TrueView view =
         look(*scene_at(*world_.simulated, set, score.stamp_ns), camera_, pose, frame.features);
     const QueryMoment moment(score.stamp_ns, score.true_world_from_camera);
-    const NearestBy by = set == QuerySet::kHeldOut ? NearestBy::kTime : NearestBy::kPlace;
-    Asked asked{.set = set,
-                .place = place,
-                .first = first,
-                .frame = std::move(frame),
-                .view = std::move(view),
-                .moment = moment,
-                .anchor = find_anchor(run_.estimate, run_.truth, moment, by, spec_.protocol)};
+    Asked asked{
+        .set = set,
+        .place = place,
+        .first = first,
+        .frame = std::move(frame),
+        .view = std::move(view),
+        .moment = moment,
+        .anchor = find_anchor(run_.estimate, run_.truth, moment, nearest_by(set), spec_.protocol)};
     compare_with_map(asked);
     return asked;
   }
@@ -110,7 +106,8 @@ class RunAuditor {
     for (const KeyframeId k : truth_.live) {
       const TrueView& there = *truth_.views[k.value];
       asked.co_visible[k.value] = co_visible_share(asked.view, there);
-      asked.distance[k.value] = distance_of(asked.view.world_from_camera, there.world_from_camera);
+      asked.distance[k.value] =
+          pose_distance(asked.view.world_from_camera, there.world_from_camera);
       if (asked.co_visible[k.value] > 0) asked.best_in_view.push_back(k);
     }
     asked.nearest = truth_.live;

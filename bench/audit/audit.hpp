@@ -5,7 +5,7 @@
 #include "bench/protocol/run_result.hpp"
 #include "bench/protocol/world/world.hpp"
 #include "bench/run/one/run_one.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh {

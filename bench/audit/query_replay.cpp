@@ -3,8 +3,8 @@
 
 #include <utility>
 
+#include "bench/protocol/streams.hpp"
 #include "bench/protocol/usable_frame.hpp"
-#include "bench/run/one/run_streams.hpp"
 #include "slam/pipeline/locate.hpp"
 
 namespace mh {

@@ -7,7 +7,7 @@
 #include "bench/protocol/metrics/query_summary.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/world/world.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/pipeline/prepared_frame.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "slam/relocalize/relocalize.hpp"

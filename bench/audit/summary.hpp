@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/audit/query_audit.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "bench/suite/suite.hpp"
 
 namespace mh {

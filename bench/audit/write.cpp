@@ -101,13 +101,9 @@ std::string csv_row(const AuditedRun& run, const SemanticConfig& point, QuerySet
   visit.put("system", run.spec.system.name);
   visit.put("labels", name(run.spec.labels));
   visit.put("trial", run.spec.trial);
-  visit.put("gamma", point.gamma);
-  visit.put("label_mass", point.label_mass);
-  visit.put("xi", point.xi);
-  visit.put("alpha", point.alpha);
-  visit.put("beta", point.beta);
-  visit.put("overlap", name_of(point.overlap, words(point.overlap)));
-  visit.put("void_is_a_label", point.void_is_a_label);
+  const auto put_setting = [&](const char* setting, const auto& value, const SettingRange&,
+                               const char*) { visit.put(setting, value); };
+  fields(point, put_setting);
   visit.put("query_set", name(set));
   fields(query, visit);
   return visit.take();

@@ -9,9 +9,11 @@
 #include "bench/report/graded_report.hpp"
 #include "bench/report/json.hpp"
 #include "bench/report/pages/verdict.hpp"
+#include "bench/report/sweep.hpp"
 #include "bench/report/table.hpp"
 #include "bench/report/write.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/run/plan_runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
 
@@ -59,18 +61,17 @@ void finish(const std::filesystem::path& out, const Suite& suite, const BenchRes
 
 std::vector<std::string> names_written(const std::filesystem::path& out, const Suite& suite) {
   if (std::filesystem::exists(out / "results.sqlite")) return {};
-  std::vector<std::string> names{"table.txt",  "times.txt",         "results.json",
-                                 "times.json", "reproduction.json", "views.png"};
-  for (const Environment& e : suite.environments)
-    names.push_back(fmt::format("views-{}.png", e.name));
-  if (suite.graded)
-    for (const auto& level : suite.levels)
-      for (const Labels& labels : suite.labels) names.push_back(graded_image_name(labels, level));
-  for (const RunSpec& spec : expand(suite)) {
-    names.push_back(spec.name);
-    // As in sweep_image_name(): the run's name without its trial.
-    names.push_back(fmt::format("sweep-{}.png", spec.name.substr(0, spec.name.rfind('-'))));
-  }
+  std::vector<std::string> names{"table.txt", "times.txt", "results.json", "times.json",
+                                 "reproduction.json"};
+  for (const Environment& e : suite.environments) names.push_back(views_name(suite, e));
+  for (const auto& level : suite.levels)
+    for (const Labels& labels : suite.labels) {
+      if (suite.graded) names.push_back(graded_image_name(labels, level));
+      if (parameter_points(suite).size() == 1) continue;
+      for (const SystemSpec& system : suite.systems)
+        names.push_back(sweep_image_name(system, labels, level));
+    }
+  for (const RunSpec& spec : expand(suite)) names.push_back(spec.name);
   return names;
 }
 

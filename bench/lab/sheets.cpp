@@ -206,12 +206,8 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
   const SE3& pose = path[kMiddle].world_from_camera;
   const RandomStream stream(1);
   const auto frame = [&](const SensorConfig& config, const Look& look) {
-    Camera seen_by = camera;
+    Camera seen_by = resized(camera, camera.width_px / look.pixel, camera.height_px / look.pixel);
     seen_by.baseline_m *= look.baseline;
-    seen_by.width_px /= look.pixel, seen_by.height_px /= look.pixel;
-    seen_by.fx_px /= look.pixel, seen_by.fy_px /= look.pixel;
-    seen_by.cx_px = (seen_by.cx_px + 0.5) / look.pixel - 0.5;
-    seen_by.cy_px = (seen_by.cy_px + 0.5) / look.pixel - 0.5;
     Trajectory way = path;
     if (look.eye_m > 0)
       for (TimedPose& p : way) {

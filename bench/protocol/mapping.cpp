@@ -5,8 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "bench/protocol/step_digest.hpp"
 #include "bench/protocol/streams.hpp"
+#include "bench/protocol/system_report.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/core/imu.hpp"
 
@@ -91,10 +91,6 @@ std::vector<std::size_t> offered_frames(std::size_t count, const ProtocolConfig&
   for (std::size_t i = first; i < count; ++i)
     if (!is_test_frame(i, config)) indices.push_back(i);
   return indices;
-}
-
-RandomStream mapping_noise(RandomStream stream, int restart) {
-  return stream.fork(RunDraw::kNoise).fork(static_cast<std::uint64_t>(restart));
 }
 
 MappingOutcome map_sequence(System& system, const Sequence& sequence, const ProtocolConfig& config,

@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// One track call of the mapping, in order.
+/// One track call during mapping.
 struct MappedFrame {
   std::size_t index = 0;  ///< in the sequence
   Stamp stamp_ns = 0;
@@ -121,8 +121,5 @@ struct Localization {
 Localization localize_sequence(const System& frozen, const Sequence& sequence,
                                const ProtocolConfig& config, RandomStream stream,
                                const MappingObserver& observe = {});
-
-/// Returns the noise stream of mapping frames after that many restarts; the same for every system.
-RandomStream mapping_noise(RandomStream stream, int restart);
 
 }  // namespace mh

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "bench/protocol/step_digest.hpp"
 #include "bench/protocol/streams.hpp"
+#include "bench/protocol/system_report.hpp"
 #include "slam/core/digest.hpp"
 
 namespace mh {

@@ -12,7 +12,7 @@
 #include "bench/protocol/metrics/trajectory_score.hpp"
 #include "bench/protocol/score.hpp"
 #include "bench/suite/place_facts.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/core/trajectory.hpp"
 #include "slam/occupancy/occupancy_grid.hpp"
 #include "slam/occupancy/voxel_map.hpp"

@@ -7,13 +7,6 @@
 #include <numbers>
 
 namespace mh {
-namespace {
-
-double apart_in_place(const SE3& a, const SE3& b) {
-  return (a.translation() - b.translation()).norm() + angle_between_rad(a, b);
-}
-
-}  // namespace
 
 SE3 local_truth(const Anchor& anchor, const SE3& true_world_from_camera) {
   const SE3 anchor_from_query = anchor.truth.inverse() * true_world_from_camera;
@@ -29,7 +22,7 @@ std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajector
     if (by == NearestBy::kTime && s >= best_separation) continue;
     const auto truth = interpolated_pose(mapping_truth, pose.stamp_ns, kMaxTruthGap_ns);
     if (!truth) continue;
-    if (by == NearestBy::kPlace) s = apart_in_place(*truth, true_query.world_from_camera);
+    if (by == NearestBy::kPlace) s = pose_distance(*truth, true_query.world_from_camera);
     if (s >= best_separation) continue;
     best_separation = s;
     best = Anchor{pose.world_from_camera, *truth, pose.stamp_ns};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/protocol/grade.hpp"
+#include "bench/protocol/metrics/query_summary.hpp"
 #include "bench/protocol/query.hpp"
 #include "slam/core/interpolate.hpp"
 #include "slam/core/trajectory.hpp"
@@ -14,8 +15,11 @@ namespace mh {
 /// Which mapped frame anchors a query's true pose in the map.
 enum class NearestBy {
   kTime,   ///< held-out frames: the mapped frame nearest in time
-  kPlace,  ///< another tour: the mapped frame nearest by true pose, 1 rad counted as 1 m
+  kPlace,  ///< another tour: the mapped frame nearest by true pose (pose_distance())
 };
+inline NearestBy nearest_by(QuerySet set) {
+  return set == QuerySet::kHeldOut ? NearestBy::kTime : NearestBy::kPlace;
+}
 
 /// What a query's true pose is measured from: a mapped frame or, with QueryTruth::kInterpolated,
 /// the estimate at the query's own time.

@@ -2,12 +2,33 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
+#include "bench/protocol/metrics/query_summary.hpp"
+#include "bench/suite/run_spec.hpp"
+#include "slam/core/random.hpp"
 
 namespace mh {
 
-/// Which part of a run draws: fork names of a run's random stream.
+// Every random stream of a run.
+
+/// Which part of a run draws: fork names of its streams below.
 struct RunDraw {
   enum Name : std::uint64_t { kNoise = 1, kSlam = 2, kBlank = 3 };
 };
+
+/// The stream that mapping draws from (bench/protocol/mapping.hpp).
+RandomStream mapping_stream(const RunSpec& spec);
+
+/// The noise of mapping frames after that many restarts; the same for every system.
+/// @param stream  mapping_stream()
+RandomStream mapping_noise(RandomStream stream, int restart);
+
+/// The noises that the mapping frames of a trial's runs have in common: at first, and after each of
+/// its first restarts. With more restarts, runs hardly have frames in common.
+std::vector<RandomStream> shared_noises(const RunSpec& spec);
+
+/// The stream that the queries of a set draw from (bench/protocol/query.hpp).
+RandomStream query_stream(const RunSpec& spec, QuerySet set);
 
 }  // namespace mh

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "bench/protocol/system_report.hpp"
 #include "slam/core/random.hpp"
@@ -70,5 +71,32 @@ class System {
 inline std::unique_ptr<RelocalizationSession> System::open_session_with(QueryMemo&) const {
   return open_session();
 }
+
+/// Forwards all calls to another system, so that they can be observed.
+class SystemView : public System {
+ public:
+  explicit SystemView(std::unique_ptr<System> inner) : inner_(std::move(inner)) {}
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
+    return inner_->track(frame, stream);
+  }
+  void rewind() override { inner_->rewind(); }
+  void reset() override { inner_->reset(); }
+  void freeze() override { inner_->freeze(); }
+  void finish() override { inner_->finish(); }
+  void use_point(std::size_t point) override { inner_->use_point(point); }
+  std::string save() const override { return inner_->save(); }
+  void restore(const std::string& saved) override { inner_->restore(saved); }
+  Trajectory trajectory() const override { return inner_->trajectory(); }
+  std::unique_ptr<RelocalizationSession> open_session() const override {
+    return inner_->open_session();
+  }
+  std::unique_ptr<QueryMemo> make_memo() const override { return inner_->make_memo(); }
+  std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
+    return inner_->open_session_with(memo);
+  }
+
+ private:
+  std::unique_ptr<System> inner_;
+};
 
 }  // namespace mh

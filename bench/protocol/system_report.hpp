@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "slam/core/loop_closure.hpp"
@@ -54,5 +55,8 @@ struct SystemReport {
   Candidates candidates;  ///< when relocalization was tried
   std::optional<MatchCounts> matches;
 };
+
+/// Digest of everything that a step reported on its matching and relocalization, except the pose.
+std::uint64_t digest_of_matching(const SystemReport& report);
 
 }  // namespace mh

@@ -13,7 +13,7 @@
 
 namespace mh {
 
-/// Tables of success over what queries are graded by; "" without graded queries.
+/// Tables of success by each graded quantity; "" without graded queries.
 std::string graded_table(const Suite& suite, std::span<const Row> rows);
 
 /// The same curves for programs; an empty list without graded queries.

@@ -124,24 +124,24 @@ Json suite_json(const Suite& suite) {
     levels.push_back(level == kRecordedLevel ? kRecordedLevel : from_suite(suite, level));
   for (const SystemSpec& system : suite.systems) systems.push_back(system_json(system));
   for (const Labels& mode : suite.labels) labels.push_back(name(mode));
-  return {
+  Json json = {
       {"name", suite.name},
       {"environments", environments},
       {"vocabulary", suite.vocabulary.empty() ? Json() : Json(from_suite(suite, suite.vocabulary))},
       {"levels", levels},
       {"systems", systems},
       {"labels", labels},
-      {"trials", suite.trials},
-      {"frames", suite.max_frames ? Json(*suite.max_frames) : Json()},
-      {"seed", suite.seed},
+      {"senses", json_of(suite.senses)},
+      {"frames", json_of(suite.max_frames)},
       {"slam", json_of(suite.slam)},
       {"parameters", sweep_json(suite.sweep)},
       {"graded", json_of(suite.graded)},
       {"episodes", episodes_json(suite)},
       {"compare", compare_json(suite)},
-      {"measure", name(suite.measure)},
-      {"non_inferiority_margin", json_of(suite.non_inferiority_margin)},
+      {"published_ate_m", suite.published_ate_m},
       {"protocol", json_of(suite.protocol)}};
+  json.update(json_of(suite));  // its single values
+  return json;
 }
 
 }  // namespace mh

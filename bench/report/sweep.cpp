@@ -172,9 +172,9 @@ std::string caption(const SweepResult& result, QuerySet set, const std::vector<s
 
 }  // namespace
 
-std::string sweep_image_name(const Suite& suite, const SweepResult& result) {
-  return fmt::format("sweep-{}-{}-{}.png", suite.systems[result.system].name, name(result.labels),
-                     level_name(suite.levels[result.level]));
+std::string sweep_image_name(const SystemSpec& system, const Labels& labels,
+                             const std::filesystem::path& level) {
+  return fmt::format("sweep-{}-{}-{}.png", system.name, name(labels), level_name(level));
 }
 
 PlotPage sweep_chart(const Suite& suite, std::span<const Row> rows, const SweepResult& result) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -17,6 +18,7 @@ namespace mh {
 PlotPage sweep_chart(const Suite& suite, std::span<const Row> rows, const SweepResult& result);
 
 /// "sweep-semantic-exact-pepper.png"
-std::string sweep_image_name(const Suite& suite, const SweepResult& result);
+std::string sweep_image_name(const SystemSpec& system, const Labels& labels,
+                             const std::filesystem::path& level);
 
 }  // namespace mh

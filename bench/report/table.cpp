@@ -16,7 +16,7 @@
 #include "bench/report/text_table.hpp"
 #include "bench/results/published.hpp"
 #include "bench/suite/parameters.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/io/counted.hpp"
 

@@ -113,7 +113,9 @@ void write_results(const fs::path& folder, const Suite& suite, std::span<const R
     draw_chart(folder / chart.file, chart.page);
   if (parameter_points(suite).size() > 1)
     for (const SweepResult& result : sweep_results(suite, rows))
-      draw_chart(folder / sweep_image_name(suite, result), sweep_chart(suite, rows, result));
+      draw_chart(folder / sweep_image_name(suite.systems[result.system], result.labels,
+                                           suite.levels[result.level]),
+                 sweep_chart(suite, rows, result));
   write_atomically(folder / "table.txt", results_table(suite, runs, failed, missing));
   write_atomically(folder / "results.json",
                    results_json(suite, runs, failed, missing).dump(2) + "\n");

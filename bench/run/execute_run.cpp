@@ -12,17 +12,20 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/protocol/streams.hpp"
 #include "bench/protocol/world/world.hpp"
 #include "bench/report/write.hpp"
 #include "bench/run/one/run_one.hpp"
-#include "bench/run/one/run_streams.hpp"
 #include "bench/store/store.hpp"
 #include "bench/suite/cache.hpp"
 #include "bench/suite/inputs.hpp"
+#include "bench/suite/json_fields.hpp"
 #include "bench/suite/run_key.hpp"
-#include "bench/suite/spec_json.hpp"
 #include "bench/systems/timed.hpp"
+#include "slam/config/slam.hpp"
+#include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
+#include "slam/io/json_text.hpp"
 
 namespace mh {
 namespace {
@@ -39,7 +42,7 @@ double load_per_processor() {
 /// @param wall_s wall time of this process so far, matching its cpu_s
 /// @param world_s, products_s  CPU time in addition to what `run` recorded
 RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
-                             const SingleRunOptions& order) {
+                             const RunOrder& order) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return {.wall_s = wall_s,
@@ -75,19 +78,33 @@ World build_as_planned(const RunSpec& spec, const std::string& key,
 
 }  // namespace
 
-void execute_run(const SingleRunOptions& order) {
+void write_order(const fs::path& file, const RunOrder& order) {
+  write_atomically(file, json_of(order).dump(1));
+}
+
+RunOrder read_order(const fs::path& file) {
+  try {
+    RunOrder order;
+    read_json(nlohmann::ordered_json::parse(read_file(file)), order);
+    return order;
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), json_fault(error)));
+  }
+}
+
+void execute_run(const RunOrder& order, const RunListener& listener) {
   const auto start = std::chrono::steady_clock::now();
-  const auto json = nlohmann::ordered_json::parse(read_file(order.description), nullptr, false);
-  const RunSpec spec = run_spec_from_json(json);
+  // To follow a frame, read from here: of all that came before, only this decides its bits.
+  const RunSpec& spec = order.spec;
   double world_s = 0, products_s = 0;
   const World world = build_as_planned(spec, order.key, [&] {
     const ProcessorTimer timer(world_s);
     const auto baked = [&](double share) {
-      order.status(fmt::format("light {:.0f} %", 100 * share));
+      listener.status(fmt::format("light {:.0f} %", 100 * share));
     };
-    SharedImages images = order.images;
+    SharedImages images{order.images, order.images_limit};
     if (order.share_noise) images.noises = shared_noises(spec);
-    return build_world(spec, order.jobs, Cache(order.cache), order.say, baked, images);
+    return build_world(spec, order.jobs, Cache(order.cache), listener.say, baked, images);
   });
   require_key(spec, world.inputs, order.key);
   const fs::path folder = order.folder / spec.name;
@@ -100,8 +117,8 @@ void execute_run(const SingleRunOptions& order) {
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
                                  .hidden = {order.folder, order.cache},
-                                 .progress = order.progress,
-                                 .status = order.status,
+                                 .progress = listener.progress,
+                                 .status = listener.status,
                                  .system = {},
                                  .tamper = {},
                                  .occupancy = !order.metrics_only,

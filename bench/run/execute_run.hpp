@@ -1,33 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
 
-#include "sim/world/shared_exposures.hpp"
+#include "bench/suite/run_spec.hpp"
 
 namespace mh {
 
-/// One run in this process, start to end, as a process of the pool does it: builds its world,
-/// executes it, writes its files into folder / its name, and puts it into the store.
-struct SingleRunOptions {
-  std::filesystem::path description;  ///< JSON of the RunSpec
-  std::filesystem::path store, folder;
-  std::filesystem::path cache;  ///< for baked light; empty: keeps nothing
-  std::filesystem::path maps;   ///< for finished maps; empty: keeps nothing
-  SharedImages images = {};     ///< of runs that see the same images
-  bool share_noise = false;     ///< also shares mapping frames with their noise there
+/// One run, as a command orders it from a process of its own (`modelhouse run-one FILE`, the file
+/// being this as JSON). Only the spec decides bits of the result.
+struct RunOrder {
+  RunSpec spec;
   std::string key;
+  std::filesystem::path store, folder;
+  std::filesystem::path cache;   ///< for baked light; empty: keeps nothing
+  std::filesystem::path maps;    ///< for finished maps; empty: keeps nothing
+  std::filesystem::path images;  ///< of runs that see the same images; empty: none are shared
+  std::uint64_t images_limit = 0;
+  bool share_noise = false;   ///< also shares mapping frames with their noise there
   std::string views;          ///< file name of the environment's contact sheet
-  std::string session_start;  ///< start of the command that issued this order
+  std::string session_start;  ///< start of the command
   int jobs = 1;               ///< parallel runs; threads for baking light
   bool metrics_only = false;  ///< as in BenchOptions
+  int parent = 0;             ///< process of the command: the run ends with it; 0: none
+};
+
+template <MaybeConst<RunOrder> O, class Visit>
+void fields(O& order, Visit& v) {
+  auto& [spec, key, store, folder, cache, maps, images, images_limit, share_noise, views,
+         session_start, jobs, metrics_only, parent] = order;
+  v("spec", spec);
+  v("key", key);
+  v("store", store);
+  v("folder", folder);
+  v("cache", cache);
+  v("maps", maps);
+  v("images", images);
+  v("images_limit", images_limit);
+  v("share_noise", share_noise);
+  v("views", views);
+  v("session_start", session_start);
+  v("jobs", jobs);
+  v("metrics_only", metrics_only);
+  v("parent", parent);
+}
+
+void write_order(const std::filesystem::path& file, const RunOrder& order);
+/// @throws InputError if the file is not what write_order() writes.
+RunOrder read_order(const std::filesystem::path& file);
+
+/// What hears of a run's progress.
+struct RunListener {
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};
   std::function<void(std::string_view)> status = [](std::string_view) {};  ///< as in RunTools
 };
-void execute_run(const SingleRunOptions& order);
+
+/// One run in this process, start to end: builds its world, executes it, writes its files into
+/// folder / its name, and puts it into the store.
+void execute_run(const RunOrder& order, const RunListener& listener);
 
 }  // namespace mh

@@ -10,8 +10,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bench/protocol/streams.hpp"
 #include "bench/protocol/world/variant.hpp"
-#include "bench/run/one/run_streams.hpp"
+#include "bench/report/write.hpp"
 #include "bench/run/shard.hpp"
 #include "bench/suite/check_labels.hpp"
 #include "bench/suite/find_program.hpp"
@@ -252,9 +253,16 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
   }
 }
 
-std::string views_name(const Suite& suite, const RunSpec& spec) {
+std::string views_name(const Suite& suite, const Environment& environment) {
   return suite.environments.size() == 1 ? std::string("views.png")
-                                        : fmt::format("views-{}.png", spec.environment.name);
+                                        : fmt::format("views-{}.png", environment.name);
+}
+
+bool is_reused(const Store& store, const Job& job, const std::filesystem::path& out,
+               const Reuse& reuse) {
+  const auto status = store.status(job.key);
+  return status && (reuse.failures || *status == RunStatus::kDone) &&
+         !(reuse.files && shows_another_run(out / job.spec.name, job.key));
 }
 
 }  // namespace mh

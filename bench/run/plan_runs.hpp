@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "bench/run/pool.hpp"
+#include "bench/store/store.hpp"
 #include "bench/suite/inputs.hpp"
 
 namespace mh {
@@ -31,6 +34,17 @@ void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                      const std::function<void(std::string_view)>& say);
 
 /// File name of the contact sheet of a run's environment.
-std::string views_name(const Suite& suite, const RunSpec& spec);
+std::string views_name(const Suite& suite, const Environment& environment);
+
+struct Reuse {
+  bool failures = true;  ///< a failed run counts as finished
+  bool files = true;     ///< the files of runs count, too
+};
+
+/// Whether the result of a run is reused instead of making it again: it is in the store, and the
+/// folder of its name holds the files of no other run. The one place where this is decided.
+/// @param out  holds the folders of runs
+bool is_reused(const Store& store, const Job& job, const std::filesystem::path& out,
+               const Reuse& reuse = {});
 
 }  // namespace mh

@@ -17,7 +17,7 @@
 #include "bench/run/forecast.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/file_errors.hpp"
@@ -149,17 +149,11 @@ class Pool {
     return false;
   }
 
-  std::filesystem::path work_file(const Job& job, const char* ending) const {
-    return options_.work_folder / (job.key + ending);
-  }
-
   void start(Waiting next) {
     const Job& job = next.job;
     begun_.insert(job.images);
-    const auto description = work_file(job, ".json");
-    write_atomically(description, to_json(job.spec).dump(1));
-    auto process = std::make_unique<RunProcess>(
-        options_.executable, options_.arguments(job, description), work_file(job, ".log"));
+    auto process = std::make_unique<RunProcess>(options_.executable, options_.arguments(job),
+                                                options_.work_folder / (job.key + ".log"));
     running_.push_back({std::move(next), std::move(process), ""});
   }
 

@@ -9,7 +9,7 @@
 
 #include "bench/run/signal_watch.hpp"
 #include "bench/store/store.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 
 namespace mh {
 
@@ -38,10 +38,9 @@ struct PoolOptions {
   double time_limit_s = 14400;
   double memory_limit_mb = 0;  ///< resident set size of one run; 0 = none
   std::filesystem::path executable;
-  std::filesystem::path work_folder;  ///< for logs and descriptions of runs; exists
+  std::filesystem::path work_folder;  ///< for logs of runs; exists
   /// The command line of a run's process. It finishes by putting the result into the store.
-  std::function<std::vector<std::string>(const Job&, const std::filesystem::path& description)>
-      arguments;
+  std::function<std::vector<std::string>(const Job&)> arguments;
   /// Called when no run will need the data of this name any more (Job::frames, then Job::images).
   std::function<void(const std::string& name)> forget = [](const std::string&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};

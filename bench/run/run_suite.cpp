@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "bench/report/write.hpp"
+#include "bench/run/execute_run.hpp"
 #include "bench/run/plan_runs.hpp"
-#include "bench/run/reuse.hpp"
 #include "bench/suite/cache.hpp"
 #include "bench/suite/inputs.hpp"
 #include "slam/io/counted.hpp"
@@ -39,7 +39,8 @@ void warn_missing_outputs(const Suite& suite, const BenchResults& results,
   for (const RunResult& run : results.runs) {
     runs += fs::exists(options.out / run.spec.name / "estimate.tum") ? 0 : 1;
     if (run.spec.environment.is_recorded()) continue;  // it has no images
-    if (const std::string name = views_name(suite, run.spec); !fs::exists(options.out / name))
+    if (const std::string name = views_name(suite, run.spec.environment);
+        !fs::exists(options.out / name))
       views.insert(name);
   }
   if (runs == 0 && views.empty()) return;
@@ -151,23 +152,24 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     pool.memory_limit_mb = options.memory_limit_mb;
     pool.executable = real_executable(options.executable);
     pool.work_folder = work.path();
-    pool.arguments = [&](const Job& job, const fs::path& description) {
-      std::vector<std::string> arguments{"run-one",         description.string(),
-                                         "--store",         store.file().string(),
-                                         "--key",           job.key,
-                                         "--folder",        options.out.string(),
-                                         "--cache",         cache.string(),
-                                         "--views",         views_name(suite, job.spec),
-                                         "--jobs",          std::to_string(options.jobs),
-                                         "--session-start", session_start,
-                                         "--parent",        std::to_string(getpid())};
-      if (options.cache) arguments.insert(arguments.end(), {"--maps", cache.string()});
+    pool.arguments = [&](const Job& job) {
+      RunOrder order{.spec = job.spec,
+                     .key = job.key,
+                     .store = store.file(),
+                     .folder = options.out,
+                     .cache = cache,
+                     .share_noise = !job.frames.empty(),
+                     .views = views_name(suite, job.spec.environment),
+                     .session_start = session_start,
+                     .jobs = options.jobs,
+                     .metrics_only = options.metrics_only,
+                     .parent = getpid()};
+      if (options.cache) order.maps = cache;
       if (!job.images.empty() && !job.spec.environment.is_recorded())
-        arguments.insert(arguments.end(), {"--images", (images / job.images).string(),
-                                           "--images-limit", std::to_string(images_limit)});
-      if (!job.frames.empty()) arguments.emplace_back("--share-noise");
-      if (options.metrics_only) arguments.emplace_back("--metrics-only");
-      return arguments;
+        order.images = images / job.images, order.images_limit = images_limit;
+      const fs::path file = work.path() / (job.key + ".json");
+      write_order(file, order);
+      return std::vector<std::string>{"run-one", file.string()};
     };
     pool.forget = [&](const std::string& name) {
       std::error_code no_matter;

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"

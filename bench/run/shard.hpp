@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 
 namespace mh {
 

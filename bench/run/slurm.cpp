@@ -12,7 +12,6 @@
 #include "bench/report/write.hpp"
 #include "bench/run/merge_parts.hpp"
 #include "bench/run/plan_runs.hpp"
-#include "bench/run/reuse.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/inputs.hpp"
@@ -102,7 +101,7 @@ void remove_outdated(const Suite& suite, const std::vector<Job>& jobs, const fs:
   for (const Job& job : jobs) {
     if (!shows_another_run(out / job.spec.name, job.key)) continue;
     remove_run(out / job.spec.name);
-    fs::remove(out / views_name(suite, job.spec));
+    fs::remove(out / views_name(suite, job.spec.environment));
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 
 namespace mh {
 

@@ -9,7 +9,7 @@
 #include "bench/store/guard.hpp"
 #include "bench/store/row_digest.hpp"
 #include "bench/store/store.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh {

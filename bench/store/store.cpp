@@ -17,7 +17,7 @@
 #include "bench/store/row_digest.hpp"
 #include "bench/suite/fingerprint.hpp"
 #include "bench/suite/json_fields.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/json_number.hpp"

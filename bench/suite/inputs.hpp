@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/suite/input_digest.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "scenes/scene.hpp"
 #include "slam/io/read_record.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/fingerprint.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/read_record.hpp"

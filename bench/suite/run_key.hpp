@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/suite/input_digest.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 
 namespace mh {
 

@@ -9,7 +9,7 @@
 
 #include "bench/suite/gate_config.hpp"
 #include "bench/suite/names.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "scenes/scannet/files.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/config/by_name.hpp"

@@ -6,33 +6,19 @@
 namespace mh {
 namespace {
 
-class TamperedSystem : public System {
+class TamperedSystem : public SystemView {
  public:
   TamperedSystem(std::unique_ptr<System> inner,
                  std::function<void(std::size_t, SystemReport&)> hand)
-      : inner_(std::move(inner)), hand_(std::move(hand)) {}
+      : SystemView(std::move(inner)), hand_(std::move(hand)) {}
 
   SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
-    SystemReport report = inner_->track(frame, stream);
+    SystemReport report = SystemView::track(frame, stream);
     hand_(calls_++, report);
     return report;
   }
-  void rewind() override { inner_->rewind(); }
-  void reset() override { inner_->reset(); }
-  void freeze() override { inner_->freeze(); }
-  void finish() override { inner_->finish(); }
-  void use_point(std::size_t point) override { inner_->use_point(point); }
-  Trajectory trajectory() const override { return inner_->trajectory(); }
-  std::unique_ptr<QueryMemo> make_memo() const override { return inner_->make_memo(); }
-  std::unique_ptr<RelocalizationSession> open_session() const override {
-    return inner_->open_session();
-  }
-  std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override {
-    return inner_->open_session_with(memo);
-  }
 
  private:
-  std::unique_ptr<System> inner_;
   std::function<void(std::size_t, SystemReport&)> hand_;
   std::size_t calls_ = 0;
 };

@@ -45,47 +45,45 @@ double processor_time_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-TimedSystem::TimedSystem(std::unique_ptr<System> inner) : inner_(std::move(inner)) {}
-
 SystemReport TimedSystem::track(const RgbdFrame& frame, RandomStream stream) {
   const auto start = Clock::now();
   const ProcessorTimer timer(processor_s_);
-  SystemReport report = inner_->track(frame, stream);
+  SystemReport report = SystemView::track(frame, stream);
   track_ms_.push_back(ms_since(start));
   return report;
 }
 
 void TimedSystem::rewind() {
   const ProcessorTimer timer(processor_s_);
-  inner_->rewind();
+  SystemView::rewind();
 }
 
 void TimedSystem::reset() {
   const ProcessorTimer timer(processor_s_);
-  inner_->reset();
+  SystemView::reset();
 }
 
 void TimedSystem::freeze() {
   const ProcessorTimer timer(processor_s_);
-  inner_->freeze();
+  SystemView::freeze();
 }
 
 void TimedSystem::use_point(std::size_t point) {
   const ProcessorTimer timer(processor_s_);
-  inner_->use_point(point);
+  SystemView::use_point(point);
 }
 
 Trajectory TimedSystem::trajectory() const {
   const ProcessorTimer timer(processor_s_);
-  return inner_->trajectory();
+  return SystemView::trajectory();
 }
 
 std::unique_ptr<RelocalizationSession> TimedSystem::open_session() const {
-  return timed(inner_->open_session());
+  return timed(SystemView::open_session());
 }
 
 std::unique_ptr<RelocalizationSession> TimedSystem::open_session_with(QueryMemo& memo) const {
-  return timed(inner_->open_session_with(memo));
+  return timed(SystemView::open_session_with(memo));
 }
 
 std::unique_ptr<RelocalizationSession> TimedSystem::timed(

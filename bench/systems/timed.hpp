@@ -27,29 +27,24 @@ class ProcessorTimer {
 };
 
 /// A system whose calls are timed; its replies pass through unchanged.
-class TimedSystem : public System {
+class TimedSystem : public SystemView {
  public:
-  explicit TimedSystem(std::unique_ptr<System> inner);
+  using SystemView::SystemView;
 
   SystemReport track(const RgbdFrame& frame, RandomStream stream) override;
   void rewind() override;
   void reset() override;
   void freeze() override;
-  void finish() override { inner_->finish(); }
   void use_point(std::size_t point) override;
-  std::string save() const override { return inner_->save(); }
-  void restore(const std::string& saved) override { inner_->restore(saved); }
   Trajectory trajectory() const override;
   std::unique_ptr<RelocalizationSession> open_session() const override;
   std::unique_ptr<RelocalizationSession> open_session_with(QueryMemo& memo) const override;
-  std::unique_ptr<QueryMemo> make_memo() const override { return inner_->make_memo(); }
 
   CallTimes times() const;
 
  private:
   std::unique_ptr<RelocalizationSession> timed(std::unique_ptr<RelocalizationSession> inner) const;
 
-  std::unique_ptr<System> inner_;
   mutable double processor_s_ = 0;
   std::vector<double> track_ms_;
   mutable std::mutex mutex_;  // sessions of one system may run concurrently

@@ -24,11 +24,11 @@ struct ReadMesh {
   const std::filesystem::path& file;
   const MeshFormat& format;
   const LabelRules& rules;
-  const std::map<std::string, MtlUvs>& uvs;  ///< by material; of those that are not named they stay
+  const std::map<std::string, MtlUvs>& uvs;  ///< by material; any other keeps its own
 };
 
 /// Collects the meshes of a file's nodes into one scene, with their objects and classes (see
-/// load_mesh). It does not convert materials: the scene has one for each of the file.
+/// load_mesh). It converts no materials: the scene must already have the file's.
 /// @throws InputError naming the file: positions that are not finite, too many objects or
 /// materials.
 void gather(const ReadMesh& mesh, Scene& scene);

@@ -262,12 +262,7 @@ double Shutter::gain(std::size_t i) const {
 std::vector<double> Shutter::exposure_gains() const {
   // A light meter needs no detail.
   constexpr int kWidth = 40, kHeight = 30;
-  Camera meter = camera_;
-  meter.width_px = kWidth, meter.height_px = kHeight;
-  meter.fx_px *= static_cast<double>(kWidth) / camera_.width_px;
-  meter.cx_px = (camera_.cx_px + 0.5) * kWidth / camera_.width_px - 0.5;
-  meter.fy_px *= static_cast<double>(kHeight) / camera_.height_px;
-  meter.cy_px = (camera_.cy_px + 0.5) * kHeight / camera_.height_px - 0.5;
+  const Camera meter = resized(camera_, kWidth, kHeight);
   const AutoExposureConfig& config = config_.auto_exposure;
   const double limit = std::log(config.max_gain);
   std::vector<double> gains;

@@ -22,8 +22,8 @@ struct SensedMoment {
   RenderedFrame exact;
 };
 
-/// Exposes, senses and labels the path's i-th moment: the only way from a scene to a frame. Noise
-/// is keyed by (noise, i, pixel).
+/// Exposes, senses and labels the path's i-th moment, as SimulatedSequence::frame() does in steps
+/// that it can share. Noise is keyed by (noise, i, pixel).
 SensedMoment sense_moment(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
                           std::size_t i, RandomStream noise);
 

@@ -81,4 +81,13 @@ std::vector<double> coefficients_of(const Distortion& d) {
   return {d.k1, d.k2, d.p1, d.p2, d.k3};
 }
 
+Camera resized(Camera camera, int width_px, int height_px) {
+  camera.fx_px *= static_cast<double>(width_px) / camera.width_px;
+  camera.cx_px = (camera.cx_px + 0.5) * width_px / camera.width_px - 0.5;
+  camera.fy_px *= static_cast<double>(height_px) / camera.height_px;
+  camera.cy_px = (camera.cy_px + 0.5) * height_px / camera.height_px - 0.5;
+  camera.width_px = width_px, camera.height_px = height_px;
+  return camera;
+}
+
 }  // namespace mh

@@ -80,4 +80,7 @@ struct Camera {
 /// principal point inside the image.
 void validate(const Camera& camera);
 
+/// The camera with an image of another size that shows the same.
+Camera resized(Camera camera, int width_px, int height_px);
+
 }  // namespace mh

@@ -63,4 +63,8 @@ double angle_between_rad(const SE3& a, const SE3& b) {
   return so3_log(a.rotation().transpose() * b.rotation()).norm();
 }
 
+double pose_distance(const SE3& a, const SE3& b) {
+  return (a.translation() - b.translation()).norm() + angle_between_rad(a, b);
+}
+
 }  // namespace mh

@@ -9,9 +9,9 @@
 
 #include "bench/audit/query_replay.hpp"
 #include "bench/audit/true_map.hpp"
+#include "bench/protocol/streams.hpp"
 #include "bench/protocol/usable_frame.hpp"
 #include "bench/report/packed.hpp"
-#include "bench/run/one/run_streams.hpp"
 #include "sim/sensors/lens.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"

@@ -7,7 +7,7 @@
 
 #include "bench/protocol/episodes/judge.hpp"
 #include "bench/protocol/query.hpp"
-#include "bench/protocol/step_digest.hpp"
+#include "bench/protocol/system_report.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh {

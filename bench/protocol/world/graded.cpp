@@ -116,10 +116,6 @@ std::unique_ptr<Source> source_of(const GradedSpec& spec, const GradedPlace& pla
   return std::make_unique<OnFloor>(place, stream.fork(kPlaces));
 }
 
-double apart(const SE3& a, const SE3& b) {
-  return (a.translation() - b.translation()).norm() + angle_between_rad(a, b);
-}
-
 /// The moment of a scan with what is before and after it, played at a multiple of its speed.
 GradedQuery clip_of(const Candidate& candidate, const QueryGrade& grade, double speed) {
   GradedQuery query{.clip = {}, .at = 0, .grade = grade};
@@ -186,7 +182,8 @@ GradedQueries draw_graded(const GradedSpec& spec, const GradedPlace& place) {
     if (distance == bins(spec.distance_m) || angle == angles) continue;
     Cell& cell = cells[distance * angles + angle];
     if (cell.queries.size() == spec.per_bin) continue;
-    if (std::ranges::any_of(taken, [&](const SE3& other) { return apart(other, pose) < kApart; }))
+    if (std::ranges::any_of(taken,
+                            [&](const SE3& other) { return pose_distance(other, pose) < kApart; }))
       continue;
     grade.shown = shown.share(*place.queried_renderer, pose);
     if (*grade.shown < spec.least_shown) {

@@ -6,7 +6,7 @@
 
 #include "bench/protocol/episodes/starts.hpp"
 #include "bench/suite/input_digest.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "sim/sensors/config.hpp"
 #include "sim/world/simulation.hpp"
 

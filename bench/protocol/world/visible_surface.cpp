@@ -30,31 +30,20 @@ bool shows(const Camera& camera, const Grid2d<float>& depth_m, const Eigen::Vect
   return false;
 }
 
-}  // namespace
-
-Camera smaller(const Camera& camera, int width_px) {
-  const double scale = static_cast<double>(width_px) / camera.width_px;
-  Camera small = camera;
-  small.width_px = width_px;
-  small.height_px = std::max(1, static_cast<int>(std::lround(scale * camera.height_px)));
-  const double scale_y = static_cast<double>(small.height_px) / camera.height_px;
-  small.fx_px *= scale;
-  small.fy_px *= scale_y;
-  small.cx_px = (camera.cx_px + 0.5) * scale - 0.5;
-  small.cy_px = (camera.cy_px + 0.5) * scale_y - 0.5;
-  return small;
+Camera of_width(const Camera& camera, int width_px) {
+  const double height_px = static_cast<double>(width_px) / camera.width_px * camera.height_px;
+  return resized(camera, width_px, std::max(1, static_cast<int>(std::lround(height_px))));
 }
+
+}  // namespace
 
 VisibleSurface::VisibleSurface(std::shared_ptr<const Renderer> renderer, const Camera& camera,
                                const Trajectory& path, double apart_m)
-    : camera_(smaller(camera, kWidth)), sparse_(smaller(camera, kSparseWidth)) {
+    : camera_(of_width(camera, kWidth)), sparse_(of_width(camera, kSparseWidth)) {
   const SE3* last = nullptr;
   for (const TimedPose& pose : path) {
     const SE3& here = pose.world_from_camera;
-    if (last != nullptr &&
-        (here.translation() - last->translation()).norm() + angle_between_rad(here, *last) <
-            apart_m)
-      continue;
+    if (last != nullptr && pose_distance(here, *last) < apart_m) continue;
     last = &here;
     views_.push_back({here.inverse(), renderer->render(camera_, here).depth_m});
   }

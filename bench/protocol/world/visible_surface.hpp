@@ -10,14 +10,10 @@
 
 namespace mh {
 
-/// The camera with the same view in an image of another width; the height follows.
-Camera smaller(const Camera& camera, int width_px);
-
 /// The part of a scene's mesh that a path's views show.
 class VisibleSurface {
  public:
-  /// @param apart_m  minimum distance between the path's views that are used, 1 rad equivalent to 1
-  /// m
+  /// @param apart_m  minimum pose_distance() between the path's views that are used
   VisibleSurface(std::shared_ptr<const Renderer> renderer, const Camera& camera,
                  const Trajectory& path, double apart_m = 0.1);
 

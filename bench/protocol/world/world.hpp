@@ -12,7 +12,7 @@
 #include "bench/protocol/world/variant.hpp"
 #include "bench/suite/cache.hpp"
 #include "bench/suite/place_facts.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "robots/model/robot.hpp"
 #include "scenes/scene.hpp"
 #include "sim/motion/motion.hpp"

@@ -71,7 +71,7 @@ std::string lines_and_dots(const Plot& plot, std::size_t panel) {
 std::string ticks(const ShadedField::Ticks& ticks) {
   std::string list;
   for (const auto& [at, text] : ticks) {
-    std::string format;  // gnuplot takes a tick's text for one, of its place
+    std::string format;  // gnuplot reads tick text as a format: escape %
     for (const char c : text) format += c == '%' ? std::string("%%") : std::string(1, c);
     list += fmt::format("{}{} {}", list.empty() ? "" : ", ", gnuplot_text(format), at);
   }

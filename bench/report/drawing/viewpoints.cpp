@@ -161,12 +161,8 @@ std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const 
   std::vector<SE3> candidates = standing_views(*level);
   if (candidates.empty()) candidates = walking_around(*level);
   constexpr double kSmall = 0.2;
-  Camera small = camera;
-  small.width_px = static_cast<int>(kSmall * camera.width_px);
-  small.height_px = static_cast<int>(kSmall * camera.height_px);
-  small.fx_px *= kSmall, small.fy_px *= kSmall;
-  small.cx_px = kSmall * (camera.cx_px + 0.5) - 0.5;
-  small.cy_px = kSmall * (camera.cy_px + 0.5) - 0.5;
+  const Camera small = resized(camera, static_cast<int>(kSmall * camera.width_px),
+                               static_cast<int>(kSmall * camera.height_px));
   std::vector<Seen> views;
   for (const SE3& pose : candidates)
     views.push_back(look(scene, renderer, small, level.world_from_level() * pose));

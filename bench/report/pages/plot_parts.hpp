@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/protocol/placed.hpp"
 #include "bench/report/pages/plot.hpp"
 #include "bench/report/pages/tables.hpp"
 

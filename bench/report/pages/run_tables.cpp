@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/placed.hpp"
 #include "bench/report/pages/page_table.hpp"
 #include "bench/report/pages/tables.hpp"
 #include "bench/report/wording.hpp"
@@ -125,6 +124,15 @@ const char* outcome(const QueryScore& q) {
 }
 
 }  // namespace
+
+std::optional<SE3> answer_in_truth(const RunResult& run, QuerySet set, const QueryScore& query) {
+  if (!query.answer.world_from_camera) return std::nullopt;
+  const auto anchor =
+      find_anchor(run.estimate, run.truth, {query.stamp_ns, query.true_world_from_camera},
+                  nearest_by(set), run.spec.protocol);
+  if (!anchor) return std::nullopt;
+  return anchor->truth * anchor->estimate.inverse() * *query.answer.world_from_camera;
+}
 
 Json runs_json(const PagesSource& source) {
   const bool sweeps = std::ranges::any_of(

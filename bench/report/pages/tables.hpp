@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include <nlohmann/json.hpp>
@@ -48,6 +49,11 @@ nlohmann::ordered_json candidates_json(const Suite& suite, std::span<const Categ
 
 /// A row per run: what it is, whether it failed, every metric at its first point, its cost.
 nlohmann::ordered_json runs_json(const PagesSource& source);
+
+/// Where an answer is in the frame of the truth: relative to the nearest mapped frame, as it was
+/// scored (docs/protocol.md), so that its distance from the query's true pose is its error. nullopt
+/// if the query was not answered, or nothing was mapped that the answer could be compared with.
+std::optional<SE3> answer_in_truth(const RunResult& run, QuerySet set, const QueryScore& query);
 
 /// A row per query of every run and point, with its cause where an audit states one.
 /// @param only  this run alone; null: all

@@ -16,7 +16,7 @@
 #include "bench/report/suite_json.hpp"
 #include "bench/report/table.hpp"
 #include "bench/suite/parameters.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "bench/suite/shipped.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"

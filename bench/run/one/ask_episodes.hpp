@@ -10,7 +10,7 @@
 #include "bench/protocol/episodes/episode.hpp"
 #include "bench/protocol/world/world.hpp"
 #include "bench/suite/cache.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 
 namespace mh {
 

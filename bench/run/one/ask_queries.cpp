@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "bench/protocol/placed.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/score.hpp"
+#include "bench/protocol/streams.hpp"
 #include "bench/protocol/usable_frame.hpp"
-#include "bench/run/one/run_streams.hpp"
 
 namespace mh {
 namespace {

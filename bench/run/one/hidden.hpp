@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/protocol/world/world.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 
 namespace mh {
 

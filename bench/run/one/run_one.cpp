@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/protocol/streams.hpp"
 #include "bench/run/one/ask_queries.hpp"
 #include "bench/run/one/hidden.hpp"
-#include "bench/run/one/run_streams.hpp"
 #include "bench/run/one/watched_frames.hpp"
 #include "bench/suite/find_program.hpp"
 #include "bench/suite/run_key.hpp"

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/lab/sensor_factors.hpp"
+
 namespace mh {
 namespace {
 
@@ -31,6 +33,22 @@ TEST(SensorSheets, BeginWithWhatTheRendererDrawsOfAViewThatLooksDown) {
   const cv::Point first_tile(224, 240), first_frame(84, 135);  // their middles
   EXPECT_EQ(sheets.color.at<cv::Vec3b>(first_tile), drawn);
   EXPECT_EQ(sheets.frames.at<cv::Vec3b>(first_frame), drawn);
+}
+
+TEST(SensorFactors, OfDepthSwitchOnWhatTheyName) {
+  const std::vector<Factor> factors = depth_factors();
+  const auto of = [&](std::size_t factor) {
+    SensorConfig config = everything_off();
+    factors.at(factor).settings[1](config);
+    return config.depth_noise;
+  };
+  EXPECT_TRUE(of(0).axial && !of(0).lateral);
+  EXPECT_TRUE(of(1).quantization && !of(1).axial);
+  EXPECT_TRUE(of(2).lateral && !of(2).axial);
+  EXPECT_TRUE(of(3).projector_shadow && !of(3).lateral);
+  EXPECT_TRUE(of(4).grazing_holes && !of(4).lateral);
+  EXPECT_EQ(of(5).min_range_m, 0.4);
+  EXPECT_TRUE(of(7).axial && of(7).lateral && !of(7).projector_shadow);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/protocol/run_result.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/io/files.hpp"
 
 namespace mh {

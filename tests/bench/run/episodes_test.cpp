@@ -12,7 +12,7 @@
 #include "bench/run/plan_runs.hpp"
 #include "bench/suite/json_fields.hpp"
 #include "bench/suite/run_key.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"

@@ -467,7 +467,9 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
   EXPECT_NE(page.caption.find("most correct answers at gamma 1, alpha 0.7: 100.0 %"),
             std::string::npos)
       << page.caption;
-  EXPECT_EQ(sweep_image_name(place.suite, results[0]), "sweep-semantic-exact-fake.png");
+  EXPECT_EQ(sweep_image_name(place.suite.systems[results[0].system], results[0].labels,
+                             place.suite.levels[results[0].level]),
+            "sweep-semantic-exact-fake.png");
 }
 
 TEST(Sweep, OfMoreThanTwoSettingsEachPairHasAPanel) {

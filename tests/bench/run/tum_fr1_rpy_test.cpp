@@ -10,7 +10,7 @@
 
 #include "bench/results/summary.hpp"
 #include "bench/run/one/run_one.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/core/digest.hpp"
 #include "source_dir.hpp"
 

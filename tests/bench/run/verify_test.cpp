@@ -8,17 +8,15 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <map>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "bench/protocol/step_digest.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/protocol/system_report.hpp"
+#include "bench/run/execute_run.hpp"
 #include "bench/suite/suite.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"
@@ -222,16 +220,15 @@ constexpr const char* kPlay = "MH_TEST_PLAY";  // what a played run does, by the
 /// Plays the part of `modelhouse run-one`: puts a result that was made up into the store. "alike":
 /// always the same; "apart": the pose of frame 4 differs where several runs go side by side;
 /// "fail": none.
-int play_a_run(const std::vector<std::string>& arguments) {
+int play_a_run(const std::filesystem::path& file) {
   const std::string play = std::getenv(kPlay);
   if (play == "fail") return 1;
-  std::map<std::string, std::string> option;
-  for (std::size_t i = 3; i + 1 < arguments.size(); i += 2) option[arguments[i]] = arguments[i + 1];
+  const RunOrder order = read_order(file);
   RunResult run = some_run();
-  run.spec = run_spec_from_json(nlohmann::ordered_json::parse(read_file(arguments[2])));
+  run.spec = order.spec;
   run.points.resize(1);
-  if (play == "apart" && option.at("--jobs") != "1") run.mapping.calls[1].pose_digest = 9;
-  Store(option.at("--store")).put(option.at("--key"), run, {});
+  if (play == "apart" && order.jobs != 1) run.mapping.calls[1].pose_digest = 9;
+  Store(order.store).put(order.key, run, {});
   return 0;
 }
 
@@ -301,8 +298,7 @@ TEST(Verify, ARunThatFailedIsNoVerification) {
 
 // The bench starts its own executable for each run; here that is this one.
 int main(int argc, char** argv) {
-  if (argc > 2 && std::string_view(argv[1]) == "run-one")
-    return mh::play_a_run({argv, argv + argc});
+  if (argc > 2 && std::string_view(argv[1]) == "run-one") return mh::play_a_run(argv[2]);
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

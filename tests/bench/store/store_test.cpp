@@ -25,7 +25,7 @@
 #include "bench/run/run_process.hpp"
 #include "bench/run/run_suite.hpp"
 #include "bench/suite/json_fields.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/files.hpp"
 
@@ -166,7 +166,7 @@ class StoreFile : public testing::Test {
     PoolOptions options;
     options.executable = program;
     options.work_folder = folder_;
-    options.arguments = [](const Job&, const fs::path&) { return std::vector<std::string>(); };
+    options.arguments = [](const Job&) { return std::vector<std::string>(); };
     return options;
   }
   std::map<std::string, std::string> files() const {
@@ -430,7 +430,7 @@ TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   store.put("done", some_run("a"), {});
   store.put_failure("failed", some_run("b").spec, "x", {});
   PoolOptions options = pool_of("[ \"$1\" = well ]\n");
-  options.arguments = [&](const Job& job, const fs::path&) {
+  options.arguments = [&](const Job& job) {
     if (job.key == "well") store.put(job.key, some_run("c"), {});
     return std::vector<std::string>{job.key};
   };
@@ -463,7 +463,7 @@ TEST_F(StoreFile, RunsThatSeeTheSameImagesFollowOneAnother) {
   PoolOptions options;
   options.executable = "/bin/false";
   options.work_folder = folder_;
-  options.arguments = [&](const Job& job, const fs::path&) {
+  options.arguments = [&](const Job& job) {
     events.push_back(job.key);
     return std::vector<std::string>();
   };
@@ -486,7 +486,7 @@ TEST_F(StoreFile, TwoAtATimeAreAtImagesOfTheirOwnAsLongAsThereAreTwo) {
   std::vector<std::string> started;
   PoolOptions options = pool_of("while [ ! -e \"$1\" ]; do sleep 0.02; done\nexit 1\n");
   options.jobs = 2;
-  options.arguments = [&](const Job& job, const fs::path&) {
+  options.arguments = [&](const Job& job) {
     started.push_back(job.key);
     const fs::path gate = folder_ / "gate";
     if (job.key == "b2") std::ofstream(gate) << "open";

@@ -10,7 +10,7 @@
 
 #include "bench/results/gate/baseline.hpp"
 #include "bench/results/gate/from_runs.hpp"
-#include "bench/suite/runs.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/core/random.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"

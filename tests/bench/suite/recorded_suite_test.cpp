@@ -8,8 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/suite/runs.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/io/error.hpp"
 

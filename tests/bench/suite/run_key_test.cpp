@@ -17,7 +17,7 @@
 
 #include "bench/suite/inputs.hpp"
 #include "bench/suite/json_fields.hpp"
-#include "bench/suite/spec_json.hpp"
+#include "bench/suite/run_spec.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"

@@ -10,6 +10,7 @@
 #include "bench/protocol/metrics/trajectory_score.hpp"
 #include "bench/protocol/query.hpp"
 #include "bench/protocol/score.hpp"
+#include "bench/protocol/streams.hpp"
 #include "bench/systems/conversation.hpp"
 #include "bench/systems/recorded_run.hpp"
 #include "scenes/recordings/frame_files.hpp"

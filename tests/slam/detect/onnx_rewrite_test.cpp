@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "slam/detect/protobuf.hpp"
 #include "tests/slam/detect/made_networks.hpp"
 
 namespace mh {
@@ -188,6 +189,26 @@ TEST(RewriteOnnx, SurvivesDamage) {
     if (rewrite_onnx(damaged, {32, 32})) ++read;
   }
   EXPECT_GT(read, 100);
+}
+
+// Fields of 8 and of 4 bytes, as newer exporters may add them, are passed over whole.
+TEST(Protobuf, PassesOverFieldsOfFixedSize) {
+  const std::string eight(
+      "\x09"
+      "\x02\x00\x00\x00\x00\x00\x00\x00",
+      9),
+      four(
+          "\x15"
+          "\x01\x02\x03\x04",
+          5);
+  const std::string message = eight + proto_number(3, 7) + four + proto_number(3, 9);
+  ProtoMessage walk(message);
+  const auto first = walk.next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->tag, 1u);
+  EXPECT_EQ(first->bytes, std::string_view(eight).substr(1));
+  EXPECT_EQ(proto_varints(message, 3), (std::vector<std::uint64_t>{7, 9}));
+  EXPECT_EQ(proto_bytes(message, 2), std::string_view(four).substr(1));
 }
 
 }  // namespace

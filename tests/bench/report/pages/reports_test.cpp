@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/protocol/placed.hpp"
 #include "bench/report/pages/page_table.hpp"
 #include "bench/report/pages/place_images.hpp"
 #include "bench/report/pages/plot.hpp"
+#include "bench/report/pages/tables.hpp"
 #include "bench/report/pages/verdict.hpp"
 #include "bench/report/pages/write.hpp"
 #include "scenes/recordings/sequence_writer.hpp"

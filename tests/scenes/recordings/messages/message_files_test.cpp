@@ -303,6 +303,19 @@ TEST(Bag, OfWhichSomethingFollowsOrARecordIsOfNoKindSaysSo) {
       << note_of(read_all(unknown));
 }
 
+// Readers of others look for the keys, whichever of the two places they read.
+TEST(Bag, NamesATopicInItsConnectionsHeaderAndData) {
+  const TemporaryFolder work(fs::temp_directory_path());
+  const auto out = write_bag(work.path() / "out/file", ChunkCompression::kNone);
+  out->write(out->add_topic(topic_spec<ros::Bool>("/flag", out->wire())), 1, "x");
+  out->finish();
+  const std::string bag = read_file(work.path() / "out/file");
+  const std::string field{"\x0b\0\0\0topic=/flag", 15};
+  int found = 0;
+  for (auto at = bag.find(field); at != std::string::npos; at = bag.find(field, at + 1)) ++found;
+  EXPECT_EQ(found, 4) << "in the chunk and in the index, each with header and data";
+}
+
 TEST(Bag, OfBz2ByRosIsRead) {
   const Read read =
       read_all(read_file(std::string(MH_SOURCE_DIR) + "/tests/fuzz/seeds/bag/bz2.bag"));

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/one/run_streams.hpp"
-
-#include "bench/protocol/mapping.hpp"
+#include "bench/protocol/streams.hpp"
 
 namespace mh {
 namespace {
@@ -18,6 +16,10 @@ enum StreamName : std::uint64_t {
 
 RandomStream mapping_stream(const RunSpec& spec) {
   return RandomStream(spec.seed).fork(spec.episodes ? kTourOfEpisodes : kMapping);
+}
+
+RandomStream mapping_noise(RandomStream stream, int restart) {
+  return stream.fork(RunDraw::kNoise).fork(static_cast<std::uint64_t>(restart));
 }
 
 std::vector<RandomStream> shared_noises(const RunSpec& spec) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "bench/suite/suite.hpp"
 #include "slam/config/semantics.hpp"
 
@@ -56,6 +58,13 @@ void fields(S& spec, Visit& v) {
   v("map_labels", map_labels);
   v("max_frames", max_frames);
 }
+
+/// Everything about a run, with paths unchanged: the input of a separate process. Its keys are
+/// those of the lists of fields (bench/suite/json_fields.hpp).
+nlohmann::ordered_json to_json(const RunSpec& spec);
+
+/// The inverse. @throws InputError if the JSON was not created by to_json.
+RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 
 /// The labels that the frames of a run are made with. A system without labels is shown none of
 /// them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/protocol/step_digest.hpp"
+#include "bench/protocol/system_report.hpp"
 
 #include "slam/core/digest.hpp"
 
