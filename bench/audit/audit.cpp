@@ -88,14 +88,14 @@ class RunAuditor {
     TrueView view =
         look(*scene_at(*world_.simulated, set, score.stamp_ns), camera_, pose, frame.features);
     const QueryMoment moment(score.stamp_ns, score.true_world_from_camera);
-    Asked asked{
-        .set = set,
-        .place = place,
-        .first = first,
-        .frame = std::move(frame),
-        .view = std::move(view),
-        .moment = moment,
-        .anchor = find_anchor(run_.estimate, run_.truth, moment, nearest_by(set), spec_.protocol)};
+    Asked asked{.set = set,
+                .place = place,
+                .first = first,
+                .frame = std::move(frame),
+                .view = std::move(view),
+                .moment = moment,
+                .anchor = find_anchor(mapped_beside(run_, score.answer), run_.truth, moment,
+                                      nearest_by(set), spec_.protocol)};
     compare_with_map(asked);
     return asked;
   }

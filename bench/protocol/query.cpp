@@ -69,6 +69,7 @@ QueryAnswer query(const System& frozen, std::size_t index, const Sequence& seque
     answer.pose_digest = chained(answer.pose_digest, digest(report.world_from_camera));
     if (report.status != TrackStatus::kLost && report.world_from_camera) {
       answer.world_from_camera = report.world_from_camera;
+      answer.map = report.map;
       break;
     }
   }

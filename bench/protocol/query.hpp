@@ -16,6 +16,7 @@ struct QueryAnswer {
   int blank_frames = 0;                  ///< shown until the system was lost
   int attempts = 0;                      ///< times that the test frame was shown
   std::optional<SE3> world_from_camera;  ///< the first returned pose
+  std::uint32_t map = 0;                 ///< SystemReport::map
   /// The furthest stage that an attempt reached, if the system reports it; kVerified if a pose was
   /// returned.
   std::optional<RelocalizationStage> stage;
@@ -28,12 +29,13 @@ struct QueryAnswer {
 
 template <MaybeConst<QueryAnswer> A, class Visit>
 void fields(A& answer, Visit& v) {
-  auto& [index, blank_frames, attempts, world_from_camera, stage, candidates, matches, image_digest,
-         matching_digest, pose_digest] = answer;
+  auto& [index, blank_frames, attempts, world_from_camera, map, stage, candidates, matches,
+         image_digest, matching_digest, pose_digest] = answer;
   v("frame", index);
   v("blank_frames", blank_frames);
   v("attempts", attempts);
   v("estimate", world_from_camera);
+  v("map", map);
   v("stage", stage);
   v("candidates", candidates);
   v("matchers", matches);

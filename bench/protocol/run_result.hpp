@@ -40,7 +40,8 @@ struct RunResult {
   PlaceFacts place;
   Trajectory truth;  ///< of every frame of the mapping tour
   MappingOutcome mapping;
-  Trajectory estimate;
+  Trajectory estimate;        ///< in the largest of the system's maps: the one that is scored
+  Trajectory elsewhere = {};  ///< poses in its other maps
   TrajectoryScore trajectory;
   EstimateAlignment alignment;
   std::vector<PointResult> points;          ///< as in spec.points
@@ -55,6 +56,15 @@ struct RunResult {
   double wall_s = 0;
   Circumstances circumstances;
 };
+
+/// Sorts a system's trajectory by its maps.
+void set_estimate(RunResult& run, const Trajectory& all);
+
+/// The same, and scores it.
+void take_trajectory(RunResult& run, const Trajectory& all);
+
+/// The mapped frames of the map that an answer is in.
+Trajectory mapped_beside(const RunResult& run, const QueryAnswer& answer);
 
 /// A run that failed.
 struct FailedRun {

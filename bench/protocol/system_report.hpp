@@ -47,6 +47,7 @@ void fields(C& candidates, Visit& v) {
 struct SystemReport {
   TrackStatus status = TrackStatus::kLost;
   std::optional<SE3> world_from_camera;  ///< in the system's own world
+  std::uint32_t map = 0;                 ///< whose world it is, of a system that keeps several
   std::optional<int> keypoints, inliers;
   bool keyframe_added = false;
   bool map_reset = false;  ///< it discarded its map and started a new one: earlier poses are void

@@ -15,15 +15,17 @@ struct FrameRow {
   Stamp stamp_ns = 0;
   std::optional<SE3> truth;
   std::optional<SE3> estimate;
+  std::uint32_t map = 0;  ///< that the estimate is in
 };
 
 template <MaybeConst<FrameRow> F, class Visit>
 void fields(F& row, Visit& v) {
-  auto& [frame, stamp_ns, truth, estimate] = row;
+  auto& [frame, stamp_ns, truth, estimate, map] = row;
   v("frame", frame);
   v("stamp_ns", stamp_ns);
   v("truth", truth);
   v("estimate", estimate);
+  v("map", map);
 }
 
 }  // namespace mh

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -81,17 +82,18 @@ void put_calls(SQLite::Database& db, const std::string& key, const RunResult& ru
 
 void put_frames(SQLite::Database& db, const std::string& key, const RunResult& run) {
   RowWriter rows(db, "frames");
-  auto truth = run.truth.begin(), estimate = run.estimate.begin();
-  const auto take = [](auto& next, auto end, Stamp stamp_ns) {
-    return next != end && next->stamp_ns == stamp_ns ? std::optional(next++->world_from_camera)
-                                                     : std::nullopt;
-  };
-  for (FrameRow row; truth != run.truth.end() || estimate != run.estimate.end(); ++row.frame) {
-    const bool estimate_first = truth == run.truth.end() || (estimate != run.estimate.end() &&
-                                                             estimate->stamp_ns < truth->stamp_ns);
-    row.stamp_ns = estimate_first ? estimate->stamp_ns : truth->stamp_ns;
-    row.truth = take(truth, run.truth.end(), row.stamp_ns);
-    row.estimate = take(estimate, run.estimate.end(), row.stamp_ns);
+  std::map<Stamp, FrameRow> row_of;
+  for (const TimedPose& pose : run.truth) row_of[pose.stamp_ns].truth = pose.world_from_camera;
+  for (const Trajectory* poses : {&run.estimate, &run.elsewhere})
+    for (const TimedPose& pose : *poses) {
+      FrameRow& row = row_of[pose.stamp_ns];
+      row.estimate = pose.world_from_camera;
+      row.map = pose.map;
+    }
+  std::int64_t frame = 0;
+  for (auto& [stamp_ns, row] : row_of) {
+    row.stamp_ns = stamp_ns;
+    row.frame = frame++;
     rows << key << row;
     rows.end_row();
   }
@@ -127,13 +129,15 @@ void load_calls(SQLite::Database& db, const std::string& key, RunResult& run) {
 void load_frames(SQLite::Database& db, const std::string& key, RunResult& run) {
   SQLite::Statement s(db, "SELECT * FROM frames WHERE key = ? ORDER BY frame");
   s.bind(1, key);
+  Trajectory all;
   while (s.executeStep()) {
     RowReader reader(s, 1);  // behind key
     FrameRow row;
     fields(row, reader);
     if (row.truth) run.truth.push_back({row.stamp_ns, *row.truth});
-    if (row.estimate) run.estimate.push_back({row.stamp_ns, *row.estimate});
+    if (row.estimate) all.push_back({row.stamp_ns, *row.estimate, row.map});
   }
+  set_estimate(run, all);
 }
 
 void load_queries(SQLite::Database& db, const std::string& key, RunResult& run) {

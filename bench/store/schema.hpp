@@ -6,7 +6,7 @@
 namespace mh {
 
 /// `PRAGMA user_version` of a results file; a file with another one is refused.
-inline constexpr int kSchemaVersion = 14;
+inline constexpr int kSchemaVersion = 15;
 
 /// The tables of a results file, as CREATE statements; docs/store.md explains each column. `runs`,
 /// `points`, `metrics`, `calls`, `frames`, `queries` and `episodes` are a function of suite, seeds

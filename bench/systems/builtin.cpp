@@ -36,6 +36,7 @@ Candidates as_candidates(const CandidateCounts& c, double gamma) {
 SystemReport as_report(const StepReport& step, const SlamState& state) {
   SystemReport report{.status = step.status,
                       .world_from_camera = step.world_from_camera,
+                      .map = step.origin.valid() ? step.origin.value : 0,
                       .keypoints = step.keypoints,
                       .inliers = step.inliers,
                       .keyframe_added = step.keyframe_added,

@@ -15,6 +15,7 @@
 #include "bench/systems/scratch_folder.hpp"
 #include "scenes/recordings/frame_files.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/io/counted.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/json_text.hpp"
@@ -139,11 +140,12 @@ class Conversation {
           {format_stamp(reading.stamp_ns), w.x(), w.y(), w.z(), a.x(), a.y(), a.z()});
     }
     fields["seed"] = told_seed(stream);
-    const Json reply =
-        ask(what, fields,
-            {"pose", "keypoints", "inliers", "keyframe", "map_reset", "stage", "candidates"});
+    const Json reply = ask(
+        what, fields,
+        {"pose", "map", "keypoints", "inliers", "keyframe", "map_reset", "stage", "candidates"});
     SystemReport report;
     report.world_from_camera = pose(reply);
+    report.map = static_cast<std::uint32_t>(count(reply, "map").value_or(0));
     report.keypoints = count(reply, "keypoints");
     report.inliers = count(reply, "inliers");
     report.keyframe_added = flag(reply, "keyframe");
@@ -154,6 +156,12 @@ class Conversation {
   }
 
   void finish() { child_.finish(kFarewell_s); }
+
+  int count_of(const Json& value, const char* key) {
+    if (!value.is_number_integer() || value < 0 || value > 1'000'000'000)
+      fail(fmt::format("gave {} of {}: expected a count", key, shortened(value.dump())));
+    return value.get<int>();
+  }
 
   [[noreturn]] void fail(const std::string& what) {
     child_.fail(fmt::format("{}, replying to {}", what, doing_));
@@ -238,10 +246,7 @@ class Conversation {
 
   std::optional<int> count(const Json& from, const char* key) {
     const auto it = from.find(key);
-    if (it == from.end()) return std::nullopt;
-    if (!it->is_number_integer() || *it < 0 || *it > 1'000'000'000)
-      fail(fmt::format("gave {} of {}: expected a count", key, shortened(it->dump())));
-    return it->get<int>();
+    return it == from.end() ? std::nullopt : std::optional(count_of(*it, key));
   }
 
   std::optional<RelocalizationStage> stage(const Json& reply) {
@@ -298,10 +303,18 @@ class ConversationSystem : public OutsideSystem {
   }
   void forget() override { talk_->ask("reset", Request::object(), {}); }
   std::optional<Trajectory> end_mapping() override {
-    const Json reply = talk_->ask("freeze", Request::object(), {"trajectory"});
+    const Json reply = talk_->ask("freeze", Request::object(), {"trajectory", "maps"});
     const auto it = reply.find("trajectory");
     if (it == reply.end()) return std::nullopt;
-    return trajectory_of(*it);
+    Trajectory trajectory = trajectory_of(*it);
+    if (const auto maps = reply.find("maps"); maps != reply.end()) {
+      if (!maps->is_array() || maps->size() != trajectory.size())
+        fail(fmt::format("gave maps that are not {}, one for each line of its trajectory",
+                         counted(trajectory.size(), "number")));
+      for (std::size_t i = 0; i < trajectory.size(); ++i)
+        trajectory[i].map = static_cast<std::uint32_t>(talk_->count_of((*maps)[i], "maps"));
+    }
+    return trajectory;
   }
   [[noreturn]] void fail(const std::string& what) const override { talk_->fail(what); }
 

@@ -87,7 +87,7 @@ SystemReport OutsideSystem::track(const RgbdFrame& frame, RandomStream stream) {
   const SystemReport report = reported(Question::kTrack, 0, frame, stream, TrackStatus::kTracked);
   if (report.map_reset) poses_.clear();
   if (report.world_from_camera)
-    poses_[frame.stamp_ns] = *report.world_from_camera;
+    poses_[frame.stamp_ns] = {frame.stamp_ns, *report.world_from_camera, report.map};
   else
     poses_.erase(frame.stamp_ns);  // the last attempt counts
   return report;
@@ -106,19 +106,19 @@ void OutsideSystem::freeze() {
 }
 
 void OutsideSystem::take(const Trajectory& finished) {
-  std::map<Stamp, SE3> poses;
+  std::map<Stamp, TimedPose> poses;
   for (const TimedPose& pose : finished) {
     if (!shown_.contains(pose.stamp_ns))
       fail(fmt::format("gave a pose at {} in its trajectory, a frame that it never saw",
                        format_stamp(pose.stamp_ns)));
-    poses.emplace(pose.stamp_ns, pose.world_from_camera);
+    poses.emplace(pose.stamp_ns, pose);
   }
   poses_ = std::move(poses);
 }
 
 Trajectory OutsideSystem::trajectory() const {
   Trajectory trajectory;
-  for (const auto& [stamp_ns, pose] : poses_) trajectory.push_back({stamp_ns, pose});
+  for (const auto& [stamp_ns, pose] : poses_) trajectory.push_back(pose);
   return trajectory;
 }
 

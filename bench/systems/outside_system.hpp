@@ -63,7 +63,7 @@ class OutsideSystem : public System {
     return shown_.empty() ? 0 : *shown_.rbegin() + kSecond_ns;
   }
 
-  std::map<Stamp, SE3> poses_;
+  std::map<Stamp, TimedPose> poses_;
   std::set<Stamp> shown_;
   bool frozen_ = false;
   mutable std::uint64_t sessions_ = 0;

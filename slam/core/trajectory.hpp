@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "slam/core/rgbd_frame.hpp"
@@ -18,5 +20,24 @@ struct TimedPose {
 
 /// Poses ordered by strictly increasing stamp.
 using Trajectory = std::vector<TimedPose>;
+
+/// The poses in one map.
+inline Trajectory of_map(const Trajectory& all, std::uint32_t map) {
+  Trajectory poses;
+  for (const TimedPose& pose : all)
+    if (pose.map == map) poses.push_back(pose);
+  return poses;
+}
+
+/// The map with the most poses; of equals, the one with the lower number. 0 if there are none.
+inline std::uint32_t largest_map(const Trajectory& all) {
+  std::map<std::uint32_t, std::size_t> poses_of;
+  for (const TimedPose& pose : all) ++poses_of[pose.map];
+  std::uint32_t largest = 0;
+  std::size_t most = 0;
+  for (const auto& [map, poses] : poses_of)
+    if (poses > most) largest = map, most = poses;
+  return largest;
+}
 
 }  // namespace mh

@@ -190,11 +190,10 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
   const Map& map = context.map;
   const LoopConfig& config = context.config.loop;
   const Keyframe& keyframe = map.at(newest);
-  const auto found =
-      try_candidates({keyframe.features, keyframe.grid, keyframe.words},
-                     candidates(map, newest, Unrelated(map, newest, config),
-                                context.config.semantics, config),
-                     context, stream, {.words = Matcher::kLoop, .projection = Matcher::kLoop});
+  const auto found = try_candidates(
+      {keyframe.features, keyframe.grid, keyframe.words},
+      candidates(map, newest, Unrelated(map, newest, config), context.config.semantics, config),
+      context, stream, {.words = Matcher::kLoop, .projection = Matcher::kLoop});
   if (!found.camera_from_world ||
       !plausible(map, found.keyframe, newest, *found.camera_from_world, config))
     return std::nullopt;
@@ -229,9 +228,8 @@ void support(std::vector<PiecePlace>& places, const Keyframe& keyframe, const Ma
     const Keyframe& last = map.at(map.live_keyframe(place.keyframe));
     const double moved_m = (now - last.camera_from_world.inverse().translation()).norm();
     const SE3 expected = pose_by(place, keyframe);
-    const double off_m = (expected.inverse().translation() -
-                          seen.camera_from_world.inverse().translation())
-                             .norm();
+    const double off_m =
+        (expected.inverse().translation() - seen.camera_from_world.inverse().translation()).norm();
     if (off_m > config.same_drift_m + config.max_drift_share * moved_m ||
         angle_between_rad(expected, seen.camera_from_world) > config.same_drift_rad)
       continue;
@@ -258,9 +256,9 @@ std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
   std::vector<Loop> found;
   for (const KeyframeId candidate :
        candidates(map, newest, is_of_another, context.config.semantics, config)) {
-    auto tried = try_candidates({keyframe.features, keyframe.grid, keyframe.words},
-                                std::span(&candidate, 1), context, stream,
-                                {.words = Matcher::kLoop, .projection = Matcher::kLoop});
+    auto tried =
+        try_candidates({keyframe.features, keyframe.grid, keyframe.words}, std::span(&candidate, 1),
+                       context, stream, {.words = Matcher::kLoop, .projection = Matcher::kLoop});
     if (!tried.camera_from_world) continue;
     const MapPose seen{map.at(candidate).origin, *tried.camera_from_world};
     const SE3 other_from_own = seen.camera_from_world.inverse() * keyframe.camera_from_world;

@@ -52,8 +52,9 @@ void look_for_loop(SlamState& state, KeyframeId newest, RandomStream stream,
   auto loop = detect_loop(newest, state.loop_memory, context, stream);
   const KeyframeId origin = state.map.at(newest).origin;
   if (!loop)
-    loop = recognize_piece(newest, state.loop_memory, context, stream.fork(1),
-                           [&](const MapPose& world) { return is_reachable(state, origin, world); });
+    loop =
+        recognize_piece(newest, state.loop_memory, context, stream.fork(1),
+                        [&](const MapPose& world) { return is_reachable(state, origin, world); });
   if (!loop) return;
   const Keyframe& old = state.map.at(loop->old_keyframe);
   report.loop = LoopClosure{state.map.at(newest).stamp_ns, old.stamp_ns,

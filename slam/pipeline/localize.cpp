@@ -72,7 +72,8 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
     StepReport of_refining;
     if (const auto located = confirm_in_local_map(
             *known.frame, {*found.camera_from_world, found.landmarks, found.inliers},
-            frozen.map.at(found.keyframe).origin, config.relocalize.min_inliers, context_of(frozen, observers, of_refining), observers)) {
+            frozen.map.at(found.keyframe).origin, config.relocalize.min_inliers,
+            context_of(frozen, observers, of_refining), observers)) {
       refined.camera_from_world = located->tracked.camera_from_world;
       refined.inliers = located->tracked.inliers;
     }

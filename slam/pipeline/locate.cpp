@@ -151,8 +151,8 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
     return located;
   }
   if (known.earlier_pose)
-    located = find_near(*known.earlier_pose, config.track.search_radius_px, frame, context,
-                        observers);
+    located =
+        find_near(*known.earlier_pose, config.track.search_radius_px, frame, context, observers);
   if (!located) {
     located =
         search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);

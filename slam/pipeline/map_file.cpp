@@ -214,9 +214,9 @@ SlamState decode_slam(const std::string& bytes, const std::string& name,
   content(state.tracker, state.loop_memory);
   check(content, state.tracker, state.map);
   for (const PiecePlace& place : state.loop_memory.places)
-    content.require(std::max({place.origin, place.other, place.keyframe}).value <
-                        state.map.keyframes().size(),
-                    "a keyframe of a piece's place");
+    content.require(
+        std::max({place.origin, place.other, place.keyframe}).value < state.map.keyframes().size(),
+        "a keyframe of a piece's place");
   state.tracked_frames = read_tracked_frames(content, state.map);
   content(state.last_stamp_ns);
   content.require(content.at_end(), "it goes on after its end");

@@ -17,10 +17,9 @@ Probe probe(KeyframeId candidate, const SlamState& frozen, const PreparedFrame& 
   const CandidateAttempt attempt =
       try_alone(candidate, without_words(frame), context, stream, givens);
   if (attempt.stage != RelocalizationStage::kVerified) return {attempt.stage, std::nullopt};
-  const auto located =
-      confirm_in_local_map(frame, {attempt.camera_from_world, attempt.landmarks, attempt.inliers},
-                           frozen.map.at(candidate).origin, frozen.config.relocalize.min_inliers,
-                           context, unobserved);
+  const auto located = confirm_in_local_map(
+      frame, {attempt.camera_from_world, attempt.landmarks, attempt.inliers},
+      frozen.map.at(candidate).origin, frozen.config.relocalize.min_inliers, context, unobserved);
   if (!located) return {RelocalizationStage::kInliers, std::nullopt};
   return {RelocalizationStage::kVerified, located->tracked.camera_from_world.inverse()};
 }

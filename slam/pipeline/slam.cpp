@@ -89,9 +89,9 @@ bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_wor
   if (max_speed_m_s == 0) return true;
   constexpr double kLeast_m = 0.3, kLeast_rad = 0.2, kNanosecond_s = 1e-9;
   constexpr double kMaxTurn_rad_s = 3;  // faster than any robot's head, about that of a hand
-  const double moved_m = (other_camera_from_world.inverse().translation() -
-                          camera_from_world.inverse().translation())
-                             .norm();
+  const double moved_m =
+      (other_camera_from_world.inverse().translation() - camera_from_world.inverse().translation())
+          .norm();
   const double elapsed_s = std::abs(static_cast<double>(elapsed_ns)) * kNanosecond_s;
   return moved_m <= kLeast_m + max_speed_m_s * elapsed_s &&
          angle_between_rad(other_camera_from_world, camera_from_world) <=
@@ -100,11 +100,10 @@ bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_wor
 
 Trajectory trajectory(const SlamState& state) {
   Trajectory poses;
-  for (const auto& [stamp_ns, frame] : state.tracked_frames)
-    {
-      const MapPose pose = map_pose(state, frame);
-      poses.push_back({stamp_ns, pose.camera_from_world.inverse(), pose.origin.value});
-    }
+  for (const auto& [stamp_ns, frame] : state.tracked_frames) {
+    const MapPose pose = map_pose(state, frame);
+    poses.push_back({stamp_ns, pose.camera_from_world.inverse(), pose.origin.value});
+  }
   return poses;
 }
 

@@ -138,10 +138,10 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   }
   if (state.map.empty()) return begin_piece(state, std::move(frame), SE3(), observers, report);
 
-  auto located =
-      locate(state, state.tracker, frame, stream, observers, report,
-             {.is_possible = [&](const MapPose& pose) { return is_possible(state, stamp_ns, pose); },
-              .earlier_pose = earlier_pose(state, stamp_ns)});
+  auto located = locate(
+      state, state.tracker, frame, stream, observers, report,
+      {.is_possible = [&](const MapPose& pose) { return is_possible(state, stamp_ns, pose); },
+       .earlier_pose = earlier_pose(state, stamp_ns)});
   const auto new_piece = place_of_new_piece(state, stamp_ns);
   state.tracked_frames.erase(stamp_ns);
   if (!located) {

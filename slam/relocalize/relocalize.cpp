@@ -115,8 +115,8 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
     const CandidateAttempt& attempt = place->second;
     add(attempt.counts, context.counts);
     const bool found = attempt.stage == RelocalizationStage::kVerified &&
-                       (!is_possible || is_possible({context.map.at(candidate).origin,
-                                                     attempt.camera_from_world}));
+                       (!is_possible ||
+                        is_possible({context.map.at(candidate).origin, attempt.camera_from_world}));
     result.stage = std::max(result.stage,
                             found ? attempt.stage : std::min(attempt.stage, kLastBeforeVerified));
     if (!found) continue;

@@ -144,7 +144,8 @@ class Episode {
             Perception::Seen{.depth_m = &seen.frame->depth_m,
                              .odom_from_base = between(before, odometry_, 1 - age_s / kStep_s),
                              .map_from_base = {}};
-        if (report.status != TrackStatus::kLost && report.world_from_camera)
+        if (report.status != TrackStatus::kLost && report.world_from_camera &&
+            report.map == place_.map_of_system)
           now.seen->map_from_base =
               from_above(place_.map.map_from_estimate * *report.world_from_camera *
                          place_.robot.base_from_camera.inverse());

@@ -29,7 +29,8 @@ struct EpisodePlace {
   bool system_sees_labels = true;
   const RobotMap& map;
   const System& frozen;
-  SE3 truth_from_estimate;  ///< for the score alone
+  std::uint32_t map_of_system = 0;  ///< TimedPose::map of what the robot's map is made of
+  SE3 truth_from_estimate;          ///< for the score alone
   std::string variant = "as_mapped";
   std::uint64_t system_seed = 0;  ///< of the SLAM system's draws
 };

@@ -42,6 +42,7 @@ TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& t
   score.tracked = static_cast<double>(estimate.size());
   score.scored = static_cast<double>(e.pairs);
   score.completeness = offered == 0 ? 0 : score.tracked / score.offered;
+  score.in_any_map = score.completeness;
   score.ate_rmse_m = rmse(e.ape_translation_m);
   if (score.ate_rmse_m) score.ate_median_m = e.ape_translation_m.median;
   if (score.ate_rmse_m &&

@@ -10,7 +10,7 @@ namespace mh {
 /// too short, or on a line.
 struct TrajectoryScore {
   double offered = 0;                       ///< frames
-  double tracked = 0;                       ///< frames with a pose at the end
+  double tracked = 0;                       ///< frames with a pose at the end, in the largest map
   double scored = 0;                        ///< of these, those with a true one: ATE is over them
   std::optional<double> ate_rmse_m;         ///< after SE(3) alignment without scale
   std::optional<double> ate_median_m;       ///< the middle of the errors behind it
@@ -19,13 +19,14 @@ struct TrajectoryScore {
   std::optional<double> rpe_frame_rmse_m;   ///< translation error per frame step
   std::optional<double> rpe_second_rmse_m;  ///< translation error per second
   double completeness = 0;                  ///< tracked / offered
+  double in_any_map = 0;                    ///< share of the offered frames with a pose anywhere
 };
 
 template <MaybeConst<TrajectoryScore> S, class Visit>
 void fields(S& score, Visit& v) {
   using enum Better;
   auto& [offered, tracked, scored, ate_rmse_m, ate_median_m, ate_rmse_deg, ate_first_pose_m,
-         rpe_frame_rmse_m, rpe_second_rmse_m, completeness] = score;
+         rpe_frame_rmse_m, rpe_second_rmse_m, completeness, in_any_map] = score;
   v(Metric{.name = "offered"}, offered);
   v(Metric{.name = "tracked"}, tracked);
   v(Metric{.name = "scored"}, scored);
@@ -36,6 +37,7 @@ void fields(S& score, Visit& v) {
   v(Metric{"rpe_frame_rmse_m", "RPE m/fr", "m", 5, kLess, "", true}, rpe_frame_rmse_m);
   v(Metric{"rpe_second_rmse_m", "RPE m/s", "m", 5, kLess}, rpe_second_rmse_m);
   v(Metric{"completeness", "complete", "%", 2, kMore, "offered", true}, completeness);
+  v(Metric{"in_any_map", "in any map", "%", 2, kMore, "offered"}, in_any_map);
 }
 
 /// Computes ATE, RPE and completeness of an estimate, by the definitions of evaluate().

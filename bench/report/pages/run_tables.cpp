@@ -127,9 +127,9 @@ const char* outcome(const QueryScore& q) {
 
 std::optional<SE3> answer_in_truth(const RunResult& run, QuerySet set, const QueryScore& query) {
   if (!query.answer.world_from_camera) return std::nullopt;
-  const auto anchor =
-      find_anchor(run.estimate, run.truth, {query.stamp_ns, query.true_world_from_camera},
-                  nearest_by(set), run.spec.protocol);
+  const auto anchor = find_anchor(mapped_beside(run, query.answer), run.truth,
+                                  {query.stamp_ns, query.true_world_from_camera}, nearest_by(set),
+                                  run.spec.protocol);
   if (!anchor) return std::nullopt;
   return anchor->truth * anchor->estimate.inverse() * *query.answer.world_from_camera;
 }

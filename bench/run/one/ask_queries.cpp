@@ -57,9 +57,7 @@ class QueryRound {
       const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
       // If there is a truth, skip frames without one: no answer to them could be judged.
       if (truth != nullptr && !moment.true_world_from_camera) continue;
-      const auto anchor =
-          find_anchor(run_.estimate, run_.truth, moment, nearest_by(set_), spec_.protocol);
-      const auto in_map = is_in_map(run_.estimate, run_.truth, moment);
+      const auto in_map = is_in_any_map(moment);
       const bool once = end - first == 1;  // nothing to share
       const FramesMadeOnce shared(frames_);
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
@@ -69,8 +67,7 @@ class QueryRound {
         try {
           const QueryAnswer answer =
               query(frozen, index, frames, spec_.protocol, stream_, memo.get());
-          scores[p]->push_back(
-              score(answer, moment, anchor, run_.alignment.truth_from_estimate, spec_.protocol));
+          scores[p]->push_back(judged(answer, moment));
           scores[p]->back().in_map = in_map;
           if (set_ == QuerySet::kGraded)
             scores[p]->back().grade = world_.simulated->graded.list[index].grade;
@@ -83,6 +80,19 @@ class QueryRound {
   }
 
  private:
+  QueryScore judged(const QueryAnswer& answer, const QueryMoment& moment) const {
+    std::optional<Anchor> anchor;
+    if (answer.world_from_camera)
+      anchor = find_anchor(mapped_beside(run_, answer), run_.truth, moment, nearest_by(set_),
+                           spec_.protocol);
+    return score(answer, moment, anchor, run_.alignment.truth_from_estimate, spec_.protocol);
+  }
+
+  std::optional<bool> is_in_any_map(const QueryMoment& moment) const {
+    const auto in_largest = is_in_map(run_.estimate, run_.truth, moment);
+    return in_largest == false ? is_in_map(run_.elsewhere, run_.truth, moment) : in_largest;
+  }
+
   const RunSpec& spec_;
   QuerySet set_;
   const World& world_;

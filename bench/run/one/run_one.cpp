@@ -138,19 +138,15 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
                                       : make_system(spec, world, tools.folder, tools.hidden);
   if (inner == nullptr) {  // a program that only returns a trajectory: no queries
     run.mapping.offered = offered_frames(mapping.size(), spec.protocol).size();
-    run.estimate = run_recorded(spec, world, frames, tools, work, run.mapping.skipped);
-    run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
-    run.alignment = align_estimate(run.estimate, run.truth);
+    take_trajectory(run, run_recorded(spec, world, frames, tools, work, run.mapping.skipped));
     integrate();
     run.points.resize(spec.points.size());
   } else {
     if (tamper.report) inner = make_tampered(std::move(inner), tamper.report);
     TimedSystem system(std::move(inner));
-    const auto take_trajectory = [&] {
+    const auto end_mapping = [&] {
       system.freeze();
-      run.estimate = system.trajectory();
-      run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
-      run.alignment = align_estimate(run.estimate, run.truth);
+      take_trajectory(run, system.trajectory());
     };
     const auto map_now = [&] {
       run.mapping = map_sequence(
@@ -164,7 +160,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
             tools.status(status_of(call, mapping.size()));
           },
           tools.first);
-      take_trajectory();
+      end_mapping();
       integrate();
     };
     if (!tools.maps.folder().empty() && tools.occupancy && spec.system.saves_map()) {
@@ -180,7 +176,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
         system.restore(finished.system);
         run.mapping = std::move(finished.outcome);
         run.volume = std::move(finished.volume);
-        take_trajectory();
+        end_mapping();
       }
     } else {
       map_now();
@@ -210,6 +206,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.grid = obstacle_grid(*run.volume, {.floor_z_m = world.simulated->scene->floor.middle_m.z(),
                                            .robot_height_m = world.simulated->robot.height_m});
   run.map_digest = digest_bytes(run.grid.cells.data(), run.grid.cells.size(), digest(run.estimate));
+  if (!run.elsewhere.empty()) run.map_digest = chained(run.map_digest, digest(run.elsewhere));
   require_unchanged(world.held);
   program_paths.require_unmoved();
   return run;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol/run_result.hpp"
+
+namespace mh {
+
+void set_estimate(RunResult& run, const Trajectory& all) {
+  const std::uint32_t largest = largest_map(all);
+  run.estimate = of_map(all, largest);
+  run.elsewhere.clear();
+  for (const TimedPose& pose : all)
+    if (pose.map != largest) run.elsewhere.push_back(pose);
+}
+
+void take_trajectory(RunResult& run, const Trajectory& all) {
+  set_estimate(run, all);
+  run.trajectory = score_trajectory(run.estimate, run.truth, run.mapping.offered);
+  if (run.mapping.offered > 0)
+    run.trajectory.in_any_map =
+        static_cast<double>(all.size()) / static_cast<double>(run.mapping.offered);
+  run.alignment = align_estimate(run.estimate, run.truth);
+}
+
+Trajectory mapped_beside(const RunResult& run, const QueryAnswer& answer) {
+  const bool is_in_largest = run.estimate.empty() || run.estimate.front().map == answer.map;
+  return is_in_largest ? run.estimate : of_map(run.elsewhere, answer.map);
+}
+
+}  // namespace mh
