@@ -149,11 +149,15 @@ class Pool {
     return false;
   }
 
+  std::filesystem::path work_file(const Job& job, const char* ending) const {
+    return options_.work_folder / (job.key + ending);
+  }
+
   void start(Waiting next) {
     const Job& job = next.job;
     begun_.insert(job.images);
     auto process = std::make_unique<RunProcess>(options_.executable, options_.arguments(job),
-                                                options_.work_folder / (job.key + ".log"));
+                                                work_file(job, ".log"));
     running_.push_back({std::move(next), std::move(process), ""});
   }
 

@@ -38,7 +38,9 @@ struct PoolOptions {
   double time_limit_s = 14400;
   double memory_limit_mb = 0;  ///< resident set size of one run; 0 = none
   std::filesystem::path executable;
-  std::filesystem::path work_folder;  ///< for logs of runs; exists
+  /// For the logs of runs, key.log, and what `arguments` writes, key.json: both are removed after
+  /// a success. Exists.
+  std::filesystem::path work_folder;
   /// The command line of a run's process. It finishes by putting the result into the store.
   std::function<std::vector<std::string>(const Job&)> arguments;
   /// Called when no run will need the data of this name any more (Job::frames, then Job::images).
