@@ -126,7 +126,7 @@ TEST(AdjustNeighborhood, MovesNothingThatNoOtherKeyframeHolds) {
   EXPECT_EQ(views.map.digest(), digest);
 }
 
-TEST(AdjustAll, OfTheFirstKeyframeAloneMovesNothing) {
+TEST(AdjustPiece, OfTheFirstKeyframeAloneMovesNothing) {
   Map map;
   SlamConfig config;
   MatchCounts counts{};
@@ -135,7 +135,7 @@ TEST(AdjustAll, OfTheFirstKeyframeAloneMovesNothing) {
   for (std::uint32_t i = 0; i < points.size(); ++i)
     map.add_landmark(points[i] + Eigen::Vector3d(0.01, 0, 0), KeyframeId{0}, i);
   const std::uint64_t digest = map.digest();
-  adjust_all(map, {kCamera, config, map, counts});
+  adjust_piece(map, KeyframeId{0}, {kCamera, config, map, counts});
   EXPECT_EQ(map.digest(), digest);
 }
 

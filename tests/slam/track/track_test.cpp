@@ -133,7 +133,7 @@ TEST(LocalMap, HoldsTheKeyframesThatStandNearAndLookAlike) {
   add_keyframe(map, -0.75);
   map.erase(add_keyframe(map, 0.1));
   MatchCounts counts{};
-  const LocalMap local = local_map({SE3(), {}}, {camera, config, map, counts});
+  const LocalMap local = local_map({SE3(), {}}, KeyframeId{0}, {camera, config, map, counts});
   EXPECT_EQ(local.keyframes, (std::vector{KeyframeId{4}, KeyframeId{1}, KeyframeId{0},
                                           KeyframeId{6}, KeyframeId{2}}));
   EXPECT_TRUE(local.landmarks.empty());
@@ -158,11 +158,11 @@ TEST(LocalMap, HasAQuarterForEachThatDoesNotShareWithTheFrame) {
     map.add_observation(map.add_landmark({0, 0, 3}, three, i), neighbor, i);
   map.update_covisibility(three);
   MatchCounts counts{};
-  const LocalMap local = local_map(tracked, {camera, config, map, counts});
+  const LocalMap local = local_map(tracked, KeyframeId{0}, {camera, config, map, counts});
   EXPECT_EQ(local.keyframes, (std::vector{three, two, nearer, neighbor}));
   EXPECT_EQ(local.landmarks.size(), 3u + 16u + 2u) << "each once, though two see it";
   config.track.local_keyframes = 100;
-  EXPECT_EQ(local_map(tracked, {camera, config, map, counts}).keyframes,
+  EXPECT_EQ(local_map(tracked, KeyframeId{0}, {camera, config, map, counts}).keyframes,
             (std::vector{three, two, one, nearer, near, neighbor}));
   EXPECT_EQ(reference_of(tracked, map), three);
   EXPECT_FALSE(reference_of({SE3(), {}}, map).valid());
