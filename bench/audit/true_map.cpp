@@ -31,10 +31,10 @@ std::optional<TruePoint> true_landmark(const Landmark& landmark,
 std::shared_ptr<const Renderer> scene_at(const SimulatedPlace& place, QuerySet set,
                                          Stamp stamp_ns) {
   const auto& walked_in = set == QuerySet::kHeldOut      ? place.pedestrian_scene
-                          : set == QuerySet::kSecondTour ? place.second_pedestrian_scene
+                          : set == QuerySet::kSecondTour ? place.query_pedestrian_scene
                                                          : nullptr;
   if (walked_in) return walked_in->at(stamp_ns);
-  return set != QuerySet::kHeldOut && place.second_renderer ? place.second_renderer
+  return set != QuerySet::kHeldOut && place.query_renderer ? place.query_renderer
                                                             : place.renderer;
 }
 

@@ -52,7 +52,7 @@ std::string truth_text(const RunResult& run) {
                           counted(path.frames, "frame"));
   };
   add(run.place.mapping, "");
-  if (run.place.second) add(*run.place.second, ", queries");
+  if (run.place.query_tour) add(*run.place.query_tour, ", queries");
   return text;
 }
 

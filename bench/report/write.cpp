@@ -85,7 +85,7 @@ void write_run(const fs::path& folder, const World& world, const RunResult& run,
     return;
   }
   save_map_server(run.grid, folder / "map");
-  if (world.second)
+  if (world.query_tour)
     write_image(folder / "topdown_second_tour.png",
                 draw_topdown(world, run, QuerySet::kSecondTour));
   // Last: it marks the files as complete.

@@ -52,7 +52,7 @@ struct PlaceFacts {
   std::uint64_t scene_digest = 0, path_digest = 0, vocabulary_digest = 0;
   std::size_t vocabulary_words = 0;
   PathFacts mapping;
-  std::optional<PathFacts> second;
+  std::optional<PathFacts> query_tour;
   std::vector<GradedCell> graded = {};  ///< empty: no graded queries
   bool cut = false;                     ///< the tours were cut after RunSpec::max_frames
   /// What of its recordings could not be used, or was repaired, one line each, without the place
@@ -64,7 +64,7 @@ struct PlaceFacts {
 template <MaybeConst<PlaceFacts> P, class Visit>
 void fields(P& place, Visit& v) {
   auto& [scene, robot, scene_digest, path_digest, vocabulary_digest, vocabulary_words, mapping,
-         second, graded, cut, notes, inputs] = place;
+         query_tour, graded, cut, notes, inputs] = place;
   v("scene", scene);
   v("robot", robot);
   v("scene_digest", as_digest(scene_digest));
@@ -72,7 +72,7 @@ void fields(P& place, Visit& v) {
   v("vocabulary_digest", as_digest(vocabulary_digest));
   v("vocabulary_words", vocabulary_words);
   v("mapping_tour", mapping);
-  v("query_tour", second);
+  v("query_tour", query_tour);
   v("graded", graded);
   v("cut", cut);
   v("notes", notes);

@@ -72,6 +72,11 @@ struct ProtocolConfig {
   friend bool operator==(const ProtocolConfig&, const ProtocolConfig&) = default;
 };
 
+/// What only queries depend on: maps made under other values are the same.
+inline constexpr const char* kProtocolOfQueries[] = {"query_attempts",    "attempts",
+                                                     "max_blank_frames",  "correct_distance_m",
+                                                     "correct_angle_deg", "truth"};
+
 /// A camera's feed: every frame once, none held out.
 inline ProtocolConfig live_feed() {
   ProtocolConfig config;

@@ -95,9 +95,7 @@ std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
   sources(spec.environment, [&](const WorldSource& source, const auto&) {
     if (source.of_queries) json["inputs"].erase(source.key);
   });
-  for (const char* of_queries : {"query_attempts", "attempts", "max_blank_frames",
-                                 "correct_distance_m", "correct_angle_deg", "truth"})
-    json["protocol"].erase(of_queries);
+  for (const char* setting : kProtocolOfQueries) json["protocol"].erase(setting);
   return text_key(json.dump());
 }
 

@@ -168,7 +168,7 @@ TEST(Scenario, APedestrianOfTheQueriesWalksInTheSecondTourAlone) {
     return count;
   };
   EXPECT_EQ(frames_with_a_person(*world.mapping), 0);
-  EXPECT_GT(frames_with_a_person(*world.second), 1);
+  EXPECT_GT(frames_with_a_person(*world.query_tour), 1);
 }
 
 }  // namespace

@@ -79,10 +79,10 @@ PlaceFacts recorded_facts(const World& world, const RunSpec& spec) {
   f.scene_digest = digest_of("sequence");
   f.path_digest = truth(*world.mapping);
   f.mapping = recorded_path(*world.mapping);
-  if (!world.second) return f;
+  if (!world.query_tour) return f;
   f.scene_digest = chained(f.scene_digest, digest_of("queries"));
-  f.path_digest = chained(f.path_digest, truth(*world.second));
-  f.second = recorded_path(*world.second);
+  f.path_digest = chained(f.path_digest, truth(*world.query_tour));
+  f.query_tour = recorded_path(*world.query_tour);
   return f;
 }
 
@@ -101,12 +101,12 @@ void simulate(World& world, LabelMode labels, const SharedImages& images) {
   mapping->set_odometry(p.odom_from_camera);
   mapping->set_imu(p.imu);
   world.mapping = mapping;
-  if (p.second)
-    world.second = sequence("second", p.second_renderer ? p.second_renderer : p.renderer, *p.second,
-                            p.second_pedestrian_scene);
+  if (p.query_tour)
+    world.query_tour = sequence("second", p.query_renderer ? p.query_renderer : p.renderer,
+                                *p.query_tour, p.query_pedestrian_scene);
   if (!p.graded.list.empty())
     world.graded =
-        std::make_shared<GradedSequence>(p.second_renderer ? p.second_renderer : p.renderer,
+        std::make_shared<GradedSequence>(p.query_renderer ? p.query_renderer : p.renderer,
                                          p.robot.camera, p.graded.list, p.sensors, labels);
 }
 
@@ -119,11 +119,11 @@ PlaceFacts facts(const World& world, const RunSpec& spec) {
   f.scene_digest = digest(*place.scene);
   f.path_digest = digest(place.mapping.camera);
   f.mapping = facts(place.mapping);
-  if (place.second_scene) f.scene_digest = chained(f.scene_digest, digest(*place.second_scene));
+  if (place.query_scene) f.scene_digest = chained(f.scene_digest, digest(*place.query_scene));
   f.graded = place.graded.cells;
-  if (place.second) {
-    f.second = facts(*place.second);
-    f.path_digest = chained(f.path_digest, digest(place.second->camera));
+  if (place.query_tour) {
+    f.query_tour = facts(*place.query_tour);
+    f.path_digest = chained(f.path_digest, digest(place.query_tour->camera));
   }
   if (world.graded) f.path_digest = chained(f.path_digest, digest(*world.graded->truth()));
   return f;
@@ -169,7 +169,7 @@ World open_recordings(const RunSpec& spec) {
                         gives_imu);
   };
   world.mapping = open("sequence", e.sequence);
-  if (e.queries) world.second = open("queries", *e.queries);
+  if (e.queries) world.query_tour = open("queries", *e.queries);
   world.vocabulary = load_vocabulary(spec, world);
   return world;
 }
@@ -182,9 +182,9 @@ GradedQueries graded_queries(const RunSpec& spec, const SimulatedPlace& world) {
     offered.push_back(world.mapping.camera[i]);
   return draw_graded(
       *spec.graded,
-      {.queried = world.second_scene ? *world.second_scene : *world.scene,
+      {.queried = world.query_scene ? *world.query_scene : *world.scene,
        .mapped_renderer = world.renderer,
-       .queried_renderer = world.second_renderer ? world.second_renderer : world.renderer,
+       .queried_renderer = world.query_renderer ? world.query_renderer : world.renderer,
        .robot = world.robot,
        .offered = offered,
        .by_hand = !is_driven(spec.environment.mapping_tour)});
@@ -221,22 +221,22 @@ void append(std::vector<ImuReading>& readings, const Trajectory& path, const Sen
 World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
             const BakeWatch& baked) {
   const Environment& environment = spec.environment;
-  World built;
-  SimulatedPlace& world = built.simulated.emplace();
+  World world;
+  SimulatedPlace& place = world.simulated.emplace();
   const auto input = [&](const char* name, const std::filesystem::path& source, auto&& load) {
-    return noted(built.inputs, name, source, load);
+    return noted(world.inputs, name, source, load);
   };
   const auto shorten = [&](DrivenPath& path) {
-    if (spec.max_frames && cut(path, *spec.max_frames)) built.cut = true;
+    if (spec.max_frames && cut(path, *spec.max_frames)) world.cut = true;
   };
-  world.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
-  built.vocabulary = load_vocabulary(spec, built);
-  world.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
+  place.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
+  world.vocabulary = load_vocabulary(spec, world);
+  place.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
   if (environment.sensors)
-    world.sensors = input("sensors", *environment.sensors,
+    place.sensors = input("sensors", *environment.sensors,
                           [&] { return load_sensor_config(*environment.sensors); });
-  world.sensors = with_dials(world.sensors, labels_of_frames(spec));
-  world.robot.camera = with_lens(world.robot.camera, world.sensors);
+  place.sensors = with_dials(place.sensors, labels_of_frames(spec));
+  place.robot.camera = with_lens(place.robot.camera, place.sensors);
   if (environment.kidnapped_tour)
     input("kidnapped_tour", *environment.kidnapped_tour,
           [&] { return load_tour(*environment.kidnapped_tour); });
@@ -254,17 +254,17 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
     return std::make_shared<const Scene>(std::move(scene));
   };
   const auto scene = lit_scene("scene", environment.scene);
-  world.scene = scene;
-  world.renderer = make_scene_renderer(*scene);
+  place.scene = scene;
+  place.renderer = make_scene_renderer(*scene);
   if (pedestrian)
-    world.pedestrian_scene = make_pedestrian_scene(*scene, world.renderer, *pedestrian);
+    place.pedestrian_scene = make_pedestrian_scene(*scene, place.renderer, *pedestrian);
 
   const auto lose_frames = [&](DrivenPath& path) {
     const RandomStream same_for_every_trial(0);
-    path.camera = arriving_frames(path.camera, world.sensors, same_for_every_trial);
-    path.base = arriving_frames(path.base, world.sensors, same_for_every_trial);
+    path.camera = arriving_frames(path.camera, place.sensors, same_for_every_trial);
+    path.base = arriving_frames(path.base, place.sensors, same_for_every_trial);
   };
-  const double rate_hz = world.robot.camera.rate_hz;
+  const double rate_hz = place.robot.camera.rate_hz;
   const auto obstacles = [&](std::size_t frames_before) {
     std::vector<MovingObstacle> others;
     if (pedestrian)
@@ -275,57 +275,58 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   const auto along = [&](const Scene& in, const std::string& motion,
                          const std::vector<MovingObstacle>& others = {}) {
     DrivenPath path =
-        hurried(travel(in, world.robot, motion, others), motion, world.sensors, rate_hz);
+        hurried(travel(in, place.robot, motion, others), motion, place.sensors, rate_hz);
     if (say && !path.moved.empty()) say("warning: " + path.moved);
     return path;
   };
-  world.mapping = input("mapping_tour", environment.mapping_tour,
+  place.mapping = input("mapping_tour", environment.mapping_tour,
                         [&] { return along(*scene, environment.mapping_tour, obstacles(0)); });
   const auto gives = [&](Sense sense) { return std::ranges::count(spec.senses, sense) > 0; };
-  if (gives(Sense::kImu)) append(world.imu, world.mapping.camera, world.sensors, spec.seed);
+  if (gives(Sense::kImu)) append(place.imu, place.mapping.camera, place.sensors, spec.seed);
   std::optional<Stamp> lifted_ns;
   if (environment.kidnapped_tour) {
-    lifted_ns = world.mapping.camera.back().stamp_ns + 1;
+    lifted_ns = place.mapping.camera.back().stamp_ns + 1;
     const DrivenPath elsewhere =
-        along(*scene, *environment.kidnapped_tour, obstacles(world.mapping.camera.size()));
-    const std::size_t before = world.mapping.camera.size();
-    world.mapping = joined(std::move(world.mapping), elsewhere, rate_hz);
+        along(*scene, *environment.kidnapped_tour, obstacles(place.mapping.camera.size()));
+    const std::size_t before = place.mapping.camera.size();
+    place.mapping = joined(std::move(place.mapping), elsewhere, rate_hz);
     if (gives(Sense::kImu))  // not of being carried
-      append(world.imu,
-             {world.mapping.camera.begin() + static_cast<std::ptrdiff_t>(before),
-              world.mapping.camera.end()},
-             world.sensors, spec.seed);
+      append(place.imu,
+             {place.mapping.camera.begin() + static_cast<std::ptrdiff_t>(before),
+              place.mapping.camera.end()},
+             place.sensors, spec.seed);
   }
-  lose_frames(world.mapping);
-  shorten(world.mapping);
+  lose_frames(place.mapping);
+  shorten(place.mapping);
   if (gives(Sense::kOdometry))
-    world.odom_from_camera =
-        odometry_along(world.mapping, world.robot, lifted_ns, spec.seed, environment.robot);
+    place.odom_from_camera =
+        odometry_along(place.mapping, place.robot, lifted_ns, spec.seed, environment.robot);
   if (environment.query_scene) {
-    world.second_scene = lit_scene("query_scene", *environment.query_scene);
-    world.second_renderer = make_scene_renderer(*world.second_scene);
+    place.query_scene = lit_scene("query_scene", *environment.query_scene);
+    place.query_renderer = make_scene_renderer(*place.query_scene);
   }
-  if (spec.graded) world.graded = graded_queries(spec, world);
-  if (!environment.query_tour) return built;
-  const Scene& queried = world.second_scene ? *world.second_scene : *scene;
+  if (spec.graded) place.graded = graded_queries(spec, place);
+  if (!environment.query_tour) return world;
+  const Scene& queried = place.query_scene ? *place.query_scene : *scene;
   std::vector<MovingObstacle> met;
   if (query_pedestrian) {
     met.push_back(as_obstacle(queried, *query_pedestrian));
-    world.second_pedestrian_scene = make_pedestrian_scene(
-        queried, world.second_renderer ? world.second_renderer : world.renderer, *query_pedestrian);
+    place.query_pedestrian_scene = make_pedestrian_scene(
+        queried, place.query_renderer ? place.query_renderer : place.renderer, *query_pedestrian);
   }
-  world.second = input("query_tour", *environment.query_tour,
-                       [&] { return along(queried, *environment.query_tour, met); });
-  lose_frames(*world.second);
-  shorten(*world.second);
-  return built;
+  place.query_tour = input("query_tour", *environment.query_tour,
+                           [&] { return along(queried, *environment.query_tour, met); });
+  lose_frames(*place.query_tour);
+  shorten(*place.query_tour);
+  return world;
 }
 
 /// Replaces the labels of both sequences by a detector's.
 void add_detector(World& world, const DetectorSpec& spec, const Cache& cache, const Say& say) {
   const std::shared_ptr<const Detector> detector =
       noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
-  for (std::shared_ptr<const Sequence>* sequence : {&world.mapping, &world.second, &world.graded})
+  for (std::shared_ptr<const Sequence>* sequence :
+       {&world.mapping, &world.query_tour, &world.graded})
     if (*sequence != nullptr) {
       if (const std::string note = detector->check_frames(stamps_of(**sequence)); !note.empty())
         if (say) say("warning: " + note);

@@ -34,22 +34,22 @@ struct SimulatedPlace {
   std::shared_ptr<const Renderer> renderer;
   Robot robot;
   DrivenPath mapping;
-  std::vector<SE3> odom_from_camera;  ///< at the frames of `mapping`; empty unless it is given
-  std::vector<ImuReading> imu;        ///< along `mapping`; empty unless it is given
-  std::optional<DrivenPath> second;   ///< the second tour, if the environment has one
-  std::shared_ptr<const Scene> second_scene;  ///< the second tour's scene; null: the same scene
-  std::shared_ptr<const Renderer> second_renderer;  ///< of that scene; null: the same renderer
+  std::vector<SE3> odom_from_camera;     ///< at the frames of `mapping`; empty unless it is given
+  std::vector<ImuReading> imu;           ///< along `mapping`; empty unless it is given
+  std::optional<DrivenPath> query_tour;  ///< the second tour, if the environment has one
+  std::shared_ptr<const Scene> query_scene;  ///< the second tour's scene; null: the same scene
+  std::shared_ptr<const Renderer> query_renderer;  ///< of that scene; null: the same renderer
   std::shared_ptr<const PedestrianScene>
       pedestrian_scene;  ///< with the pedestrians that are present during the mapping; or null
-  std::shared_ptr<const PedestrianScene> second_pedestrian_scene;  ///< during the second tour
-  SensorConfig sensors;                                            ///< the level
-  GradedQueries graded;                                            ///< empty if the run has none
+  std::shared_ptr<const PedestrianScene> query_pedestrian_scene;  ///< during the second tour
+  SensorConfig sensors;                                           ///< the level
+  GradedQueries graded;                                           ///< empty if the run has none
 };
 
 /// The environment of one run, built once and then only read.
 struct World {
   std::shared_ptr<const Sequence> mapping;      ///< what is mapped
-  std::shared_ptr<const Sequence> second;       ///< what is queried in addition; or null
+  std::shared_ptr<const Sequence> query_tour;   ///< what is queried in addition; or null
   std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
   std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
   std::vector<VariantPlace> variants = {};      ///< of the episodes; empty: none
@@ -67,7 +67,7 @@ struct World {
 /// The sequence that a set's queries are frames of; null if there is none.
 inline const Sequence* sequence_of(const World& world, QuerySet set) {
   return set == QuerySet::kHeldOut      ? world.mapping.get()
-         : set == QuerySet::kSecondTour ? world.second.get()
+         : set == QuerySet::kSecondTour ? world.query_tour.get()
                                         : world.graded.get();
 }
 

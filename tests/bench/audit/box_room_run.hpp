@@ -34,10 +34,10 @@ inline World world(Trajectory second = tour(10, 70, {0.15, -0.1, 0.05}),
   SimulatedPlace& place = made.simulated.emplace();
   place.scene = std::make_shared<Scene>();
   place.renderer = std::make_shared<BoxRoomRenderer>();
-  place.second_renderer = std::move(elsewhere);
+  place.query_renderer = std::move(elsewhere);
   place.robot.camera = BoxRoom::camera();
   place.mapping.camera = tour(0, 80);
-  place.second.emplace().camera = std::move(second);
+  place.query_tour.emplace().camera = std::move(second);
   place.sensors = sensors;
   made.vocabulary = testing_support::vocabulary();
   simulate(made, LabelMode::kExact);

@@ -153,8 +153,8 @@ struct Place {
     place.robot.camera.cy_px = 5.5;
     place.robot.camera.fx_px = place.robot.camera.fy_px = 16;
     place.mapping.camera = straight_path(150);
-    place.second = DrivenPath{};
-    place.second->camera = straight_path(90);
+    place.query_tour = DrivenPath{};
+    place.query_tour->camera = straight_path(90);
     simulate(world, LabelMode::kNone);
   }
   std::vector<RunResult> run(const TamperRun& tamper = {}) const {
@@ -315,7 +315,7 @@ TEST(Verify, FindsAPixelOfAQuery) {
 
 TEST(Verify, SeesAnotherPath) {
   Place a, b;
-  b.world.simulated->second->camera.back().stamp_ns += 1;
+  b.world.simulated->query_tour->camera.back().stamp_ns += 1;
   const auto difference = first_difference(a.run(), b.run());
   ASSERT_TRUE(difference);
   EXPECT_EQ(describe(*difference), "semantic-exact-fake-0: world: path differs");
