@@ -34,8 +34,7 @@ std::shared_ptr<const Renderer> scene_at(const SimulatedPlace& place, QuerySet s
                           : set == QuerySet::kSecondTour ? place.query_pedestrian_scene
                                                          : nullptr;
   if (walked_in) return walked_in->at(stamp_ns);
-  return set != QuerySet::kHeldOut && place.query_renderer ? place.query_renderer
-                                                            : place.renderer;
+  return set != QuerySet::kHeldOut && place.query_renderer ? place.query_renderer : place.renderer;
 }
 
 TrueMap true_map(const Map& map, const World& world, const TrueCamera& camera) {

@@ -196,7 +196,7 @@ void run(SlamArguments options) {
   for (const std::string& note : source.settings.notes) fmt::print(stderr, "slam: {}\n", note);
   const std::size_t end = first + std::min(options.frames, source.frames->size() - first);
   const World world{.mapping = first_frames(std::move(source.frames), end, named_truth),
-                    .second = nullptr,
+                    .query_tour = nullptr,
                     .simulated = {},
                     .vocabulary = vocabulary,
                     .cut = false,

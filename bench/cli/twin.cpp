@@ -86,7 +86,7 @@ Mapped map_and_ask(std::shared_ptr<const Sequence> mapped, std::shared_ptr<const
   spec.slam = settings_of(spec.system, {});
   spec.points = {spec.slam->semantics};
   const World world{.mapping = std::move(mapped),
-                    .second = std::move(other),
+                    .query_tour = std::move(other),
                     .simulated = {},
                     .vocabulary = vocabulary,
                     .cut = false,

@@ -77,10 +77,10 @@ TEST(DetectorJudge, ComparesLabelsWithExactClasses) {
   for (int y = 10; y < 50; ++y)
     for (int x = 10; x < 50; ++x) depth_m(x, y) = 2.0F;  // the chair, before the wall
   DetectorJudge judge(0.5);
-  judge.add(frame, {box(5, 5, 50, 50, kChair, 0.9F)}, depth_m);
+  judge.add(frame, {box(5, 5, 50, 50, kChair, 0.9F), box(60, 10, 60, 30, kChair, 0.8F)}, depth_m);
   const DetectorScore score = judge.score();
-  EXPECT_NEAR(score.box.right_share, 1600.0 / 2500, 1e-9);
-  EXPECT_NEAR(score.foreground.right_share, 1, 1e-9);
+  EXPECT_NEAR(score.box.right_share, 1600.0 / (2500 + 1800), 1e-9);
+  EXPECT_NEAR(score.foreground.right_share, 1600.0 / (1600 + 1800), 1e-9);
   EXPECT_NEAR(score.box.found_share, 1600.0 / 3400, 1e-9);
   EXPECT_NEAR(score.foreground.found_share, 1600.0 / 3400, 1e-9);
 }

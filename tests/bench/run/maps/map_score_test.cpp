@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run/maps/map_score.hpp"
 
+#include <numbers>
+
 #include <gtest/gtest.h>
+
+#include "bench/run/maps/map_study.hpp"
+#include "tests/slam/pipeline/feature_world.hpp"
 
 namespace mh {
 namespace {
@@ -45,6 +50,42 @@ TEST(ScoreObjects, EachTrueObjectIsFoundOnceAndEachFoundOneFindsOne) {
   EXPECT_EQ(score.recall.all, 3u) << "no vase below 0.4 m, no wall";
   EXPECT_EQ(score.precision.good, 3u) << "chair, table and vase";
   EXPECT_EQ(score.precision.all, 5u);
+}
+
+// A closed box of 4 m, looked at from its middle.
+TEST(ScoreMap, OfAMapAtTruePosesIsThatOfItsOwnFrames) {
+  Scene scene;
+  for (int i = 0; i < 8; ++i)
+    scene.positions_m.emplace_back((i & 1) != 0 ? 4 : 0, (i & 2) != 0 ? 4 : 0,
+                                   (i & 4) != 0 ? 2.4F : 0);
+  scene.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                     {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
+  scene.material_of.assign(12, 0);
+  scene.class_of.assign(12, 1);
+  scene.instance_of.assign(12, 1);
+  scene.materials.resize(1);
+  scene.instances = {instance("wall", 1, {0, 0, 0}, {4, 4, 2.4})};
+  scene.instances[0].id = 1;
+  const auto renderer = make_renderer("embree", scene, {});
+  const Camera camera;
+  OccupancyMapper mapper(camera);
+  Trajectory poses;
+  for (int i = -2; i <= 2; ++i) {  // one half
+    const SE3 pose = testing_support::FeatureWorld::pose(2, i * std::numbers::pi / 6);
+    poses.push_back({i + 3, SE3(pose.rotation(), {2, 2, 1.2})});
+    RenderedFrame seen = renderer->render(camera, poses.back().world_from_camera);
+    mapper.keep({i + 3, std::move(seen.color), std::move(seen.depth_m), {}});
+  }
+  mapper.update(poses);
+  const MapStudy study = study_of(mapper.map(), {.floor_z_m = 0, .robot_height_m = 1.21});
+  const MapScores scores = score_map(scene, mapper, poses, study, {});
+  EXPECT_EQ(scores.keyframes, 5u);
+  EXPECT_NEAR(scores.grid.iou.value(), scores.grid_true_poses.iou.value(), 0.02);
+  EXPECT_NEAR(scores.grid.iou_seen.value(), scores.grid_true_poses.iou_seen.value(), 0.02);
+  EXPECT_GT(scores.grid.iou_seen.value(), scores.grid.iou.value() + 0.2);
+  EXPECT_NEAR(scores.voxels.occupied_precision.value(),
+              scores.voxels_true_poses.occupied_precision.value(), 0.02);
+  EXPECT_GT(scores.voxels.occupied_precision.value(), 0.95);
 }
 
 }  // namespace
