@@ -288,13 +288,13 @@ TEST(Relocalize, PassesOverPlacesThatAreImpossible) {
   const RoomAndCopy rooms(0);
   for (const double rival_share : {0.0, 0.9})
     for (const double from_m : {-5.0, 5.0}) {
-      const auto found = rooms.find_place(rival_share, [&](const SE3& camera_from_world) {
-        return std::abs(camera_from_world.inverse().translation().x() - from_m) < 5;
+      const auto found = rooms.find_place(rival_share, [&](const MapPose& pose) {
+        return std::abs(pose.camera_from_world.inverse().translation().x() - from_m) < 5;
       });
       EXPECT_EQ(found.stage, RelocalizationStage::kVerified);
       EXPECT_EQ(found.keyframe, KeyframeId{from_m < 0 ? 0U : 1U});
     }
-  const auto nowhere = rooms.find_place(0, [](const SE3&) { return false; });
+  const auto nowhere = rooms.find_place(0, [](const MapPose&) { return false; });
   EXPECT_EQ(nowhere.stage, RelocalizationStage::kInliers);
   EXPECT_FALSE(nowhere.camera_from_world);
 }
