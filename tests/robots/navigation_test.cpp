@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -28,6 +31,28 @@ Scene two_rooms(float door_m) {
   add_box(scene, "wall north of the door", {4.9F, 7 + door_m, 0}, {5.1F, 10, 2.5F});
   add_box(scene, "lintel", {4.9F, 7, 2}, {5.1F, 7 + door_m, 2.5F});
   return scene;
+}
+
+// "x": free. By sides alone, not by corners, up to the grid's own edges.
+TEST(LargestRegion, IsConnectedBySides) {
+  const std::vector<std::string> rows{"xx.x", "x..x", ".xx."};
+  FloorGrid grid;
+  grid.clearance_m = Grid2d<float>(4, 3);
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 4; ++x)
+      grid.clearance_m(x, y) =
+          rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] == 'x';
+  const auto marked = [&](double clearance_m) {
+    std::string cells;
+    for (const std::uint8_t cell : largest_region(grid, clearance_m))
+      cells += cell != 0 ? 'x' : '.';
+    return cells;
+  };
+  EXPECT_EQ(marked(0.5),
+            "xx.."
+            "x..."
+            "....");
+  EXPECT_EQ(marked(1.5), std::string(12, '.'));
 }
 
 TEST(FloorGrid, ClearanceIsTheDistanceToTheNearestObstacleOrLess) {

@@ -51,6 +51,7 @@ TEST(AuditRun, FindsEachQuerySolvableThatIsAnsweredRightly) {
   const PointAudit& point = a.audit.points[0];
   EXPECT_EQ(point.held_out.size(), 8U);
   EXPECT_EQ(point.second_tour.size(), 6U);
+  double farthest_deg = 0;
   for (const QuerySet set : kQuerySets)
     for (const QueryAudit& q : queries(point, set)) {
       EXPECT_TRUE(q.first_correct) << name(set) << " " << q.frame;
@@ -71,6 +72,9 @@ TEST(AuditRun, FindsEachQuerySolvableThatIsAnsweredRightly) {
       EXPECT_GE(*q.solving_candidate, 1);
       EXPECT_GE(*q.solving_rank, 1);
       EXPECT_LE(*q.solving_rank, q.keyframes);
+      EXPECT_GE(*q.solving_m, *q.nearest_m - 0.6) << "1 rad counts as 1 m for the nearest";
+      EXPECT_LT(*q.solving_m, 1) << "the camera stays within a meter of the room's middle";
+      farthest_deg = std::max(farthest_deg, *q.solving_deg);
       const StageMatches& words = q.matches[static_cast<std::size_t>(MatchStage::kWords)];
       EXPECT_GE(words.with_xi.kept_right(), 15);
       EXPECT_GT(*words.with_xi.precision(), 0.8) << "the room is sharp and all its patches differ";
@@ -78,6 +82,7 @@ TEST(AuditRun, FindsEachQuerySolvableThatIsAnsweredRightly) {
       EXPECT_GE(all.with_xi.kept_right(), words.with_xi.kept_right());
       EXPECT_GE(all.with_xi.kept_wrong(), words.with_xi.kept_wrong());
     }
+  EXPECT_GT(farthest_deg, 1);
 }
 
 TEST(AuditRun, WithoutAnythingInCommonNothingIsInSight) {

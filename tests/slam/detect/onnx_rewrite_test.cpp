@@ -68,6 +68,8 @@ TEST(RewriteOnnx, RepeatsConstantsToTheShapeThatTheyAreBroadcastTo) {
               each([](double v, int, int, int x) { return v / (1 << x); }));
   expect_near(result(row + node("Div", {"c", "image"}, {"output"})),
               each([](double v, int, int, int x) { return (1 << x) / v; }));
+  expect_near(result(column + node("Mul", {"image", "c"}, {"output"})),
+              each([](double v, int, int y, int) { return v * (y == 0 ? 3 : 5); }));
   expect_near(result(column + node("Sub", {"c", "image"}, {"output"})),
               each([](double v, int, int y, int) { return (y == 0 ? 3 : 5) - v; }));
   expect_near(result(column + node("Add", {"image", "c"}, {"output"})),
@@ -189,6 +191,18 @@ TEST(RewriteOnnx, SurvivesDamage) {
     if (rewrite_onnx(damaged, {32, 32})) ++read;
   }
   EXPECT_GT(read, 100);
+}
+
+// What is pooled has one value a channel, which a constant of that shape joins as it is.
+TEST(RewriteOnnx, KnowsTheShapeOfWhatIsPooled) {
+  const std::string c = floats("c", {kChannels, 1, 1}, {2, 3, 5});
+  expect_near(
+      result(c + node("GlobalAveragePool", {"image"}, {"mean"}) +
+             node("Mul", {"mean", "c"}, {"scaled"}) + node("Add", {"image", "scaled"}, {"output"})),
+      each([](double v, int channel, int, int) {
+        const double factors[] = {2, 3, 5};
+        return v + (8 * channel + 4.5) * factors[channel];
+      }));
 }
 
 // Fields of 8 and of 4 bytes, as newer exporters may add them, are passed over whole.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run/maps/map_score.hpp"
 
+#include <algorithm>
+#include <initializer_list>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -50,6 +52,25 @@ TEST(ScoreObjects, EachTrueObjectIsFoundOnceAndEachFoundOneFindsOne) {
   EXPECT_EQ(score.recall.all, 3u) << "no vase below 0.4 m, no wall";
   EXPECT_EQ(score.precision.good, 3u) << "chair, table and vase";
   EXPECT_EQ(score.precision.all, 5u);
+}
+
+// The plan has two rows of three cells; the grid, shifted by one, lacks its first column.
+TEST(ScoreGrid, ComparesFreeCellsAtTheSamePlace) {
+  const auto cells = [](int width, int height, std::initializer_list<std::int8_t> values) {
+    Grid2d<std::int8_t> made(width, height);
+    std::ranges::copy(values, made.begin());
+    return made;
+  };
+  constexpr std::int8_t f = kFreeCell, o = kOccupiedCell, u = kUnknownCell;
+  const OccupancyGrid plan{
+      .cells = cells(3, 2, {f, f, o, f, f, u}), .resolution_m = 1, .origin_m = {0, 0}};
+  const OccupancyGrid grid{
+      .cells = cells(2, 2, {f, f, u, f}), .resolution_m = 1, .origin_m = {1, 0}};
+  const GridScore score = score_grid(grid, plan);
+  EXPECT_EQ(score.iou.good, 1u) << "column 1 of row 0";
+  EXPECT_EQ(score.iou.all, 6u) << "four of the plan, and column 2, where the plan has none";
+  EXPECT_EQ(score.iou_seen.good, 1u);
+  EXPECT_EQ(score.iou_seen.all, 3u);
 }
 
 // A closed box of 4 m, looked at from its middle.
