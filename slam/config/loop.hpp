@@ -26,8 +26,8 @@ struct LoopConfig {
   double negligible_m = 0.01;  ///< below this, landmarks are merged but poses stay
   double negligible_rad = 0.003;
   /// Pieces of a map are joined where this many keyframes agree on it, over this way of the camera.
-  int joining = 8;
-  double joining_m = 2;
+  int joining = 5;
+  double joining_m = 1.5;
   friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };
 

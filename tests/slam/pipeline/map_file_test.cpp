@@ -101,6 +101,14 @@ class Layout {
     if (s.loop_memory.drift) pose(*s.loop_memory.drift);
     put<std::uint32_t>(s.loop_memory.keyframe.value);
     put<std::int32_t>(s.loop_memory.agreeing);
+    put<std::uint64_t>(s.loop_memory.places.size());
+    for (const PiecePlace& place : s.loop_memory.places) {
+      put<std::uint32_t>(place.origin.value, place.other.value);
+      pose(place.other_from_own);
+      put<std::uint32_t>(place.keyframe.value);
+      put<std::int32_t>(place.agreeing);
+      put<double>(place.way_m);
+    }
     put<std::uint64_t>(s.tracked_frames.size());
     for (const auto& [stamp_ns, frame] : s.tracked_frames) {
       put<std::int64_t>(stamp_ns);
@@ -158,7 +166,7 @@ class Layout {
     }
   }
   void keyframe(const Keyframe& k) {
-    put<std::uint32_t>(k.id.value);
+    put<std::uint32_t>(k.id.value, k.origin.value);
     put<std::int64_t>(k.stamp_ns);
     pose(k.camera_from_world);
     features(k.features);
@@ -276,6 +284,11 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   const int levels = midway().config.features.levels;
 
   refuses("a keyframe's id", [](Parts& p) { ++p.standing->id.value; });
+  refuses("a keyframe's origin", [=](Parts& p) { p.standing->origin.value = keyframes; });
+  refuses("a keyframe's origin", [](Parts& p) { p.standing->origin = p.fallen->id; });
+  refuses("a keyframe of a piece's place", [=](Parts& p) {
+    p.state.loop_memory.places.push_back({KeyframeId{0}, KeyframeId{keyframes}, SE3(), {}, 1, 0});
+  });
   refuses("a keyframe's place", [](Parts& p) {
     p.standing->camera_from_world =
         SE3(p.standing->camera_from_world.rotation(), Eigen::Vector3d(1e6, 0, 0));
@@ -353,7 +366,13 @@ TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
               state.last_stamp_ns);
   state.loop_memory = {.drift = SE3::exp((Vector6d() << 1, 2, 3, 0.4, 0.5, 0.6).finished()),
                        .keyframe = KeyframeId{1},
-                       .agreeing = 1};
+                       .agreeing = 1,
+                       .places = {{.origin = KeyframeId{1},
+                                   .other = KeyframeId{0},
+                                   .other_from_own = SE3::exp(Vector6d::Constant(0.3)),
+                                   .keyframe = KeyframeId{2},
+                                   .agreeing = 4,
+                                   .way_m = 1.25}}};
   state.tracker.stale_scores = {.of = {{0.25, 1}, {0.5, 3}}, .queries = 3};
   for (const SlamState& of : {state, start()}) {
     const std::string bytes = framed(Layout(of).bytes());
@@ -415,8 +434,8 @@ TEST(MapFile, SaysWhatIsWrong) {
   EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
   EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
   std::string other = midway_bytes();
-  other[8] = 12;
-  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 12, but this program reads 11");
+  other[8] = 13;
+  EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 13, but this program reads 12");
   EXPECT_NE(refusal_of(midway_bytes() + "x").find("too long"), std::string::npos);
   try {
     decode_slam(midway_bytes(), "room.mhmap", testing_support::box_room_vocabulary(2));

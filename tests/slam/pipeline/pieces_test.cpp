@@ -12,34 +12,34 @@ namespace {
 
 using testing_support::FeatureWorld;
 
-constexpr Stamp kStep_ns = 33'333'333;
-const FeatureWorld kRow(2500, 400);
+constexpr Stamp kFrameStep_ns = 33'333'333;
+const FeatureWorld kRowOfRooms(2500, 400);
 
-std::shared_ptr<const Vocabulary> vocabulary() {
+std::shared_ptr<const Vocabulary> shipped_words() {
   static const auto loaded = std::make_shared<const Vocabulary>(
       Vocabulary::load(std::string(MH_SOURCE_DIR) + "/assets/vocabulary.mhvoc"));
   return loaded;
 }
 
 /// A walk through three rooms and back, blind from the first to the last.
-struct Walk {
+struct BlindWalk {
   std::vector<SE3> path = FeatureWorld::there_and_back(0, 3);
   std::size_t blind_from = 155, blind_to = 600;
   SlamState state;
   std::vector<StepReport> reports = {};
 
-  explicit Walk(double new_piece_after_s) {
+  explicit BlindWalk(double new_piece_after_s) {
     SlamConfig config;
     config.features.count = 400;
     config.track.max_speed_m_s = 1.5;
     config.track.new_piece_after_s = new_piece_after_s;
-    state = make_slam(FeatureWorld::camera(), config, vocabulary());
+    state = make_slam(FeatureWorld::camera(), config, shipped_words());
   }
   const StepReport& feed() {
     const std::size_t i = reports.size();
     const bool blind = i >= blind_from && i < blind_to;
-    reports.push_back(step(state, static_cast<Stamp>(i + 1) * kStep_ns,
-                           blind ? Features() : kRow.see(path[i], RandomStream(2).fork(i)),
+    reports.push_back(step(state, static_cast<Stamp>(i + 1) * kFrameStep_ns,
+                           blind ? Features() : kRowOfRooms.see(path[i], RandomStream(2).fork(i)),
                            RandomStream(3).fork(i)));
     return reports.back();
   }
@@ -51,7 +51,7 @@ struct Walk {
 };
 
 TEST(Pieces, BeginAfterABlindSpellAndAreJoinedWhereTheyMeet) {
-  Walk walk(1);
+  BlindWalk walk(1);
   std::size_t joined_at = 0;
   while (!walk.ended()) {
     const StepReport& report = walk.feed();
@@ -80,33 +80,33 @@ TEST(Pieces, BeginAfterABlindSpellAndAreJoinedWhereTheyMeet) {
   EXPECT_EQ(all.size(), walk.path.size() - (walk.blind_to - walk.blind_from));
   for (const TimedPose& pose : all) {
     EXPECT_EQ(pose.map, 0u);
-    const auto i = static_cast<std::size_t>(pose.stamp_ns / kStep_ns - 1);
+    const auto i = static_cast<std::size_t>(pose.stamp_ns / kFrameStep_ns - 1);
     ASSERT_LT(walk.error_m(i, pose.world_from_camera), 0.15) << i;
   }
 }
 
 TEST(Pieces, AreKeptApartByDefault) {
-  Walk walk(0);
+  BlindWalk walk(0);
   while (walk.reports.size() < walk.blind_to + 60) walk.feed();
   for (std::size_t i = walk.blind_to; i < walk.reports.size(); ++i)
     EXPECT_EQ(walk.reports[i].status, TrackStatus::kLost) << i;
 }
 
 TEST(Pieces, AreSavedWithTheMapAndAnswerInTheirOwnWorld) {
-  Walk walk(1);
+  BlindWalk walk(1);
   while (walk.reports.size() < walk.blind_to + 150) walk.feed();
   const KeyframeId second = walk.reports.back().origin;
   ASSERT_GT(second.value, 0u);
   const std::string saved = encode_slam(walk.state);
-  const SlamState loaded = decode_slam(saved, "map", vocabulary());
+  const SlamState loaded = decode_slam(saved, "map", shipped_words());
   EXPECT_EQ(encode_slam(loaded), saved);
   for (const auto& [i, origin] :
        {std::pair(std::size_t{20}, KeyframeId{0}), std::pair(walk.blind_to + 20, second)}) {
     const RandomStream noise = RandomStream(9).fork(i);
     SlamState scratch = loaded;
     rewind(scratch);
-    const StepReport found = step(scratch, static_cast<Stamp>(i + 1) * kStep_ns,
-                                  kRow.see(walk.path[i], noise), RandomStream(4).fork(i));
+    const StepReport found = step(scratch, static_cast<Stamp>(i + 1) * kFrameStep_ns,
+                                  kRowOfRooms.see(walk.path[i], noise), RandomStream(4).fork(i));
     EXPECT_EQ(found.status, TrackStatus::kRelocalized) << i;
     EXPECT_EQ(found.origin, origin) << i;
   }
