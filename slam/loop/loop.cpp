@@ -213,23 +213,19 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
 
 namespace {
 
-/// The keyframe's pose in the other world, as a place has it.
-SE3 pose_by(const PiecePlace& place, const Keyframe& keyframe) {
-  return keyframe.camera_from_world * place.other_from_own.inverse();
-}
-
 /// Notes where a keyframe would be in another piece. Each keyframe supports a place once.
-void support(std::vector<PiecePlace>& places, const Keyframe& keyframe, const MapPose& seen,
-             const Map& map, const LoopConfig& config) {
-  const Eigen::Vector3d now = keyframe.camera_from_world.inverse().translation();
-  const SE3 other_from_own = seen.camera_from_world.inverse() * keyframe.camera_from_world;
+/// @returns the place's index
+std::size_t support(std::vector<PiecePlace>& places, const Keyframe& keyframe, const MapPose& seen,
+                    const Map& map, const LoopConfig& config) {
+  const Eigen::Vector3d here = keyframe.camera_from_world.inverse().translation();
+  const SE3 world_from_seen = seen.camera_from_world.inverse();
+  const SE3 other_from_own = world_from_seen * keyframe.camera_from_world;
   for (PiecePlace& place : places) {
     if (place.origin != keyframe.origin || place.other != seen.origin) continue;
     const Keyframe& last = map.at(map.live_keyframe(place.keyframe));
-    const double moved_m = (now - last.camera_from_world.inverse().translation()).norm();
-    const SE3 expected = pose_by(place, keyframe);
-    const double off_m =
-        (expected.inverse().translation() - seen.camera_from_world.inverse().translation()).norm();
+    const double moved_m = (here - last.camera_from_world.inverse().translation()).norm();
+    const SE3 expected = keyframe.camera_from_world * place.other_from_own.inverse();
+    const double off_m = (expected.inverse().translation() - world_from_seen.translation()).norm();
     if (off_m > config.same_drift_m + config.max_drift_share * moved_m ||
         angle_between_rad(expected, seen.camera_from_world) > config.same_drift_rad)
       continue;
@@ -239,9 +235,20 @@ void support(std::vector<PiecePlace>& places, const Keyframe& keyframe, const Ma
     }
     place.keyframe = keyframe.id;
     place.other_from_own = other_from_own;
-    return;
+    return static_cast<std::size_t>(&place - places.data());
   }
   places.push_back({keyframe.origin, seen.origin, other_from_own, keyframe.id, 1, 0});
+  return places.size() - 1;
+}
+
+/// Whether a place is supported enough, and no other one of its piece by half as many.
+bool is_certain(const std::vector<PiecePlace>& places, std::size_t index,
+                const LoopConfig& config) {
+  const PiecePlace& place = places[index];
+  if (place.agreeing < config.joining || place.way_m < config.joining_m) return false;
+  return std::ranges::none_of(places, [&](const PiecePlace& other) {
+    return &other != &place && other.origin == place.origin && 2 * other.agreeing >= place.agreeing;
+  });
 }
 
 }  // namespace
@@ -253,7 +260,7 @@ std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
   const LoopConfig& config = context.config.loop;
   const Keyframe& keyframe = map.at(newest);
   const auto is_of_another = [&](KeyframeId id) { return map.at(id).origin != keyframe.origin; };
-  std::vector<Loop> found;
+  std::vector<std::pair<std::size_t, Loop>> found;
   for (const KeyframeId candidate :
        candidates(map, newest, is_of_another, context.config.semantics, config)) {
     auto tried =
@@ -261,33 +268,17 @@ std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
                        context, stream, {.words = Matcher::kLoop, .projection = Matcher::kLoop});
     if (!tried.camera_from_world) continue;
     const MapPose seen{map.at(candidate).origin, *tried.camera_from_world};
-    const SE3 other_from_own = seen.camera_from_world.inverse() * keyframe.camera_from_world;
-    if (!is_reachable({seen.origin, other_from_own})) continue;
-    support(memory.places, keyframe, seen, map, config);
-    found.push_back({newest, candidate, seen.camera_from_world, std::move(tried.landmarks)});
-  }
-  for (const Loop& loop : found) {
-    const MapPose seen{map.at(loop.old_keyframe).origin, loop.camera_from_world};
-    const auto is_it = [&](const PiecePlace& place) {
-      return place.keyframe == newest && place.other == seen.origin &&
-             (place.other_from_own.inverse() * seen.camera_from_world.inverse() *
-              keyframe.camera_from_world)
-                     .log()
-                     .norm() < 1e-6;
-    };
-    const auto place = std::ranges::find_if(memory.places, is_it);
-    if (place == memory.places.end() || place->agreeing < config.joining ||
-        place->way_m < config.joining_m)
+    if (!is_reachable({seen.origin, seen.camera_from_world.inverse() * keyframe.camera_from_world}))
       continue;
-    const bool has_rival = std::ranges::any_of(memory.places, [&](const PiecePlace& other) {
-      return &other != &*place && other.origin == keyframe.origin &&
-             2 * other.agreeing >= place->agreeing;
-    });
-    if (has_rival) continue;
+    found.emplace_back(support(memory.places, keyframe, seen, map, config),
+                       Loop{newest, candidate, seen.camera_from_world, std::move(tried.landmarks)});
+  }
+  for (auto& [place, loop] : found) {
+    if (!is_certain(memory.places, place, config)) continue;
     std::erase_if(memory.places, [&](const PiecePlace& other) {
       return other.origin == keyframe.origin || other.other == keyframe.origin;
     });
-    return loop;
+    return std::move(loop);
   }
   return std::nullopt;
 }

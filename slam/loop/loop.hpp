@@ -47,8 +47,8 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
 /// Looks for the newest keyframe's place in other pieces of the map. A place counts once
 /// LoopConfig::joining keyframes agree on it, over LoopConfig::joining_m, and no other place is
 /// supported by half as many.
-/// @param is_reachable  whether the camera can have moved between two pieces: `origin` and
-///   `camera_from_world` are the other piece and other_from_own
+/// @param is_reachable  whether the newest keyframe's piece can be there; its argument holds the
+///   other piece and, in the place of a camera, other_from_own
 std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
                                     const SlamContext& context, RandomStream stream,
                                     const IsPossible& is_reachable);

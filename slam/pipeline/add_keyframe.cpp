@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/pipeline/add_keyframe.hpp"
 
-#include <iterator>
 #include <utility>
 
 #include "slam/loop/loop.hpp"
 #include "slam/mapping/local_mapping.hpp"
 #include "slam/pipeline/locate.hpp"
+#include "slam/pipeline/pieces.hpp"
 
 namespace mh {
 namespace {
@@ -23,28 +23,6 @@ KeyframeId map_frame(Map& map, Keyframe keyframe, const std::vector<LandmarkId>&
   add_landmarks_from_depth(map, id, context);
   if (map.at(id).origin != id) map_keyframe(map, id, context);
   return id;
-}
-
-/// Whether the camera can have come from one piece of the map to the other, in either direction,
-/// wherever it did so.
-bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& world) {
-  const auto& frames = state.tracked_frames;
-  const auto piece_of = [&](const auto& frame) {
-    return state.map.at(frame->second.reference).origin;
-  };
-  for (auto before = frames.begin(); before != frames.end(); ++before) {
-    const auto after = std::next(before);
-    if (after == frames.end()) break;
-    const bool leaves = piece_of(before) == origin && piece_of(after) == world.origin;
-    const bool enters = piece_of(before) == world.origin && piece_of(after) == origin;
-    if (!leaves && !enters) continue;
-    SE3 a = map_pose(state, before->second).camera_from_world,
-        b = map_pose(state, after->second).camera_from_world;
-    (leaves ? a : b) = (leaves ? a : b) * world.camera_from_world;
-    if (!within_reach(a, b, after->first - before->first, state.config.track.max_speed_m_s))
-      return false;
-  }
-  return true;
 }
 
 void look_for_loop(SlamState& state, KeyframeId newest, RandomStream stream,

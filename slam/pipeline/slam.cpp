@@ -84,20 +84,6 @@ MapPose map_pose(const SlamState& state, const TrackedFrame& frame) {
           frame.camera_from_reference * state.map.camera_from_world(frame.reference)};
 }
 
-bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_world,
-                  Stamp elapsed_ns, double max_speed_m_s) {
-  if (max_speed_m_s == 0) return true;
-  constexpr double kLeast_m = 0.3, kLeast_rad = 0.2, kNanosecond_s = 1e-9;
-  constexpr double kMaxTurn_rad_s = 3;  // faster than any robot's head, about that of a hand
-  const double moved_m =
-      (other_camera_from_world.inverse().translation() - camera_from_world.inverse().translation())
-          .norm();
-  const double elapsed_s = std::abs(static_cast<double>(elapsed_ns)) * kNanosecond_s;
-  return moved_m <= kLeast_m + max_speed_m_s * elapsed_s &&
-         angle_between_rad(other_camera_from_world, camera_from_world) <=
-             kLeast_rad + kMaxTurn_rad_s * elapsed_s;
-}
-
 Trajectory trajectory(const SlamState& state) {
   Trajectory poses;
   for (const auto& [stamp_ns, frame] : state.tracked_frames) {

@@ -103,11 +103,6 @@ void set_query_settings(SlamState& state, const SemanticConfig& settings);
 /// Where a tracked frame is in the map as it is now.
 MapPose map_pose(const SlamState& state, const TrackedFrame& frame);
 
-/// Whether a camera can have come from one pose to the other, with TrackConfig::max_speed_m_s
-/// (0: anywhere) and as fast as a hand turns. @param elapsed_ns  of either sign
-bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_world,
-                  Stamp elapsed_ns, double max_speed_m_s);
-
 /// Each tracked frame once (its last attempt), ordered by stamp: its pose relative to its reference
 /// keyframe, composed with that keyframe's current pose, in the world of its piece of the map. The
 /// origin of the first one is the first camera pose.

@@ -13,6 +13,7 @@
 #include "slam/optimize/depth_trust.hpp"
 #include "slam/pipeline/add_keyframe.hpp"
 #include "slam/pipeline/locate.hpp"
+#include "slam/pipeline/pieces.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh {
@@ -64,6 +65,22 @@ void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Featu
                                                                state.depth_frames++, *disagreement);
 }
 
+/// Whether a camera can have come from one pose to the other, at TrackConfig::max_speed_m_s and as
+/// fast as a hand turns. @param elapsed_ns  of either sign
+bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_world,
+                  Stamp elapsed_ns, double max_speed_m_s) {
+  if (max_speed_m_s == 0) return true;
+  constexpr double kLeast_m = 0.3, kLeast_rad = 0.2, kNanosecond_s = 1e-9;
+  constexpr double kMaxTurn_rad_s = 3;  // faster than any robot's head, about that of a hand
+  const double moved_m =
+      (other_camera_from_world.inverse().translation() - camera_from_world.inverse().translation())
+          .norm();
+  const double elapsed_s = std::abs(static_cast<double>(elapsed_ns)) * kNanosecond_s;
+  return moved_m <= kLeast_m + max_speed_m_s * elapsed_s &&
+         angle_between_rad(other_camera_from_world, camera_from_world) <=
+             kLeast_rad + kMaxTurn_rad_s * elapsed_s;
+}
+
 /// Whether a frame can have a pose: in the piece of the map of the frame before it, or of the one
 /// after it (which is known after a rewind), and within reach of those that are in its piece.
 bool is_possible(const SlamState& state, Stamp stamp_ns, const MapPose& pose) {
@@ -87,20 +104,6 @@ std::optional<MapPose> earlier_pose(const SlamState& state, Stamp stamp_ns) {
   const auto frame = state.tracked_frames.find(stamp_ns);
   if (frame == state.tracked_frames.end()) return std::nullopt;
   return map_pose(state, frame->second);
-}
-
-/// Where a new piece of the map begins with this frame, by the last frame that was located; nothing
-/// if that was not long ago, or if the frame was located when it was shown before.
-std::optional<SE3> place_of_new_piece(const SlamState& state, Stamp stamp_ns) {
-  constexpr double kSecond_ns = 1e9;
-  const double patience_s = state.config.track.new_piece_after_s;
-  if (patience_s == 0) return std::nullopt;
-  const auto after = state.tracked_frames.lower_bound(stamp_ns);
-  if (after != state.tracked_frames.end() && after->first == stamp_ns) return std::nullopt;
-  if (after == state.tracked_frames.begin()) return std::nullopt;
-  const auto& [before_ns, before] = *std::prev(after);
-  if (static_cast<double>(stamp_ns - before_ns) < patience_s * kSecond_ns) return std::nullopt;
-  return map_pose(state, before).camera_from_world;
 }
 
 /// Counts where landmarks were expected and found: young ones that are seldom found are culled.
