@@ -275,8 +275,9 @@ std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
   }
   for (auto& [place, loop] : found) {
     if (!is_certain(memory.places, place, config)) continue;
+    const KeyframeId joined[] = {keyframe.origin, map.at(loop.old_keyframe).origin};
     std::erase_if(memory.places, [&](const PiecePlace& other) {
-      return other.origin == keyframe.origin || other.other == keyframe.origin;
+      return std::ranges::count(joined, other.origin) + std::ranges::count(joined, other.other) > 0;
     });
     return std::move(loop);
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pieces of a map: begun where nothing that is known can be seen, joined where they meet.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "slam/pipeline/map_file.hpp"
@@ -82,6 +84,22 @@ TEST(Pieces, BeginAfterABlindSpellAndAreJoinedWhereTheyMeet) {
     EXPECT_EQ(pose.map, 0u);
     const auto i = static_cast<std::size_t>(pose.stamp_ns / kFrameStep_ns - 1);
     ASSERT_LT(walk.error_m(i, pose.world_from_camera), 0.15) << i;
+  }
+}
+
+// A second after the camera was in the third room, what it sees looks like the first.
+TEST(Pieces, ACopyOutOfReachIsNoPlace) {
+  BlindWalk walk(0.5);
+  walk.blind_from = 620, walk.blind_to = 650;
+  std::copy(walk.path.begin(), walk.path.begin() + 300, walk.path.begin() + 650);
+  while (walk.reports.size() < 950) {
+    const StepReport& report = walk.feed();
+    const std::size_t i = walk.reports.size();
+    if (i <= walk.blind_from) EXPECT_EQ(report.origin, KeyframeId{0}) << i;
+    if (i > walk.blind_to) {
+      ASSERT_NE(report.status, TrackStatus::kLost) << i;
+      EXPECT_NE(report.origin, KeyframeId{0}) << i;
+    }
   }
 }
 
