@@ -28,6 +28,9 @@ struct LoopConfig {
   /// Pieces of a map are joined where this many keyframes agree on it, over this way of the camera.
   int joining = 5;
   double joining_m = 1.5;
+  /// If not 0, only where the camera's motion from one to the other is known this well (two
+  /// standard deviations), so that no copy of the place is within reach.
+  double joining_within_m = 0;
   friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };
 
@@ -35,7 +38,7 @@ template <MaybeConst<LoopConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, augmented, min_gap, loosely_shared, min_similarity_share, agreeing, patience,
          same_drift_m, same_drift_rad, max_drift_m, max_drift_share, max_drift_rad, negligible_m,
-         negligible_rad, joining, joining_m] = c;
+         negligible_rad, joining, joining_m, joining_within_m] = c;
   v("enabled", enabled, setting::kSwitch, "whether loops are looked for");
   v("augmented", augmented, setting::kSwitch,
     "candidates by equation 1 with labels; else by words alone");
@@ -55,7 +58,10 @@ void fields(C& c, Visit& v) {
   v("negligible_m", negligible_m, setting::kLength_m, "below, landmarks are joined but poses stay");
   v("negligible_rad", negligible_rad, setting::kAngle_rad, "");
   v("joining", joining, setting::kCount, "keyframes that must agree before pieces are joined,");
-  v("joining_m", joining_m, setting::kLength_m, "over this way of the camera");
+  v("joining_m", joining_m, setting::kLength_m, "over this way of the camera,");
+  v("joining_within_m", joining_within_m, setting::kLength_m,
+    "and only if the motion between them is known this well, since copies may be farther away; 0: "
+    "always");
 }
 
 }  // namespace mh

@@ -2,6 +2,7 @@
 #include "slam/pipeline/pieces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <vector>
 
@@ -55,7 +56,7 @@ bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& othe
   if (max_speed_m_s == 0) return true;
   // One standard deviation, at once and per second.
   constexpr double kLeast_m = 0.15, kLeast_rad = 0.15, kTurn_rad_s = 0.25;
-  constexpr double kMostSigmas = 2;
+  constexpr double kMostSigmas = 2, kMost_rad = 1.2;
   const SE3& other_from_own = other.camera_from_world;
   SE3 other_from_piece;   // of the piece that the camera is in, as far as it is known
   std::vector<Gap> gaps;  // since it was in the other piece
@@ -85,6 +86,10 @@ bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& othe
       variance_m2 += position_m * position_m + angle_rad * angle_rad * lever_m * lever_m;
       variance_rad2 += angle_rad * angle_rad;
     }
+    const double most_m = state.config.loop.joining_within_m;
+    if (most_m > 0 && (kMostSigmas * std::sqrt(variance_m2) > most_m ||
+                       kMostSigmas * std::sqrt(variance_rad2) > kMost_rad))
+      return false;
     const double off_m = (other_from_own * there.inverse().translation() - place_m).norm();
     const double off_rad = angle_between_rad(other_from_own, other_from_piece);
     if (off_m * off_m > kMostSigmas * kMostSigmas * variance_m2 ||
