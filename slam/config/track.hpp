@@ -40,8 +40,8 @@ template <MaybeConst<TrackConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [min_inliers, min_inliers_sparse, min_inliers_frame, search_radius_px, local_radius_px,
          local_keyframes, near_distance_m, near_angle_rad, sure_position_m, sure_angle_rad,
-         reckon_position_m, reckon_angle_rad, max_speed_m_s, earlier_poses,
-         new_piece_after_s, coast_s, readout_s] = c;
+         reckon_position_m, reckon_angle_rad, max_speed_m_s, earlier_poses, new_piece_after_s,
+         coast_s, readout_s] = c;
   v("min_inliers", min_inliers, setting::kPoints, "after the local map, to count as tracked");
   v("min_inliers_sparse", min_inliers_sparse, setting::kPoints,
     "where that is more than a sixth of the keypoints");

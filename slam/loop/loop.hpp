@@ -24,8 +24,8 @@ struct LoopMemory {
   /// world_from_world correction: from where the camera is to where the last keyframe that
   /// recognized a place would put it.
   std::optional<SE3> drift;
-  KeyframeId keyframe;  ///< the keyframe that found `drift`
-  int agreeing = 0;     ///< keyframes that agreed on the drift so far
+  KeyframeId keyframe;                  ///< the keyframe that found `drift`
+  int agreeing = 0;                     ///< keyframes that agreed on the drift so far
   std::vector<PiecePlace> places = {};  ///< of pieces that are not joined yet
 };
 

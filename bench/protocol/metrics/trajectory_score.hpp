@@ -37,7 +37,7 @@ void fields(S& score, Visit& v) {
   v(Metric{"rpe_frame_rmse_m", "RPE m/fr", "m", 5, kLess, "", true}, rpe_frame_rmse_m);
   v(Metric{"rpe_second_rmse_m", "RPE m/s", "m", 5, kLess}, rpe_second_rmse_m);
   v(Metric{"completeness", "complete", "%", 2, kMore, "offered", true}, completeness);
-  v(Metric{"in_any_map", "in any map", "%", 2, kMore, "offered"}, in_any_map);
+  v(Metric{"in_any_map", "", "%", 2, kMore, "offered"}, in_any_map);
 }
 
 /// Computes ATE, RPE and completeness of an estimate, by the definitions of evaluate().

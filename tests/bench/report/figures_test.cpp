@@ -321,7 +321,7 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
   ASSERT_EQ(json["rows"].size(), 2u);
   const nlohmann::json semantic = rounded(json["rows"][0]), plain = rounded(json["rows"][1]);
   EXPECT_EQ(semantic["system"], "semantic");
-  EXPECT_EQ(semantic["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875,
+  EXPECT_EQ(semantic["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875, "in_any_map": 0.9375,
       "ate_rmse_m": 0.0111, "ate_median_m": 0.00666, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
       "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0,
       "scored": 874.125})"));
@@ -347,7 +347,7 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
 
 TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   const nlohmann::json run = rounded(results_json(suite_, runs_)["runs"][0]);
-  EXPECT_EQ(run["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875,
+  EXPECT_EQ(run["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875, "in_any_map": 0.9375,
       "ate_rmse_m": 0.0111, "ate_median_m": 0.00666, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
       "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0,
       "scored": 874.125})"));
@@ -356,7 +356,7 @@ TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   nlohmann::json query = run["points"][0]["held_out"][5];  // a false one
   for (const char* pose : {"truth", "estimate"}) query.erase(pose);
   EXPECT_EQ(query, nlohmann::json::parse(R"({"frame": 179, "stamp_ns": 179, "success": true,
-      "correct": false, "false_positive": true, "in_map": null, "stage": "verified", "attempts": 3, "blank_frames": 0,
+      "correct": false, "false_positive": true, "in_map": null, "map": 0, "stage": "verified", "attempts": 3, "blank_frames": 0,
       "distance_m": 1.0, "angle_deg": 10.0, "aligned_distance_m": 1.5, "candidates":
       {"keyframes": 120, "c1": 60, "c2": 30, "c3": 12, "final": 5, "label_mass": 0.31, "gamma": 1.75,
       "unscored": 0.11, "stale": 0.22, "stale_weight": 0.33, "stale_age": 4.4},
@@ -401,6 +401,7 @@ TEST_F(Figures, OfTheCsvStandUnderTheirHeadings) {
                                      {"rpe_frame_rmse_m", 0.00333},
                                      {"rpe_second_rmse_m", 0.00444},
                                      {"completeness", 0.875},
+                                     {"in_any_map", 0.9375},
                                      {"restarts", 6},
                                      {"dropped", 7},
                                      {"held_out.queries", 8},

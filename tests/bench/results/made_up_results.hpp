@@ -82,7 +82,8 @@ inline RunResult made_up_run(const RunSpec& spec, const MadeUpFigures& figures) 
                     .ate_first_pose_m = figures.first_pose_m,
                     .rpe_frame_rmse_m = figures.rpe_frame_m,
                     .rpe_second_rmse_m = figures.rpe_second_m,
-                    .completeness = figures.completeness};
+                    .completeness = figures.completeness,
+                    .in_any_map = 0.5 * (1 + figures.completeness)};
   run.mapping.restarts = figures.restarts;
   for (std::size_t i = 0; i < figures.dropped; ++i) run.mapping.dropped.push_back(i);
   run.mapping.matches.emplace()[0] = figures.pairs;
