@@ -101,8 +101,9 @@ TEST(ScoreMap, OfAMapAtTruePosesIsThatOfItsOwnFrames) {
   const MapStudy study = study_of(mapper.map(), {.floor_z_m = 0, .robot_height_m = 1.21});
   const MapScores scores = score_map(scene, mapper, poses, study, {});
   EXPECT_EQ(scores.keyframes, 5u);
-  EXPECT_NEAR(scores.grid.iou.value(), scores.grid_true_poses.iou.value(), 0.02);
-  EXPECT_NEAR(scores.grid.iou_seen.value(), scores.grid_true_poses.iou_seen.value(), 0.02);
+  // The mapper's poses are rounded to a fraction of a cell: a wall may fall into the next one.
+  EXPECT_NEAR(scores.grid.iou.value(), scores.grid_true_poses.iou.value(), 0.08);
+  EXPECT_NEAR(scores.grid.iou_seen.value(), scores.grid_true_poses.iou_seen.value(), 0.08);
   EXPECT_GT(scores.grid.iou_seen.value(), scores.grid.iou.value() + 0.2);
   EXPECT_NEAR(scores.voxels.occupied_precision.value(),
               scores.voxels_true_poses.occupied_precision.value(), 0.02);
