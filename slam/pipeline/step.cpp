@@ -22,16 +22,18 @@ namespace {
 constexpr int kMinInitialPoints = 100;  // with depth, for a frame to define the origin
 
 /// Begins a piece of the map with a frame of enough depth, which defines the piece's world.
-StepReport begin_piece(SlamState& state, PreparedFrame frame, const SE3& camera_from_world,
+/// @param place  camera_from_world; absent: it is the origin
+StepReport begin_piece(SlamState& state, PreparedFrame frame, const std::optional<SE3>& place,
                        const StepObservers& observers, StepReport report) {
   const int with_depth = points_with_depth(frame.features);
   if (with_depth < kMinInitialPoints) return report;
+  const SE3 camera_from_world = place.value_or(SE3());
   const TrackedPose first{camera_from_world, std::vector<LandmarkId>(frame.features.size())};
   const KeyframeId id =
       add_keyframe(state, frame, first, KeyframeId(), RandomStream(), observers, report);
   state.tracked_frames[frame.stamp_ns] = {id, SE3()};
   report.status = TrackStatus::kInitialized;
-  report.world_from_camera = camera_from_world.inverse();
+  report.world_from_camera = place ? place->inverse() : SE3();
   report.origin = id;
   report.inliers = with_depth;
   forget(state.tracker);
@@ -139,7 +141,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
     frame.odom_from_camera = odom_from_camera;
     frame.imu = imu;
   }
-  if (state.map.empty()) return begin_piece(state, std::move(frame), SE3(), observers, report);
+  if (state.map.empty()) return begin_piece(state, std::move(frame), {}, observers, report);
 
   auto located = locate(
       state, state.tracker, frame, stream, observers, report,
@@ -153,7 +155,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
   }
   if (!located) {
     lose(state.tracker, stamp_ns, state.config.track.coast_s);
-    if (new_piece) return begin_piece(state, std::move(frame), *new_piece, observers, report);
+    if (new_piece) return begin_piece(state, std::move(frame), new_piece, observers, report);
     return report;
   }
   TrackedPose& tracked = located->tracked;
