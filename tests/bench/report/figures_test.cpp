@@ -321,7 +321,8 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
   ASSERT_EQ(json["rows"].size(), 2u);
   const nlohmann::json semantic = rounded(json["rows"][0]), plain = rounded(json["rows"][1]);
   EXPECT_EQ(semantic["system"], "semantic");
-  EXPECT_EQ(semantic["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875, "in_any_map": 0.9375,
+  EXPECT_EQ(semantic["trajectory"],
+            nlohmann::json::parse(R"({"completeness": 0.875, "in_any_map": 0.9375,
       "ate_rmse_m": 0.0111, "ate_median_m": 0.00666, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
       "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0,
       "scored": 874.125})"));
@@ -347,7 +348,8 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
 
 TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   const nlohmann::json run = rounded(results_json(suite_, runs_)["runs"][0]);
-  EXPECT_EQ(run["trajectory"], nlohmann::json::parse(R"({"completeness": 0.875, "in_any_map": 0.9375,
+  EXPECT_EQ(run["trajectory"],
+            nlohmann::json::parse(R"({"completeness": 0.875, "in_any_map": 0.9375,
       "ate_rmse_m": 0.0111, "ate_median_m": 0.00666, "ate_rmse_deg": 0.75, "ate_first_pose_m": 0.0222, "rpe_frame_rmse_m": 0.00333,
       "rpe_second_rmse_m": 0.00444, "offered": 1000.0, "tracked": 875.0,
       "scored": 874.125})"));
