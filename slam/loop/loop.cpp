@@ -260,6 +260,7 @@ std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
   const LoopConfig& config = context.config.loop;
   const Keyframe& keyframe = map.at(newest);
   const auto is_of_another = [&](KeyframeId id) { return map.at(id).origin != keyframe.origin; };
+  if (std::ranges::none_of(map.keyframes(), is_of_another, &Keyframe::id)) return std::nullopt;
   std::vector<std::pair<std::size_t, Loop>> found;
   for (const KeyframeId candidate :
        candidates(map, newest, is_of_another, context.config.semantics, config)) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/run/one/ask_queries.hpp"
 
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,12 +65,13 @@ class QueryRound {
       const FramesMadeOnce shared(frames_);
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
       const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
+      std::map<std::uint32_t, std::optional<Anchor>> anchors;  // by map
       for (std::size_t p = first; p < end; ++p) {
         if (!once) frozen.use_point(p);
         try {
           const QueryAnswer answer =
               query(frozen, index, frames, spec_.protocol, stream_, memo.get());
-          scores[p]->push_back(judged(answer, moment));
+          scores[p]->push_back(judged(answer, moment, anchors));
           scores[p]->back().in_map = in_map;
           if (set_ == QuerySet::kGraded)
             scores[p]->back().grade = world_.simulated->graded.list[index].grade;
@@ -80,11 +84,17 @@ class QueryRound {
   }
 
  private:
-  QueryScore judged(const QueryAnswer& answer, const QueryMoment& moment) const {
+  /// @param anchors  of this query, by map: found once each
+  QueryScore judged(const QueryAnswer& answer, const QueryMoment& moment,
+                    std::map<std::uint32_t, std::optional<Anchor>>& anchors) const {
     std::optional<Anchor> anchor;
-    if (answer.world_from_camera)
-      anchor = find_anchor(mapped_beside(run_, answer), run_.truth, moment, nearest_by(set_),
-                           spec_.protocol);
+    if (answer.world_from_camera) {
+      const auto [known, is_new] = anchors.try_emplace(answer.map);
+      if (is_new)
+        known->second = find_anchor(mapped_beside(run_, answer), run_.truth, moment,
+                                    nearest_by(set_), spec_.protocol);
+      anchor = known->second;
+    }
     return score(answer, moment, anchor, run_.alignment.truth_from_estimate, spec_.protocol);
   }
 
