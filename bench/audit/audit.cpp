@@ -201,9 +201,7 @@ class RunAuditor {
   bool is_correct(const Asked& asked, const SE3& world_from_camera) const {
     QueryAnswer answer;
     answer.world_from_camera = world_from_camera;
-    return score(answer, asked.moment, asked.anchor, run_.alignment.truth_from_estimate,
-                 spec_.protocol)
-        .correct;
+    return score(run_, answer, asked.moment, asked.anchor).correct;
   }
 
   Trials::Subject subject(const Asked& asked) const {

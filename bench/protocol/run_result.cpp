@@ -20,9 +20,23 @@ void take_trajectory(RunResult& run, const Trajectory& all) {
   run.alignment = align_estimate(run.estimate, run.truth);
 }
 
+namespace {
+
+bool is_in_largest_map(const RunResult& run, const QueryAnswer& answer) {
+  return run.estimate.empty() || run.estimate.front().map == answer.map;
+}
+
+}  // namespace
+
 Trajectory mapped_beside(const RunResult& run, const QueryAnswer& answer) {
-  const bool is_in_largest = run.estimate.empty() || run.estimate.front().map == answer.map;
-  return is_in_largest ? run.estimate : of_map(run.elsewhere, answer.map);
+  return is_in_largest_map(run, answer) ? run.estimate : of_map(run.elsewhere, answer.map);
+}
+
+QueryScore score(const RunResult& run, const QueryAnswer& answer, const QueryMoment& moment,
+                 const std::optional<Anchor>& anchor) {
+  std::optional<SE3> truth_from_estimate;
+  if (is_in_largest_map(run, answer)) truth_from_estimate = run.alignment.truth_from_estimate;
+  return score(answer, moment, anchor, truth_from_estimate, run.spec.protocol);
 }
 
 }  // namespace mh

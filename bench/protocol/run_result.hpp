@@ -66,6 +66,10 @@ void take_trajectory(RunResult& run, const Trajectory& all);
 /// The mapped frames of the map that an answer is in.
 Trajectory mapped_beside(const RunResult& run, const QueryAnswer& answer);
 
+/// Scores an answer by the run's protocol. Only the largest map is aligned with the truth.
+QueryScore score(const RunResult& run, const QueryAnswer& answer, const QueryMoment& moment,
+                 const std::optional<Anchor>& anchor);
+
 /// A run that failed.
 struct FailedRun {
   RunSpec spec;

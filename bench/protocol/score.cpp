@@ -59,7 +59,7 @@ std::optional<bool> is_in_map(const Trajectory& estimate, const Trajectory& mapp
 }
 
 QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
-                 const std::optional<Anchor>& anchor, const SE3& truth_from_estimate,
+                 const std::optional<Anchor>& anchor, const std::optional<SE3>& truth_from_estimate,
                  const ProtocolConfig& config) {
   QueryScore s{.answer = answer,
                .stamp_ns = moment.stamp_ns,
@@ -69,8 +69,8 @@ QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
   const SE3& estimate = *answer.world_from_camera;
   if (anchor) {
     const SE3 truth = moment.true_world_from_camera.value_or(anchor->truth);
-    if (moment.true_world_from_camera) {
-      const SE3 aligned = truth_from_estimate * estimate;
+    if (moment.true_world_from_camera && truth_from_estimate) {
+      const SE3 aligned = *truth_from_estimate * estimate;
       s.aligned_distance_m = (aligned.translation() - truth.translation()).norm();
     }
     const SE3 expected = local_truth(*anchor, truth);

@@ -77,7 +77,8 @@ struct QueryScore {
       false;  ///< returned, and outside them (or nothing was mapped to compare with)
   std::optional<bool> in_map = {};  ///< is_in_map()
   // Absent if no pose was returned or there is no anchor: nothing was mapped, or the truth is
-  // unknown. The aligned distance is also absent if the true pose is unknown.
+  // unknown. The aligned distance is also absent if the true pose is unknown, or the answer is not
+  // in the map that was aligned.
   std::optional<double> distance_m = {}, angle_deg = {};  ///< to the local truth
   std::optional<double> aligned_distance_m = {};  ///< to the truth after aligning the trajectory
   QueryGrade grade = {};
@@ -106,9 +107,9 @@ inline bool is_judged(const QueryScore& q) {
   return q.true_world_from_camera.has_value() || q.distance_m.has_value();
 }
 
-/// @param truth_from_estimate  global SE(3) alignment of the mapping trajectory
+/// @param truth_from_estimate  global SE(3) alignment of the answer's map; absent: unknown
 QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
-                 const std::optional<Anchor>& anchor, const SE3& truth_from_estimate,
+                 const std::optional<Anchor>& anchor, const std::optional<SE3>& truth_from_estimate,
                  const ProtocolConfig& config);
 
 }  // namespace mh

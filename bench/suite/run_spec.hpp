@@ -59,8 +59,8 @@ void fields(S& spec, Visit& v) {
   v("max_frames", max_frames);
 }
 
-/// Everything about a run, with paths unchanged: the input of a separate process. Its keys are
-/// those of the lists of fields (bench/suite/json_fields.hpp).
+/// Everything about a run, with paths unchanged: what its key is made of. The JSON keys are those
+/// of the lists of fields (bench/suite/json_fields.hpp).
 nlohmann::ordered_json to_json(const RunSpec& spec);
 
 /// The inverse. @throws InputError if the JSON was not created by to_json.

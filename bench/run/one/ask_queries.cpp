@@ -95,7 +95,7 @@ class QueryRound {
                                     nearest_by(set_), spec_.protocol);
       anchor = known->second;
     }
-    return score(answer, moment, anchor, run_.alignment.truth_from_estimate, spec_.protocol);
+    return score(run_, answer, moment, anchor);
   }
 
   std::optional<bool> is_in_any_map(const QueryMoment& moment) const {

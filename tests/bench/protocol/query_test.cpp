@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/protocol/run_result.hpp"
 #include "bench/protocol/score.hpp"
 #include "bench/protocol/summarize.hpp"
 #include "tests/bench/protocol/fake_system.hpp"
@@ -313,6 +314,24 @@ TEST(Score, DistanceAngleAndAlignedDistanceAreThoseWorkedByHand) {
   EXPECT_NEAR(s.angle_deg.value(), 0.05 * 180 / std::numbers::pi, 1e-9);
   EXPECT_NEAR(s.aligned_distance_m.value(), std::sqrt(0.88 * 0.88 + 4 + 0.16 * 0.16), 1e-12);
   EXPECT_TRUE(s.correct);
+}
+
+// The largest map alone is aligned with the truth: an answer in another has a local distance only.
+TEST(Score, OnlyAnswersInTheLargestMapHaveAnAlignedDistance) {
+  RunResult run;
+  run.alignment.truth_from_estimate = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(-9, 0, 0));
+  run.estimate = {{0, at(9, 0, 0), 2}, {1, at(10, 0, 0), 2}};
+  run.elsewhere = {{5, at(0, 0, 0), 1}};
+  QueryAnswer answer;
+  answer.world_from_camera = at(9.5, 0, 0);
+  for (const std::uint32_t map : {2, 1}) {
+    answer.map = map;
+    const Anchor anchor{at(9.5, 0, 0), at(0.5, 0, 0), 0};
+    const QueryScore s = score(run, answer, {0, at(0.5, 0, 0)}, anchor);
+    EXPECT_TRUE(s.correct);
+    EXPECT_EQ(s.distance_m.value(), 0);
+    EXPECT_EQ(s.aligned_distance_m.has_value(), map == 2);
+  }
 }
 
 // Both limits are inclusive.
