@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 #include "bench/systems/timed.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"

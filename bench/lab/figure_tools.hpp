@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/report/drawing/plot.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "slam/core/angles.hpp"
 
 // Helpers that the figures of the sensor models share.

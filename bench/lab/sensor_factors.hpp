@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 
 namespace mh {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/protocol/summarize.hpp"
+#include "bench/protocol/query_means.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/results/graded.hpp"
 #include "bench/results/statistics.hpp"

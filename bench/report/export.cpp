@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/report/text_table.hpp"
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 #include "bench/store/load_results.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/report/text_table.hpp"
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 
 namespace mh {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 
 namespace mh {
 

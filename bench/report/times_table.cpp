@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bench/report/table.hpp"
+#include "bench/report/results_table.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
 #include "slam/config/slam.hpp"

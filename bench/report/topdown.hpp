@@ -5,7 +5,7 @@
 
 #include "bench/protocol/run_result.hpp"
 #include "bench/protocol/world/world.hpp"
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 
 namespace mh {
 

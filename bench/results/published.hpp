@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 #include "bench/suite/suite.hpp"
 
 namespace mh {

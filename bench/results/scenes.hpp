@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 
 namespace mh {
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/summarize.hpp"
+#include "bench/protocol/query_means.hpp"
 #include "bench/store/columns.hpp"
 #include "bench/store/frame_row.hpp"
 #include "bench/suite/run_key.hpp"

@@ -12,7 +12,7 @@
 #include "scenes/generate/generate.hpp"
 #include "scenes/load.hpp"
 #include "sim/motion/motion.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/core/digest.hpp"

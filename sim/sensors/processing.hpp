@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 
 namespace mh {
 

@@ -5,7 +5,7 @@
 #include "sim/sensors/depth_bias.hpp"
 #include "sim/sensors/depth_noise.hpp"
 #include "sim/sensors/develop.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 
 namespace mh {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/lens.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "slam/core/trajectory.hpp"
 
 namespace mh {

@@ -10,7 +10,7 @@
 #include "sim/motion/commanded_base.hpp"
 #include "sim/motion/sensing.hpp"
 #include "sim/sensors/labels.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "slam/core/rgbd_frame.hpp"

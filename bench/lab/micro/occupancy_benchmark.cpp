@@ -17,7 +17,7 @@
 #include "robots/navigation/grid.hpp"
 #include "robots/navigation/plan.hpp"
 #include "scenes/load.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/io/error.hpp"

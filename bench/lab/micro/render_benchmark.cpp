@@ -5,7 +5,7 @@
 
 #include "bench/lab/micro/render_benchmark_room.hpp"
 #include "sim/render/renderer.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 
 namespace mh {
 namespace {

@@ -13,7 +13,7 @@
 #include "scenes/scene.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/labels.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "slam/core/sequence.hpp"
 #include "slam/core/trajectory.hpp"
 

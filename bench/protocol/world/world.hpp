@@ -19,7 +19,7 @@
 #include "sim/render/bake.hpp"
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/labels.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "sim/world/shared_exposures.hpp"
 #include "slam/core/sequence.hpp"

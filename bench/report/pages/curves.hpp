@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 
 namespace mh {
 

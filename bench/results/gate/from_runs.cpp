@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 #include "bench/suite/fingerprint.hpp"
 #include "bench/suite/inputs.hpp"
 #include "bench/suite/json_fields.hpp"

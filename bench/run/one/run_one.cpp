@@ -8,7 +8,7 @@
 
 #include "bench/protocol/streams.hpp"
 #include "bench/run/one/ask_queries.hpp"
-#include "bench/run/one/hidden.hpp"
+#include "bench/run/one/hidden_folders.hpp"
 #include "bench/run/one/watched_frames.hpp"
 #include "bench/suite/find_program.hpp"
 #include "bench/suite/run_key.hpp"

@@ -11,7 +11,7 @@
 
 #include "bench/protocol/run_result.hpp"
 #include "bench/protocol/score.hpp"
-#include "bench/protocol/summarize.hpp"
+#include "bench/protocol/query_means.hpp"
 #include "tests/bench/protocol/fake_system.hpp"
 
 namespace mh {

@@ -13,7 +13,7 @@
 
 #include "bench/report/export.hpp"
 #include "bench/report/json.hpp"
-#include "bench/report/table.hpp"
+#include "bench/report/results_table.hpp"
 #include "bench/store/store.hpp"
 #include "tests/bench/results/made_up_results.hpp"
 

@@ -13,10 +13,10 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "bench/report/table.hpp"
+#include "bench/report/results_table.hpp"
 #include "bench/report/write.hpp"
-#include "bench/results/summary.hpp"
-#include "bench/run/one/hidden.hpp"
+#include "bench/results/rows.hpp"
+#include "bench/run/one/hidden_folders.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/run/plan_runs.hpp"
 #include "bench/run/run_suite.hpp"

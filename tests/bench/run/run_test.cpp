@@ -19,7 +19,7 @@
 #include "bench/report/json.hpp"
 #include "bench/report/suite_json.hpp"
 #include "bench/report/sweep.hpp"
-#include "bench/report/table.hpp"
+#include "bench/report/results_table.hpp"
 #include "bench/report/topdown.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/scenes.hpp"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/suite/run_spec.hpp"
 #include "slam/core/digest.hpp"

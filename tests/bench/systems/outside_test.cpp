@@ -15,7 +15,7 @@
 #include "bench/systems/recorded_run.hpp"
 #include "scenes/recordings/frame_files.hpp"
 #include "scenes/vocabulary_rooms/vocabulary_rooms.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/io/files.hpp"

@@ -7,7 +7,7 @@
 #include "sim/render/color.hpp"
 #include "sim/sensors/lens.hpp"
 #include "sim/sensors/processing.hpp"
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 
 namespace mh {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/sensors/sensors.hpp"
+#include "sim/sensors/sense.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

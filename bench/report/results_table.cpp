@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/table.hpp"
+#include "bench/report/results_table.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -15,7 +15,7 @@
 #include "bench/report/sweep_table.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/results/published.hpp"
-#include "bench/suite/parameters.hpp"
+#include "bench/suite/sweep.hpp"
 #include "bench/suite/run_spec.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/io/counted.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 
 namespace mh {
 

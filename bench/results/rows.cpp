@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/results/summary.hpp"
+#include "bench/results/rows.hpp"
 
 #include <algorithm>
 #include <cmath>

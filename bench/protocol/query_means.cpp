@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/protocol/summarize.hpp"
+#include "bench/protocol/query_means.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/run/one/hidden.hpp"
+#include "bench/run/one/hidden_folders.hpp"
 
 #include <unistd.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/protocol/run_result.hpp"
-#include "bench/protocol/summarize.hpp"
+#include "bench/protocol/query_means.hpp"
 #include "bench/results/statistics.hpp"
 
 namespace mh {
