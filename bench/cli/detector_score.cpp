@@ -15,7 +15,6 @@
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
 #include "bench/cli/detector_option.hpp"
-#include "bench/cli/level_file.hpp"
 #include "bench/cli/progress.hpp"
 #include "bench/cli/usual_cache.hpp"
 #include "bench/lab/detector_score.hpp"
@@ -35,6 +34,17 @@
 
 namespace mh::cli {
 namespace {
+
+/// A sensor level may replace a sensor level, but no other file. @throws InputError naming it.
+void require_no_other_than_level(const std::filesystem::path& file) {
+  if (!is_file(file)) return;
+  try {
+    load_sensor_config(file);
+  } catch (const InputError&) {
+    throw InputError(
+        fmt::format("{}: is not a sensor level: name another file to write", file.string()));
+  }
+}
 
 namespace fs = std::filesystem;
 

@@ -7,10 +7,10 @@
 
 #include "bench/cli/write_audit.hpp"
 #include "bench/report/graded_report.hpp"
-#include "bench/report/json.hpp"
 #include "bench/report/pages/verdict.hpp"
-#include "bench/report/sweep.hpp"
+#include "bench/report/results_json.hpp"
 #include "bench/report/results_table.hpp"
+#include "bench/report/sweep.hpp"
 #include "bench/report/write.hpp"
 #include "bench/run/plan_runs.hpp"
 #include "bench/suite/run_spec.hpp"

@@ -1,12 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <cstdio>
 #include <memory>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "bench/cli/commands.hpp"
-#include "bench/cli/to_parent.hpp"
 #include "bench/run/execute_run.hpp"
 #include "bench/run/run_process.hpp"
 
 namespace mh::cli {
+
+namespace {
+
+/// What the process of a run reports to the one that started it, on standard output, as RunProcess
+/// reads it.
+class ToParent {
+ public:
+  void say(std::string_view stage) {
+    fmt::print("{}\n", stage);
+    std::fflush(stdout);
+  }
+
+  /// Sent in steps of half a percent.
+  void share(double share) {
+    const int step = static_cast<int>(200 * share);
+    if (step == last_step_) return;
+    last_step_ = step;
+    fmt::print("{:.4f}\n", share);
+    std::fflush(stdout);
+  }
+
+  /// Frames pass faster than anyone can read; a status with another first word is sent at once.
+  void status(std::string_view status) {
+    constexpr auto kBetween = std::chrono::milliseconds(500);
+    const auto now = std::chrono::steady_clock::now();
+    const std::string word(status.substr(0, status.find(' ')));
+    if (word == last_word_ && now - told_ < kBetween) return;
+    told_ = now;
+    last_word_ = word;
+    fmt::print("{}{}\n", kStatusMark, status);
+    std::fflush(stdout);
+  }
+
+ private:
+  int last_step_ = -1;
+  std::chrono::steady_clock::time_point told_;
+  std::string last_word_;
+};
+
+}  // namespace
 
 void add_run_one(CLI::App& app) {
   auto file = std::make_shared<std::string>();

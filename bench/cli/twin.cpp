@@ -16,7 +16,7 @@
 #include "bench/lab/twin.hpp"
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/report/drawing/contact_sheet.hpp"
-#include "bench/report/figures_json.hpp"
+#include "bench/report/results_json.hpp"
 #include "bench/results/rows.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/suite/recorded_camera.hpp"

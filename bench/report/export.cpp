@@ -11,7 +11,7 @@
 
 #include "bench/report/text_table.hpp"
 #include "bench/results/rows.hpp"
-#include "bench/store/load_results.hpp"
+#include "bench/store/store.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 

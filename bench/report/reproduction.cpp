@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "bench/report/json.hpp"
+#include "bench/report/results_json.hpp"
 #include "bench/report/suite_json.hpp"
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/fingerprint.hpp"

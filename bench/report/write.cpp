@@ -5,9 +5,9 @@
 
 #include "bench/report/drawing/contact_sheet.hpp"
 #include "bench/report/graded_report.hpp"
-#include "bench/report/json.hpp"
-#include "bench/report/sweep.hpp"
+#include "bench/report/results_json.hpp"
 #include "bench/report/results_table.hpp"
+#include "bench/report/sweep.hpp"
 #include "bench/report/topdown.hpp"
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/json_fields.hpp"

@@ -11,7 +11,6 @@
 #include "bench/protocol/run_result.hpp"
 #include "bench/run/pool.hpp"
 #include "bench/run/shard.hpp"
-#include "bench/store/load_results.hpp"
 #include "bench/store/store.hpp"
 #include "bench/suite/inputs.hpp"
 #include "bench/suite/suite.hpp"

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/report/json.hpp"
+#include "bench/report/results_json.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"

@@ -9,7 +9,7 @@
 
 #include "bench/protocol/query_means.hpp"
 #include "bench/store/columns.hpp"
-#include "bench/store/frame_row.hpp"
+#include "bench/store/schema.hpp"
 #include "bench/suite/run_key.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/json_text.hpp"

@@ -7,7 +7,6 @@
 #include "bench/protocol/mapping.hpp"
 #include "bench/protocol/score.hpp"
 #include "bench/store/columns.hpp"
-#include "bench/store/frame_row.hpp"
 
 namespace mh {
 

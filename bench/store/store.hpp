@@ -116,6 +116,19 @@ class Store {
   std::unique_ptr<SQLite::Database> database_;  ///< closed before its copy is removed
 };
 
+/// A store's results for a suite.
+struct BenchResults {
+  std::vector<RunResult> runs;       ///< finished ones, in the order of expand(suite)
+  std::vector<FailedRun> failed;     ///< failed ones, in the same order
+  std::vector<std::string> missing;  ///< names of the others, such as runs of other shards
+};
+
+/// Loads the store's results for the runs of a suite.
+/// @param keys  of all its runs
+BenchResults load_results(const Store& store, const Suite& suite, const PlannedKeys& keys);
+/// The same for the suite that was planned last.
+BenchResults load_results(const Store& store, const Suite& suite);
+
 /// The current time, "2026-11-22T07:08:40Z".
 std::string utc_now();
 

@@ -15,6 +15,7 @@
 #include "slam/config/slam.hpp"
 #include "slam/core/labels.hpp"
 #include "source_dir.hpp"
+#include "tests/bench/changed_frames.hpp"
 
 namespace mh {
 namespace {
@@ -32,12 +33,11 @@ RunSpec first_run(const std::string& scenario, SystemKind system) {
 
 struct Fault {
   std::function<void(SlamConfig&)> settings = [](SlamConfig&) {};
-  RunTamper tamper = {};
+  testing_support::FrameChange frame = {};
 };
 
 RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
   RunTools tools;
-  tools.tamper = fault.tamper;
   tools.occupancy = false;  // no measure of the gate looks at it
   tools.system = [&](const RunSpec&, const World&) {
     SlamConfig config;
@@ -45,7 +45,7 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
     fault.settings(config);
     return make_builtin_system(world.mapping->camera(), config, world.vocabulary);
   };
-  return figures(run_one(spec, world, tools));
+  return figures(run_one(spec, testing_support::with_changed_frames(world, fault.frame), tools));
 }
 
 /// The gate's judgment of a fault: one seed without it against the same seed with it.
@@ -90,7 +90,7 @@ TEST(Scenario, BlankCorridorCatchesACornerThresholdThatIsTooHighForIt) {
 
 TEST(Scenario, FastTurnCatchesFramesThatDoNotArrive) {
   Fault fault;
-  fault.tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+  fault.frame = [](std::size_t index, RgbdFrame& frame) {
     if (index % 4 == 0) return;
     std::fill(frame.color.begin(), frame.color.end(), Rgb8{});
     std::fill(frame.depth_m.begin(), frame.depth_m.end(), 0.0F);
@@ -114,7 +114,7 @@ TEST(Scenario, MovedFurnitureCatchesThatOutliersAreNotRejected) {
 
 TEST(Scenario, LightsChangedCatchesThatExposureControlFails) {
   Fault fault;
-  fault.tamper.frame = [](std::size_t, RgbdFrame& frame) {
+  fault.frame = [](std::size_t, RgbdFrame& frame) {
     const auto dark = [](std::uint8_t v) { return static_cast<std::uint8_t>(v / 6); };
     for (Rgb8& c : frame.color) c = {dark(c.r), dark(c.g), dark(c.b)};
   };
@@ -123,7 +123,7 @@ TEST(Scenario, LightsChangedCatchesThatExposureControlFails) {
 
 TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
   Fault fault;
-  fault.tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+  fault.frame = [](std::size_t index, RgbdFrame& frame) {
     auto& palette = frame.semantics.palette;
     if (!palette.empty())
       std::rotate(palette.begin(),
@@ -138,7 +138,7 @@ TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
 // Too little to be seen in a room; once round 14 m it is some centimeters.
 TEST(Scenario, LongLoopCatchesADepthThatReadsThreePercentTooLong) {
   Fault fault;
-  fault.tamper.frame = [](std::size_t, RgbdFrame& frame) {
+  fault.frame = [](std::size_t, RgbdFrame& frame) {
     for (float& depth_m : frame.depth_m) depth_m *= 1.03F;
   };
   EXPECT_TRUE(worse(judge("long_loop", fault), "ate_rmse_m"));

@@ -9,7 +9,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/store/load_results.hpp"
 #include "bench/store/store.hpp"
 #include "bench/suite/suite.hpp"
 

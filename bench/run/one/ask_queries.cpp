@@ -35,12 +35,12 @@ std::vector<std::size_t> asked_frames(QuerySet set, const Sequence& sequence,
 class QueryRound {
  public:
   QueryRound(const RunSpec& spec, QuerySet set, const World& world, const FilesAsKeyed& files,
-             const WatchedFrames::Tamper& tamper, RunResult& run)
+             RunResult& run)
       : spec_(spec),
         set_(set),
         world_(world),
         frames_(*sequence_of(world, set), recording_of(spec.environment, set), shows_labels(spec),
-                files, tamper, run.frames_s),
+                files, run.frames_s),
         has_stamp_(increasing_stamps(frames_)),
         run_(run),
         stream_(query_stream(spec, set)) {}
@@ -145,13 +145,11 @@ std::size_t count_queries(const RunSpec& spec, const World& world) {
 }
 
 void ask_queries(const RunSpec& spec, const World& world, System& frozen, const FilesAsKeyed& files,
-                 const WatchedFrames::Tamper& tamper, RunResult& run,
-                 const std::function<void()>& done) {
+                 RunResult& run, const std::function<void()>& done) {
   run.points.resize(spec.points.size());
   std::vector<QueryRound> rounds;
   for (const QuerySet set : kQuerySets)
-    if (sequence_of(world, set) != nullptr)
-      rounds.emplace_back(spec, set, world, files, tamper, run);
+    if (sequence_of(world, set) != nullptr) rounds.emplace_back(spec, set, world, files, run);
   for (std::size_t p = 0; p < spec.points.size(); p = end_of_alike(spec.points, p)) {
     const std::size_t end = end_of_alike(spec.points, p);
     frozen.use_point(p);

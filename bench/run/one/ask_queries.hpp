@@ -21,7 +21,6 @@ std::size_t count_queries(const RunSpec& spec, const World& world);
 /// @param run   with the mapping, its trajectory and frames
 /// @param done  called after each query and point
 void ask_queries(const RunSpec& spec, const World& world, System& frozen, const FilesAsKeyed& files,
-                 const WatchedFrames::Tamper& tamper, RunResult& run,
-                 const std::function<void()>& done);
+                 RunResult& run, const std::function<void()>& done);
 
 }  // namespace mh

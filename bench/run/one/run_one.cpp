@@ -17,7 +17,6 @@
 #include "bench/systems/finished_map.hpp"
 #include "bench/systems/program_folder.hpp"
 #include "bench/systems/recorded_run.hpp"
-#include "bench/systems/tampered.hpp"
 #include "bench/systems/timed.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/core/digest.hpp"
@@ -106,7 +105,6 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world, con
 }
 
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools) {
-  const RunTamper& tamper = tools.tamper;
   const Sequence& mapping = *world.mapping;
   const Camera& camera = mapping.camera();
   WorkDone work(pieces_of_work(spec, world), tools.progress);
@@ -117,7 +115,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
   OccupancyMapper mapper(camera);
   const FilesAsKeyed files(world.held);
   const WatchedFrames frames(mapping, spec.environment.sequence, shows_labels(spec), files,
-                             tamper.frame, run.frames_s);
+                             run.frames_s);
   const auto integrate = [&] {
     const ProcessorTimer timer(run.products_s);
     if (!tools.occupancy) return;
@@ -142,7 +140,6 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     integrate();
     run.points.resize(spec.points.size());
   } else {
-    if (tamper.report) inner = make_tampered(std::move(inner), tamper.report);
     TimedSystem system(std::move(inner));
     const auto end_mapping = [&] {
       system.freeze();
@@ -184,7 +181,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     work.reached(mapping.size());
     tools.status("queries");
 
-    ask_queries(spec, world, system, files, tamper.frame, run, [&] { work.more(1); });
+    ask_queries(spec, world, system, files, run, [&] { work.more(1); });
     if (spec.episodes) {
       EpisodeTools episodes = tools.episodes;
       episodes.require_unchanged = [&] {

@@ -14,13 +14,6 @@
 
 namespace mh {
 
-/// Test seam of `verify`: may change a frame before the system sees it, or a report before anything
-/// else does. Empty in every real run.
-struct RunTamper {
-  std::function<void(std::size_t index, RgbdFrame&)> frame;
-  std::function<void(std::size_t call, SystemReport&)> report;  ///< of track calls
-};
-
 /// What an outside program of a run prints, in the run's folder.
 inline constexpr const char* kOutsideLog = "outside.log";
 
@@ -34,7 +27,7 @@ std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
                                     const std::filesystem::path& folder,
                                     const std::vector<std::filesystem::path>& hidden = {});
 
-/// What a run receives in addition to its spec and world; only `system`, `tamper`, `occupancy` and
+/// What a run receives in addition to its spec and world; only `system`, `occupancy` and
 /// `episodes.only` can change a result.
 struct RunTools {
   std::filesystem::path folder = ".";  ///< exists; an outside program's files go there
@@ -48,9 +41,8 @@ struct RunTools {
   std::function<std::unique_ptr<System>(const RunSpec&, const World&)> system = {};
   MappingObserver observe = {};  ///< called for each mapped frame
   std::size_t first = 0;         ///< frames before it were already mapped, by this same system
-  RunTamper tamper = {};
-  bool occupancy = true;  ///< false: RunResult::volume stays null and its grid empty
-  Cache maps = Cache();   ///< finished maps of the same mapping are loaded from and stored here
+  bool occupancy = true;         ///< false: RunResult::volume stays null and its grid empty
+  Cache maps = Cache();  ///< finished maps of the same mapping are loaded from and stored here
   EpisodeTools episodes = {};  ///< what they are kept by, and which; the rest is set by the run
 };
 

@@ -30,19 +30,17 @@ void FilesAsKeyed::require(const ReadRecord& now) const {
 }
 
 WatchedFrames::WatchedFrames(const Sequence& inner, std::string recording, bool labeled,
-                             const FilesAsKeyed& files, Tamper tamper, double& spent_s)
+                             const FilesAsKeyed& files, double& spent_s)
     : SequenceView(inner),
       recording_(std::move(recording)),
       labeled_(labeled),
       files_(files),
-      tamper_(std::move(tamper)),
       spent_s_(spent_s) {}
 
 RgbdFrame WatchedFrames::frame(std::size_t i, RandomStream noise) const try {
   const ProcessorTimer timer(spent_s_);
   RgbdFrame frame = checked(i, noise);
   if (!labeled_) frame.semantics = {};
-  if (tamper_) tamper_(i, frame);
   return frame;
 } catch (const InputChanged&) {
   throw;

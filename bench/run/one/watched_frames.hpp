@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 
@@ -40,17 +39,15 @@ class FilesAsKeyed {
   std::map<std::filesystem::path, FileObservation> of_;
 };
 
-/// The frames as a run sees them: their files match its key, the CPU time spent on making them is
-/// counted, and tests may change them.
+/// The frames as a run sees them: their files match its key, and the CPU time spent on making them
+/// is counted.
 class WatchedFrames : public SequenceView {
  public:
-  using Tamper = std::function<void(std::size_t index, RgbdFrame&)>;
   /// @param recording  where they come from; empty: they are simulated
   /// @param labeled  false: they are shown without labels
-  /// @param tamper   as in RunTamper; may be empty
   /// @param spent_s  grows by the time spent
   WatchedFrames(const Sequence& inner, std::string recording, bool labeled,
-                const FilesAsKeyed& files, Tamper tamper, double& spent_s);
+                const FilesAsKeyed& files, double& spent_s);
   RgbdFrame frame(std::size_t i, RandomStream noise) const override;
 
  private:
@@ -59,7 +56,6 @@ class WatchedFrames : public SequenceView {
   const std::string recording_;
   const bool labeled_;
   const FilesAsKeyed& files_;
-  const Tamper tamper_;
   double& spent_s_;
 };
 

@@ -10,7 +10,7 @@
 
 #include "bench/protocol/metrics/measures.hpp"
 #include "bench/report/pages/tables.hpp"
-#include "bench/report/run_json.hpp"
+#include "bench/report/results_json.hpp"
 #include "bench/results/gate/from_runs.hpp"
 
 namespace mh {

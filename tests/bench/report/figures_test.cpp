@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/report/export.hpp"
-#include "bench/report/json.hpp"
+#include "bench/report/results_json.hpp"
 #include "bench/report/results_table.hpp"
 #include "bench/store/store.hpp"
 #include "tests/bench/results/made_up_results.hpp"

@@ -15,6 +15,7 @@
 #include "scenes/recordings/tum_folder.hpp"
 #include "slam/core/digest.hpp"
 #include "source_dir.hpp"
+#include "tests/bench/changed_frames.hpp"
 
 namespace mh {
 namespace {
@@ -47,10 +48,12 @@ TEST(RecordedTour, GivesTheBitsOfTheSimulationWhereThatHasNoNoise) {
   spec.max_frames = kFrames;
   spec.environment.query_tour.reset();
   const World simulated = built(spec);
-  const RunTools tools = {
-      .tamper = {.frame = [](std::size_t, RgbdFrame& f) { as_recorded(f); }, .report = {}},
-      .occupancy = false};
-  const RunResult drawn = run_one(spec, simulated, tools);
+  const RunTools tools = {.occupancy = false};
+  const RunResult drawn =
+      run_one(spec,
+              testing_support::with_changed_frames(
+                  simulated, [](std::size_t, RgbdFrame& frame) { as_recorded(frame); }),
+              tools);
 
   const fs::path folder = fs::temp_directory_path() / fmt::format("mh_recorded_tour_{}", getpid());
   TumWriter writer(folder, simulated.mapping->camera());

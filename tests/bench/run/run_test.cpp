@@ -16,10 +16,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "bench/protocol/metrics/trajectory_score.hpp"
-#include "bench/report/json.hpp"
+#include "bench/report/results_json.hpp"
+#include "bench/report/results_table.hpp"
 #include "bench/report/suite_json.hpp"
 #include "bench/report/sweep.hpp"
-#include "bench/report/results_table.hpp"
 #include "bench/report/topdown.hpp"
 #include "bench/report/write.hpp"
 #include "bench/results/scenes.hpp"
@@ -32,6 +32,7 @@
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/temporary_folder.hpp"
+#include "tests/bench/changed_frames.hpp"
 
 namespace mh {
 namespace {
@@ -124,8 +125,28 @@ Trajectory straight_path(std::size_t frames) {
   return path;
 }
 
-/// Changes what one run sees or says.
-using TamperRun = std::function<RunTamper(const RunSpec&)>;
+/// What one run sees or says in the place of the truth.
+struct Change {
+  testing_support::FrameChange frame = {};
+  std::function<void(std::size_t call, SystemReport&)> report = {};
+};
+using ChangeOfRun = std::function<Change(const RunSpec&)>;
+
+/// Says something else than another system.
+class ChangedSystem : public SystemView {
+ public:
+  ChangedSystem(std::unique_ptr<System> inner, const Change& change)
+      : SystemView(std::move(inner)), change_(change) {}
+  SystemReport track(const RgbdFrame& frame, RandomStream stream) override {
+    SystemReport report = SystemView::track(frame, stream);
+    if (change_.report) change_.report(calls_++, report);
+    return report;
+  }
+
+ private:
+  Change change_;
+  std::size_t calls_ = 0;
+};
 
 struct Place {
   Suite suite;
@@ -157,18 +178,18 @@ struct Place {
     place.query_tour->camera = straight_path(90);
     simulate(world, LabelMode::kNone);
   }
-  std::vector<RunResult> run(const TamperRun& tamper = {}) const {
+  std::vector<RunResult> run(const ChangeOfRun& change_of = {}) const {
     std::vector<RunResult> results;
     for (const RunSpec& spec : expand(suite)) {
       World as_seen = world;
       simulate(as_seen, spec.labels.mode);
-      results.push_back(run_one(spec, as_seen,
-                                {.system =
-                                     [](const RunSpec& s, const World&) {
-                                       return std::make_unique<MixingSystem>(
-                                           s.system.kind == SystemKind::kSemantic, 2);
-                                     },
-                                 .tamper = tamper ? tamper(spec) : RunTamper{}}));
+      const Change change = change_of ? change_of(spec) : Change();
+      const auto system = [&](const RunSpec& s, const World&) {
+        return std::make_unique<ChangedSystem>(
+            std::make_unique<MixingSystem>(s.system.kind == SystemKind::kSemantic, 2), change);
+      };
+      results.push_back(run_one(spec, testing_support::with_changed_frames(as_seen, change.frame),
+                                {.system = system}));
     }
     return results;
   }
@@ -266,12 +287,12 @@ TEST(RunOne, AnOutsideProgramsTrajectoryIsScoredByWhatItWasOffered) {
 TEST(Verify, FindsOnePixelOfOneFrameAndNamesIt) {
   const Place place;
   const auto flip = [](const RunSpec& spec) {
-    RunTamper tamper;
+    Change change;
     if (spec.name == "semantic-boxes-fake-0")
-      tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+      change.frame = [](std::size_t index, RgbdFrame& frame) {
         if (index == 97) frame.color(3, 4).g ^= 1;
       };
-    return tamper;
+    return change;
   };
   const auto difference = first_difference(place.run(), place.run(flip));
   ASSERT_TRUE(difference);
@@ -283,14 +304,14 @@ TEST(Verify, FindsOnePixelOfOneFrameAndNamesIt) {
 TEST(Verify, FindsOnePoseAndNamesIt) {
   const Place place;
   const auto shift = [](const RunSpec& spec) {
-    RunTamper tamper;
+    Change change;
     if (spec.system.kind == SystemKind::kPlain)
-      tamper.report = [](std::size_t call, SystemReport& report) {
+      change.report = [](std::size_t call, SystemReport& report) {
         if (call == 41)
           report.world_from_camera =
               *report.world_from_camera * SE3(Eigen::Matrix3d::Identity(), {0, 0, 1e-15});
       };
-    return tamper;
+    return change;
   };
   const auto clean = place.run();
   const auto difference = first_difference(clean, place.run(shift));
@@ -302,11 +323,11 @@ TEST(Verify, FindsOnePoseAndNamesIt) {
 TEST(Verify, FindsAPixelOfAQuery) {
   const Place place;
   const auto nudge = [](const RunSpec&) {
-    RunTamper tamper;
-    tamper.frame = [](std::size_t index, RgbdFrame& frame) {
+    Change change;
+    change.frame = [](std::size_t index, RgbdFrame& frame) {
       if (index == 119) frame.depth_m(1, 1) += 1e-6F;
     };
-    return tamper;
+    return change;
   };
   const auto difference = first_difference(place.run(), place.run(nudge));
   ASSERT_TRUE(difference);

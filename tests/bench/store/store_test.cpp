@@ -20,7 +20,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/report/export.hpp"
-#include "bench/report/json.hpp"
+#include "bench/report/results_json.hpp"
 #include "bench/run/pool.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/run/run_suite.hpp"

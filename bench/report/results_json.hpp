@@ -5,7 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/protocol/metrics/metric.hpp"
 #include "bench/results/rows.hpp"
+#include "slam/core/match_counts.hpp"
 
 namespace mh {
 
@@ -17,6 +19,16 @@ inline constexpr const char* kResultsFormat = "modelhouse-results-4";
 nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResult> runs,
                                     std::span<const FailedRun> failed = {},
                                     std::span<const std::string> missing = {});
+
+/// Everything that a run produced, except its times.
+nlohmann::ordered_json run_json(const RunResult& run);
+nlohmann::ordered_json run_json(const FailedRun& run);
+
+/// The figures of a score by their names; dots in a name are objects within objects.
+nlohmann::ordered_json figures_json(std::span<const Figure> figures);
+
+/// Counts by matcher; null if unknown.
+nlohmann::ordered_json matches_json(const std::optional<MatchCounts>& matches);
 
 /// Everything needed to reproduce the results: the command, which works from any folder, the commit
 /// and digest of the code, build and machine, the resolved suite, seeds and digests of the inputs.
