@@ -23,6 +23,7 @@
 #include "sim/world/travel.hpp"
 #include "slam/core/interpolate.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/files/map_file.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
@@ -30,7 +31,6 @@
 #include "slam/occupancy/floor_frame.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
 #include "slam/occupancy/occupancy_mapper.hpp"
-#include "slam/pipeline/map_file.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh::cli {

@@ -12,7 +12,7 @@
 
 #include "bench/cli/scene_option.hpp"
 #include "slam/core/sequence.hpp"
-#include "slam/pipeline/settings_file.hpp"
+#include "slam/files/settings_file.hpp"
 
 namespace mh::cli {
 

@@ -18,9 +18,9 @@
 #include "bench/run/one/run_one.hpp"
 #include "bench/systems/builtin.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/files/map_file.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
-#include "slam/pipeline/map_file.hpp"
 
 namespace mh::cli {
 namespace {

@@ -13,11 +13,11 @@
 #include "bench/systems/timed.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/files/export.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/printable.hpp"
 #include "slam/io/temporary_folder.hpp"
-#include "slam/pipeline/export.hpp"
 
 namespace mh::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "bench/protocol/run_result.hpp"
 #include "bench/run/frame_log.hpp"
 #include "bench/systems/stage_clock.hpp"
-#include "slam/pipeline/settings_file.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh::cli {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "bench/protocol/run_result.hpp"
 #include "bench/protocol/query_means.hpp"
+#include "bench/protocol/run_result.hpp"
 #include "bench/results/statistics.hpp"
 
 namespace mh {

@@ -23,9 +23,9 @@
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/core/labels.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/error.hpp"
 #include "slam/occupancy/objects.hpp"
-#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "bench/suite/environment.hpp"
 #include "scenes/recordings/open_sequence.hpp"
-#include "slam/pipeline/settings_file.hpp"
+#include "slam/files/settings_file.hpp"
 
 namespace mh {
 

@@ -14,12 +14,12 @@
 #include "sim/world/travel.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/settings_io.hpp"
 #include "slam/io/suggest.hpp"
 #include "slam/io/text_file.hpp"
-#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "bench/suite/names.hpp"
 #include "slam/config/by_name.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/settings_io.hpp"
-#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace {

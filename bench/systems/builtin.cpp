@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "slam/pipeline/map_file.hpp"
+#include "slam/files/map_file.hpp"
 #include "slam/relocalize/candidate_trial.hpp"
 
 namespace mh {

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A SLAM system as a shared library (docs/outside_systems.md, "Library"), loaded by a process of its
- * own beside the bench. C99 and C++; this header is self-contained, so a copy of it is all you need.
+/* A SLAM system as a shared library (docs/outside_systems.md, "Library"), loaded by a process of
+ * its own beside the bench. C99 and C++; this header is self-contained, so a copy of it is all you
+ * need.
  *
  * The library defines mh_make_system(). A suite names the library:
  *   systems:
  *   - {name: mine, library: build/libmine.so, settings: mine.yaml}
  *
  * Calls come one at a time, all from one thread. Before a call returns, finish all work that its
- * reply or a later one depends on. The same calls must give the same replies: take randomness only from the seeds, and
- * let no reply depend on a clock.
+ * reply or a later one depends on. The same calls must give the same replies: take randomness only
+ * from the seeds, and let no reply depend on a clock.
  *
  * A function that returns a status returns 0 on success. Any other value fails the run: write one
  * line to mh_setup.message before returning it. After that, no function of the system is called

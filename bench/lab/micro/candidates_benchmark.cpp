@@ -17,8 +17,8 @@
 
 #include "bench/lab/micro/timing.hpp"
 #include "slam/core/random.hpp"
+#include "slam/files/map_file.hpp"
 #include "slam/io/error.hpp"
-#include "slam/pipeline/map_file.hpp"
 #include "slam/relocalize/relocalize.hpp"
 
 namespace {

@@ -12,8 +12,8 @@
 #include "bench/audit/summary.hpp"
 #include "bench/audit/write.hpp"
 #include "bench/suite/json_fields.hpp"
+#include "slam/files/map_file.hpp"
 #include "slam/io/error.hpp"
-#include "slam/pipeline/map_file.hpp"
 #include "tests/bench/audit/box_room_run.hpp"
 
 namespace mh::testing_support {

@@ -15,8 +15,8 @@
 #include "scenes/recordings/open_sequence.hpp"
 #include "scenes/recordings/tum_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings_file.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
 namespace mh {

@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/protocol/query_means.hpp"
 #include "bench/protocol/run_result.hpp"
 #include "bench/protocol/score.hpp"
-#include "bench/protocol/query_means.hpp"
 #include "tests/bench/protocol/fake_system.hpp"
 
 namespace mh {

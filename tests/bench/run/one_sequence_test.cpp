@@ -20,8 +20,8 @@
 #include "scenes/recordings/frame_sequence.hpp"
 #include "scenes/recordings/tum_folder.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/files/map_file.hpp"
 #include "slam/io/error.hpp"
-#include "slam/pipeline/map_file.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

@@ -32,8 +32,8 @@
 #include "scenes/recordings/sequence_writer.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/core/trajectory_io.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings_file.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

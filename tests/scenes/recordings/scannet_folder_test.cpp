@@ -8,8 +8,8 @@
 #include "scenes/recordings/tum_folder.hpp"
 #include "scenes/scannet/frame_folder.hpp"
 #include "scenes/scannet/label_images.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings_file.hpp"
 #include "tests/scenes/temporary_folder.hpp"
 
 namespace mh {

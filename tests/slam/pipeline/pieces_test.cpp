@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/pipeline/map_file.hpp"
+#include "slam/files/map_file.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "source_dir.hpp"
 #include "tests/slam/pipeline/feature_world.hpp"

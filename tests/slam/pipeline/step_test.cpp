@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/files/map_file.hpp"
 #include "slam/io/error.hpp"
-#include "slam/pipeline/map_file.hpp"
 #include "slam/pipeline/slam.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 

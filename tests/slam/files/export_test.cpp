@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/pipeline/export.hpp"
+#include "slam/files/export.hpp"
 
 #include <cstdio>
 #include <numbers>

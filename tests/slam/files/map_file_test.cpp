@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
+#include "slam/files/map_file.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/map_file.hpp"
-#include "slam/pipeline/settings_file.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"
 
 namespace mh {

@@ -7,17 +7,17 @@
 //   content  settings (YAML), camera, keyframes, landmarks, state of tracking and loop closing,
 //            tracked frames; lists start with their length (u64), see slam/map/archive.hpp
 //   u64      xxh3-64 of all preceding bytes
-#include "slam/pipeline/map_file.hpp"
+#include "slam/files/map_file.hpp"
 
 #include <fstream>
 
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include "slam/files/settings_file.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "slam/map/archive.hpp"
-#include "slam/pipeline/settings_file.hpp"
 
 namespace mh {
 namespace archive {

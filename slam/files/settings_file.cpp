@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/pipeline/settings_file.hpp"
+#include "slam/files/settings_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "slam/files/calibration_files.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/lower_case.hpp"
 #include "slam/io/settings_io.hpp"
 #include "slam/io/text_file.hpp"
-#include "slam/pipeline/calibration_files.hpp"
 
 namespace mh {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slam/pipeline/calibration_files.hpp"
+#include "slam/files/calibration_files.hpp"
 
 #include <array>
 #include <string>

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "slam/config/by_name.hpp"
+#include "slam/files/settings_file.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
-#include "slam/pipeline/settings_file.hpp"
 #include "source_dir.hpp"
 
 namespace mh {
