@@ -64,9 +64,7 @@ nlohmann::ordered_json json_of(const T& value) {
   } else if constexpr (kIsDigest<T>) {
     return hex(value.value);
   } else if constexpr (std::is_same_v<T, SE3>) {
-    const Eigen::Vector3d& t = value.translation();
-    const Eigen::Quaterniond q = value.quaternion();
-    return Node::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+    return value.numbers();
   } else if constexpr (kAsList<T>) {
     Node list = Node::array();
     for_each_field(value, [&](const char*, const auto& field) { list.push_back(json_of(field)); });

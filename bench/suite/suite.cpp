@@ -184,7 +184,7 @@ std::vector<Sense> read_senses(YamlReader& yaml, const std::vector<Environment>&
       node.fail(fmt::format("'{}' is listed twice", node.as_string()));
     senses.push_back(sense);
     for (const Environment& e : environments) {
-      if (sense != Sense::kOdometry) continue;
+      if (sense == Sense::kImu) continue;
       if (e.is_recorded() || !is_driven(e.mapping_tour))
         node.fail(fmt::format("is of a robot that drives, and '{}' is {}", e.name,
                               e.is_recorded() ? "a recording" : "mapped by hand"));

@@ -31,9 +31,9 @@ constexpr Names<Published, 1> words(Published) {
 }
 
 /// What a robot's other sensors tell the systems under test.
-enum class Sense { kOdometry, kImu };
-constexpr Names<Sense, 2> words(Sense) {
-  return {{{"odometry", Sense::kOdometry}, {"imu", Sense::kImu}}};
+enum class Sense { kOdometry, kImu, kLaser };
+constexpr Names<Sense, 3> words(Sense) {
+  return {{{"odometry", Sense::kOdometry}, {"imu", Sense::kImu}, {"laser", Sense::kLaser}}};
 }
 
 /// By which share of a system's answers it is judged.

@@ -128,11 +128,14 @@ class Conversation {
     fields["color"] = show("color.ppm", files.color);
     fields["depth"] = show("depth.pgm", files.depth);
     if (!files.labels.empty()) fields["labels"] = show("labels.pgm", files.labels);
-    if (frame.odom_from_camera) {
-      const Eigen::Vector3d& t = frame.odom_from_camera->translation();
-      const Eigen::Quaterniond q = frame.odom_from_camera->quaternion();
-      fields["odometry"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
-    }
+    if (frame.odom_from_camera) fields["odometry"] = frame.odom_from_camera->numbers();
+    for (const LaserScan& scan : frame.lasers)
+      fields["lasers"].push_back({{"name", scan.name},
+                                  {"camera_from_laser", scan.camera_from_laser.numbers()},
+                                  {"first_rad", scan.first_rad},
+                                  {"step_rad", scan.step_rad},
+                                  {"limits_m", {scan.min_range_m, scan.max_range_m}},
+                                  {"ranges_m", scan.ranges_m}});
     for (const ImuReading& reading : frame.imu) {
       const auto& w = reading.turn_rad_per_s;
       const auto& a = reading.specific_force_m_per_s2;

@@ -72,6 +72,9 @@ typedef struct mh_frame {
    * before this one in the sequence), in order. */
   const struct mh_imu* imu;
   int32_t imu_count; /**< 0: none */
+  /** What the robot's lasers measure at the stamp; also in queries. */
+  const struct mh_laser* lasers;
+  int32_t laser_count; /**< 0: none */
 } mh_frame;
 
 /** Pose of the camera in the system's own world (world_from_camera): x y z in meters, then the unit
@@ -87,6 +90,17 @@ typedef struct mh_imu {
   double turn_rad_per_s[3];
   double specific_force_m_per_s2[3]; /**< at rest 9.81 upward */
 } mh_imu;
+
+/** A planar scan: ray k leaves the laser along its x axis, turned about z by first_rad + k *
+ * step_rad. */
+typedef struct mh_laser {
+  const char* name;
+  mh_pose camera_from_laser; /**< laser to camera, at the stamp */
+  double first_rad, step_rad;
+  double min_range_m, max_range_m;
+  const float* ranges_m; /**< range_count numbers; 0 = nothing in range */
+  int32_t range_count;
+} mh_laser;
 
 /** Where a relocalization ended. */
 typedef enum mh_stage {

@@ -225,7 +225,9 @@ class EquipmentReader {
     LaserScanner laser{.name = name,
                        .base_from_laser = read_link(yaml),
                        .rays = fan.rays,
-                       .field_of_view_rad = fan.field_of_view_deg * kDegree};
+                       .field_of_view_rad = fan.field_of_view_deg * kDegree,
+                       .sigma_m = fan.sigma_m,
+                       .sigma_share = fan.sigma_share};
     read_range(yaml, laser.min_range_m, laser.max_range_m);
     yaml.finish();
     return laser;

@@ -63,6 +63,7 @@ struct LaserScanner {
   int rays = 15;
   double field_of_view_rad = 1.0472;
   double min_range_m = 0.1, max_range_m = 3.0;
+  double sigma_m = 0, sigma_share = 0;  ///< noise: the larger of a length and a share of the range
 };
 
 /// A cone; measures the nearest object in it.

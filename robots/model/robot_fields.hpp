@@ -77,14 +77,17 @@ void wheel_fields(C& wheels, Visit& v) {
 struct FanFields {
   int rays = 0;
   double field_of_view_deg = 0;
+  double sigma_m = 0, sigma_share = 0;
 };
 
 template <MaybeConst<FanFields> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [rays, field_of_view_deg] = c;
+  auto& [rays, field_of_view_deg, sigma_m, sigma_share] = c;
   v("rays", rays, setting::required({2, 10000}), "");
   v("field_of_view_deg", field_of_view_deg, setting::required({0.1, 360}),
     "from first to last ray");
+  v("sigma_m", sigma_m, {0, 1}, "standard deviation of a range's noise");
+  v("sigma_share", sigma_share, {0, 0.5}, "the same as a share of the range; the larger counts");
 }
 
 /// Fields of a sonar, without its link and range.

@@ -30,6 +30,21 @@ namespace fs = std::filesystem;
 
 using Listed = TumListEntry;
 
+/// A line for each scan, as docs/outside_systems.md describes them.
+std::string lasers_text(const std::map<Stamp, std::vector<LaserScan>>& lasers) {
+  std::string text =
+      "# stamp (s), laser, camera_from_laser (x y z qx qy qz qw), first angle, step (rad), least "
+      "and "
+      "largest range (m), ranges (m, 0 = nothing)\n";
+  for (const auto& [stamp_ns, scans] : lasers)
+    for (const LaserScan& scan : scans)
+      text += fmt::format("{} {} {} {} {} {} {} {}\n", format_stamp(stamp_ns), scan.name,
+                          fmt::join(scan.camera_from_laser.numbers(), " "), scan.first_rad,
+                          scan.step_rad, scan.min_range_m, scan.max_range_m,
+                          fmt::join(scan.ranges_m, " "));
+  return text;
+}
+
 /// Reads a list whose files are next to it.
 std::vector<Listed> read_list(const fs::path& list) {
   std::vector<Listed> entries = parse_tum_list(read_text(list), list.string());
@@ -248,6 +263,7 @@ void TumWriter::add(const RgbdFrame& frame) {
     const std::scoped_lock lock(mutex_);
     if (frame.odom_from_camera) odometry_[frame.stamp_ns] = *frame.odom_from_camera;
     for (const ImuReading& reading : frame.imu) imu_[reading.stamp_ns] = reading;
+    if (!frame.lasers.empty()) lasers_[frame.stamp_ns] = frame.lasers;
   }
   if (!frame.semantics.index.empty()) add_labels(frame.stamp_ns, class_image(frame.semantics));
 }
@@ -291,6 +307,7 @@ void TumWriter::finish() {
     for (const auto& [stamp, pose] : *poses) path.push_back({stamp, pose});
     if (!path.empty()) write_tum(folder_ / name, path);
   }
+  if (!lasers_.empty()) write_atomically(folder_ / "lasers.txt", lasers_text(lasers_));
   if (!imu_.empty()) {
     std::vector<ImuReading> readings;
     for (const auto& [stamp, reading] : imu_) readings.push_back(reading);

@@ -62,8 +62,8 @@ class TumWriter : public SequenceWriter {
   TumWriter(std::filesystem::path folder, const Camera& camera,
             PngCompression png_compression = {});
   /// Adds only what a system may see. label.txt lists the frames that have labels, odometry.txt the
-  /// poses by odometry, imu.csv (EuRoC's columns) what the inertial sensor delivered, if there are
-  /// any.
+  /// poses by odometry, imu.csv (EuRoC's columns) what the inertial sensor delivered, lasers.txt
+  /// the scans, if there are any.
   void add(const RgbdFrame& frame);
   void add(std::size_t index, const ExactFrame& frame) override;
   bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) override;
@@ -82,6 +82,7 @@ class TumWriter : public SequenceWriter {
   std::map<std::string, std::set<Stamp>> listed_;  ///< by part: stamps whose images exist
   std::map<Stamp, SE3> truth_, odometry_;
   std::map<Stamp, ImuReading> imu_;
+  std::map<Stamp, std::vector<LaserScan>> lasers_;
 };
 
 }  // namespace mh

@@ -20,7 +20,7 @@ constexpr int kConeRings = 3;              // rays in a sonar's cone: 1 + 6 + 12
 constexpr double kBumperReach_rad = 1.06;  // a bumper covers slightly more than 1/3 of the shell
 
 std::vector<float> scan(const PlanarWorld& world, const LaserScanner& laser,
-                        const SE3& world_from_base) {
+                        const SE3& world_from_base, RandomStream noise) {
   const SE3 world_from_laser = world_from_base * laser.base_from_laser;
   std::vector<float> ranges_m;
   for (int k = 0; k < laser.rays; ++k) {
@@ -28,7 +28,12 @@ std::vector<float> scan(const PlanarWorld& world, const LaserScanner& laser,
     const Vector3d direction =
         world_from_laser.rotation() * Vector3d(std::cos(a), std::sin(a), 0.0);
     const auto hit = world.cast(world_from_laser.translation(), direction, laser.max_range_m);
-    ranges_m.push_back(hit && *hit >= laser.min_range_m ? static_cast<float>(*hit) : 0.0F);
+    double range_m = hit.value_or(0.0);
+    if (const double sigma_m = std::max(laser.sigma_m, laser.sigma_share * range_m);
+        hit && sigma_m > 0)
+      range_m += sigma_m * noise.normal(static_cast<std::uint64_t>(k));
+    const bool is_measured = hit && range_m >= laser.min_range_m && range_m <= laser.max_range_m;
+    ranges_m.push_back(is_measured ? static_cast<float>(range_m) : 0.0F);
   }
   return ranges_m;
 }
@@ -57,11 +62,23 @@ float ping(const PlanarWorld& world, const Sonar& sonar, const SE3& world_from_b
 
 }  // namespace
 
-RobotReading read_ranges(const PlanarWorld& world, const Equipment& equipment,
-                         const SE3& world_from_base) {
-  RobotReading reading;
+RandomStream laser_noise(std::uint64_t seed, std::size_t tick) {
+  constexpr std::uint64_t kLasers = ~0ULL;  // a frame takes the number of its tick
+  return RandomStream(seed).fork(kLasers).fork(tick);
+}
+
+std::vector<std::vector<float>> read_lasers(const PlanarWorld& world, const Equipment& equipment,
+                                            const SE3& world_from_base, RandomStream noise) {
+  std::vector<std::vector<float>> lasers_m;
   for (const LaserScanner& laser : equipment.lasers)
-    reading.lasers_m.push_back(scan(world, laser, world_from_base));
+    lasers_m.push_back(scan(world, laser, world_from_base, noise.fork(lasers_m.size())));
+  return lasers_m;
+}
+
+RobotReading read_ranges(const PlanarWorld& world, const Equipment& equipment,
+                         const SE3& world_from_base, RandomStream noise) {
+  RobotReading reading;
+  reading.lasers_m = read_lasers(world, equipment, world_from_base, noise);
   for (const Sonar& sonar : equipment.sonars)
     reading.sonars_m.push_back(ping(world, sonar, world_from_base));
   return reading;
@@ -120,7 +137,8 @@ RobotReadings read_sensors(const Scene& scene, const Robot& robot, const Traject
     const Vector3d ahead = world_from_base.rotation().col(0);
     world.place(place_m, std::atan2(ahead.y(), ahead.x()));
     world.show_at(1e-9 * static_cast<double>(base[i].stamp_ns));
-    RobotReading reading = read_ranges(world, equipment, world_from_base);
+    RobotReading reading =
+        read_ranges(world, equipment, world_from_base, laser_noise(seed, i));
     reading.stamp_ns = base[i].stamp_ns;
     reading.bumpers = pressed_bumpers(world.contact(), equipment, world_from_base);
     if (equipment.base_from_imu)

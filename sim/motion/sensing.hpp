@@ -6,11 +6,12 @@
 
 #include "sim/motion/motion.hpp"
 #include "sim/physics/planar_world.hpp"
+#include "slam/core/random.hpp"
 
 namespace mh {
 
 /// Readings of a robot's own sensors at one moment. Lasers and sonars measure everything between 3
-/// cm and the top of the robot's head, exactly except for their range and resolution.
+/// cm and the top of the robot's head, exactly except for range, resolution and the lasers' noise.
 struct RobotReading {
   Stamp stamp_ns = 0;
   std::vector<std::vector<float>> lasers_m;  ///< by laser, right to left; 0 = nothing in range
@@ -27,9 +28,16 @@ struct RobotReadings {
   std::vector<RobotReading> moments;
 };
 
+/// The noise of a robot's lasers.
+/// @param tick  of the camera, since the drive began
+RandomStream laser_noise(std::uint64_t seed, std::size_t tick);
+/// What the lasers measure, by laser and ray, m; 0 = nothing in range.
+/// @param noise  of this moment
+std::vector<std::vector<float>> read_lasers(const PlanarWorld& world, const Equipment& equipment,
+                                            const SE3& world_from_base, RandomStream noise);
 /// Lasers and sonars in the world as it is; the rest of the reading is left empty.
 RobotReading read_ranges(const PlanarWorld& world, const Equipment& equipment,
-                         const SE3& world_from_base);
+                         const SE3& world_from_base, RandomStream noise);
 /// Which bumpers a contact presses, by bumper.
 std::vector<bool> pressed_bumpers(const Contact& contact, const Equipment& equipment,
                                   const SE3& world_from_base);

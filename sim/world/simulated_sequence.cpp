@@ -94,6 +94,7 @@ RgbdFrame SimulatedSequence::frame(std::size_t i, RandomStream noise) const {
   SemanticImage semantics = label_exposed(shutter_, sensors_, labels_, i, noise, seen);
   RgbdFrame made{stamp_ns(i), std::move(seen.color), std::move(seen.depth_m), std::move(semantics)};
   if (!odom_from_camera_.empty()) made.odom_from_camera = odom_from_camera_[i];
+  if (lasers_) made.lasers = lasers_(i);
   return made;
 }
 

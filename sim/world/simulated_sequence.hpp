@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -46,6 +47,9 @@ class SimulatedSequence : public Sequence {
   void set_odometry(std::vector<SE3> odom_from_camera) {
     odom_from_camera_ = std::move(odom_from_camera);
   }
+  /// From now on frames carry what the lasers measure at their moment.
+  using LasersAt = std::function<std::vector<LaserScan>(std::size_t i)>;
+  void set_lasers(LasersAt lasers) { lasers_ = std::move(lasers); }
   void set_imu(std::vector<ImuReading> readings) { imu_ = std::move(readings); }
 
   const Camera& camera() const override { return shutter_.camera(); }
@@ -65,6 +69,7 @@ class SimulatedSequence : public Sequence {
   LabelMode labels_;
   std::vector<SE3> odom_from_camera_;        // or empty
   std::vector<ImuReading> imu_;              // or empty
+  LasersAt lasers_;                          // or empty
   SharedImages images_;                      // shared
   std::string name_;                         // of their file
   std::unique_ptr<SharedExposures> shared_;  // or null

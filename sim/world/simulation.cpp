@@ -94,7 +94,9 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
     due = due || ticks_ % config_.ticks_per_frame == 0;
   }
   if (due) seen.frame = frame();
-  seen.reading = read_ranges(base_.world(), *robot_.equipment, base_.world_from_base());
+  seen.reading = read_ranges(
+      base_.world(), *robot_.equipment, base_.world_from_base(),
+      laser_noise(config_.seed, static_cast<std::size_t>(ticks_)));
   seen.stamp_ns = seen.reading.stamp_ns = recent_.back().stamp_ns;
   seen.reading.bumpers = std::move(pressed);
   const std::size_t n = recent_.size(), here = n < 2 ? 0 : n - 2;

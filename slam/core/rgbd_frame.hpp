@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "slam/core/grid2d.hpp"
@@ -46,6 +47,16 @@ struct ImuReading {
   friend bool operator==(const ImuReading&, const ImuReading&) = default;
 };
 
+/// A fan of rays that a laser measured, in a plane through its origin; ray k leaves along x turned
+/// about z by first_rad + k * step_rad.
+struct LaserScan {
+  std::string name;
+  SE3 camera_from_laser;  ///< at the frame's stamp, by the joints between them
+  double first_rad = 0, step_rad = 0;
+  double min_range_m = 0, max_range_m = 0;
+  std::vector<float> ranges_m;  ///< 0 = nothing in range
+};
+
 /// Everything SLAM sees of one instant: no pose, no instance ids, no ground truth.
 struct RgbdFrame {
   Stamp stamp_ns = 0;
@@ -57,6 +68,7 @@ struct RgbdFrame {
   std::optional<SE3> odom_from_camera = {};
   /// What the inertial sensor delivered since the frame that was shown before, in order of stamps.
   std::vector<ImuReading> imu = {};
+  std::vector<LaserScan> lasers = {};  ///< at the stamp
 };
 
 }  // namespace mh

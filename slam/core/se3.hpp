@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -39,6 +41,11 @@ class SE3 {
   const Eigen::Matrix3d& rotation() const { return rotation_; }
   const Eigen::Vector3d& translation() const { return translation_; }
   Eigen::Quaterniond quaternion() const { return Eigen::Quaterniond(rotation_).normalized(); }
+  /// x y z (m), then the unit quaternion x y z w: the order of TUM's trajectories.
+  std::array<double, 7> numbers() const {
+    const Eigen::Quaterniond q = quaternion();
+    return {translation_.x(), translation_.y(), translation_.z(), q.x(), q.y(), q.z(), q.w()};
+  }
 
   friend SE3 operator*(const SE3& a, const SE3& b) {
     return {a.rotation_ * b.rotation_, a.rotation_ * b.translation_ + a.translation_};

@@ -91,19 +91,21 @@ PlaceFacts recorded_facts(const World& world, const RunSpec& spec) {
 void simulate(World& world, LabelMode labels, const SharedImages& images) {
   const SimulatedPlace& p = *world.simulated;
   const auto sequence = [&](const char* name, const auto& renderer, const DrivenPath& path,
-                            const auto& pedestrian_scene) {
+                            const auto& pedestrian_scene,
+                            const std::shared_ptr<const LasersAlong>& lasers) {
     auto made = std::make_shared<SimulatedSequence>(renderer, p.robot.camera, path.camera,
                                                     p.sensors, labels, pedestrian_scene);
     if (!images.folder.empty()) made->share(images, name);
+    if (lasers) made->set_lasers([lasers](std::size_t i) { return lasers->at(i); });
     return made;
   };
-  const auto mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene);
+  const auto mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene, p.lasers);
   mapping->set_odometry(p.odom_from_camera);
   mapping->set_imu(p.imu);
   world.mapping = mapping;
   if (p.query_tour)
     world.query_tour = sequence("second", p.query_renderer ? p.query_renderer : p.renderer,
-                                *p.query_tour, p.query_pedestrian_scene);
+                                *p.query_tour, p.query_pedestrian_scene, p.query_lasers);
   if (!p.graded.list.empty())
     world.graded =
         std::make_shared<GradedSequence>(p.query_renderer ? p.query_renderer : p.renderer,
@@ -301,6 +303,9 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   if (gives(Sense::kOdometry))
     place.odom_from_camera =
         odometry_along(place.mapping, place.robot, lifted_ns, spec.seed, environment.robot);
+  if (gives(Sense::kLaser))
+    place.lasers = std::make_shared<const LasersAlong>(scene, place.robot, place.mapping, spec.seed,
+                                                       obstacles(0));
   if (environment.query_scene) {
     place.query_scene = lit_scene("query_scene", *environment.query_scene);
     place.query_renderer = make_scene_renderer(*place.query_scene);
@@ -318,6 +323,10 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
                            [&] { return along(queried, *environment.query_tour, met); });
   lose_frames(*place.query_tour);
   shorten(*place.query_tour);
+  if (gives(Sense::kLaser))
+    place.query_lasers =
+        std::make_shared<const LasersAlong>(place.query_scene ? place.query_scene : scene,
+                                            place.robot, *place.query_tour, spec.seed + 1, met);
   return world;
 }
 

@@ -20,6 +20,7 @@
 #include "sim/render/renderer.hpp"
 #include "sim/sensors/labels.hpp"
 #include "sim/sensors/sense.hpp"
+#include "sim/world/lasers_along.hpp"
 #include "sim/world/pedestrian.hpp"
 #include "sim/world/shared_exposures.hpp"
 #include "slam/core/sequence.hpp"
@@ -34,9 +35,11 @@ struct SimulatedPlace {
   std::shared_ptr<const Renderer> renderer;
   Robot robot;
   DrivenPath mapping;
-  std::vector<SE3> odom_from_camera;     ///< at the frames of `mapping`; empty unless it is given
-  std::vector<ImuReading> imu;           ///< along `mapping`; empty unless it is given
-  std::optional<DrivenPath> query_tour;  ///< the second tour, if the environment has one
+  std::vector<SE3> odom_from_camera;  ///< at the frames of `mapping`; empty unless it is given
+  std::vector<ImuReading> imu;        ///< along `mapping`; empty unless it is given
+  std::shared_ptr<const LasersAlong> lasers;        ///< along `mapping`; null unless they are given
+  std::shared_ptr<const LasersAlong> query_lasers;  ///< along `query_tour`; likewise
+  std::optional<DrivenPath> query_tour;             ///< the second tour, if the environment has one
   std::shared_ptr<const Scene> query_scene;  ///< the second tour's scene; null: the same scene
   std::shared_ptr<const Renderer> query_renderer;  ///< of that scene; null: the same renderer
   std::shared_ptr<const PedestrianScene>

@@ -41,8 +41,10 @@ ScanGrid SceneLasers::scans(const Trajectory& map_from_camera, const Trajectory&
     const TimedPose* is_at = pose_at(world_from_camera, pose.stamp_ns);
     if (is_at == nullptr) continue;
     const SE3 level_from_base = level_from_world * is_at->world_from_camera * camera_from_base;
-    const RobotReading read = read_ranges(impl_->world, *robot.equipment, level_from_base);
-    add_scans(scans, *robot.equipment, pose.world_from_camera * camera_from_base, read.lasers_m);
+    const auto lasers_m =
+        read_lasers(impl_->world, *robot.equipment, level_from_base,
+                    RandomStream(0).fork(static_cast<std::uint64_t>(pose.stamp_ns)));
+    add_scans(scans, *robot.equipment, pose.world_from_camera * camera_from_base, lasers_m);
   }
   return scans;
 }

@@ -24,7 +24,7 @@ RobotMap map_of(const RunSpec& spec, const World& world, const Trajectory& estim
        .noise = noise,
        .lasers = [&](std::size_t frame) {
          const SE3& world_from_base = place.mapping.base[frame * ticks].world_from_camera;
-         return read_ranges(seen, *place.robot.equipment, world_from_base).lasers_m;
+         return read_lasers(seen, *place.robot.equipment, world_from_base, noise.fork(frame));
        }});
 }
 

@@ -41,6 +41,13 @@ struct Fault : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+mh_pose pose_of(const Json& told) {
+  mh_pose pose{};
+  for (std::size_t i = 0; i < std::size(pose.values); ++i)
+    pose.values[i] = told.at(i).get<double>();
+  return pose;
+}
+
 /// An image that the bench wrote: binary PPM or PGM, 8 or 16 bit.
 class Image {
  public:
@@ -234,11 +241,20 @@ class HostedSystem {
     std::optional<Image> labels;
     if (request.contains("labels")) labels.emplace(request.at("labels"));
     std::optional<mh_pose> odometry;
-    if (request.contains("odometry")) {
-      const Json& told = request.at("odometry");
-      odometry.emplace();
-      for (std::size_t i = 0; i < std::size(odometry->values); ++i)
-        odometry->values[i] = told.at(i).get<double>();
+    if (request.contains("odometry")) odometry = pose_of(request.at("odometry"));
+    std::vector<std::vector<float>> ranges_m;
+    std::vector<mh_laser> lasers;
+    const Json scans = request.value("lasers", Json::array());
+    for (const Json& told : scans) {
+      ranges_m.push_back(told.at("ranges_m"));
+      lasers.push_back({.name = told.at("name").get_ref<const std::string&>().c_str(),
+                        .camera_from_laser = pose_of(told.at("camera_from_laser")),
+                        .first_rad = told.at("first_rad"),
+                        .step_rad = told.at("step_rad"),
+                        .min_range_m = told.at("limits_m").at(0),
+                        .max_range_m = told.at("limits_m").at(1),
+                        .ranges_m = ranges_m.back().data(),
+                        .range_count = static_cast<std::int32_t>(ranges_m.back().size())});
     }
     std::vector<mh_imu> imu;
     for (const Json& told : request.value("imu", Json::array())) {
@@ -259,7 +275,9 @@ class HostedSystem {
         .seed = request.at("seed"),
         .odometry = odometry ? &*odometry : nullptr,
         .imu = imu.data(),
-        .imu_count = static_cast<std::int32_t>(imu.size())};
+        .imu_count = static_cast<std::int32_t>(imu.size()),
+        .lasers = lasers.data(),
+        .laser_count = static_cast<std::int32_t>(lasers.size())};
     call(function, &frame, &reply);
     return reply_json(reply);
   }

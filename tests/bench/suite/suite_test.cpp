@@ -111,6 +111,7 @@ TEST_F(SuiteFile, SensesAreOfARobotThatDrives) {
     return load_suite(folder_ / "by_hand.yaml").senses;
   };
   EXPECT_EQ(by_hand("imu"), std::vector{Sense::kImu});
+  EXPECT_THROW(by_hand("laser"), InputError);
   try {
     by_hand("odometry");
     FAIL();

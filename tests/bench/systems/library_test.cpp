@@ -98,6 +98,11 @@ TEST_F(LibrarySystems, AreAskedFrameByFrame) {
   frame.semantics = {Grid2d<std::uint8_t>(2, 2), {{{{5, 0.3F}, {7, 0.6F}}}}};
   frame.stamp_ns = 8;
   EXPECT_EQ(system->track(frame, RandomStream(2)).inliers, 7) << "the most probable class";
+  frame.lasers = {{.name = "a",
+                   .camera_from_laser = SE3(Eigen::Matrix3d::Identity(), {0, 2, 0}),
+                   .max_range_m = 3,
+                   .ranges_m = {0, 1.5F}}};
+  EXPECT_EQ(system->track(frame, RandomStream(2)).keypoints, 'a' + 1500 + 20 + 3);
   EXPECT_EQ(system->trajectory().size(), 2U);
   system->reset();
   EXPECT_TRUE(system->trajectory().empty());

@@ -194,6 +194,26 @@ TEST_F(OtherSenses, InertialReadingsAreToldInAConversationAndWrittenIntoADataset
   EXPECT_FALSE(fs::exists(dataset(1) / "imu.csv"));
 }
 
+TEST_F(OtherSenses, ScansAreToldInAConversationAndWrittenIntoADataset) {
+  second_.lasers = {{.name = "front",
+                     .camera_from_laser = SE3(Eigen::Matrix3d::Identity(), {0.5, -0.25, 0}),
+                     .first_rad = -0.5,
+                     .step_rad = 0.25,
+                     .min_range_m = 0.125,
+                     .max_range_m = 3.5,
+                     .ranges_m = {1.5F, 0, 3.25F}}};
+  const std::string said = asked();
+  EXPECT_NE(said.find(R"("lasers":[{"name":"front","camera_from_laser":[0.5,-0.25,0.0,0.0,0.0,0.0,)"
+                      R"(1.0],"first_rad":-0.5,"step_rad":0.25,"limits_m":[0.125,3.5],)"
+                      R"("ranges_m":[1.5,0.0,3.25]}])"),
+            std::string::npos)
+      << said;
+  const std::string lines = read_file(dataset(2) / "lasers.txt");
+  EXPECT_EQ(lines.substr(lines.find('\n') + 1),
+            "1.010000000 front 0.5 -0.25 0 0 0 0 1 -0.5 0.25 0.125 3.5 1.5 0 3.25\n");
+  EXPECT_FALSE(fs::exists(dataset(1) / "lasers.txt"));
+}
+
 TEST(SettingsText, HasRealNumbersWhereReadersInsistOnThem) {
   const cv::FileStorage settings(settings_text(Camera{}), cv::FileStorage::READ |
                                                               cv::FileStorage::MEMORY |

@@ -52,6 +52,11 @@ static int track(void* self, const mh_frame* frame, mh_reply* reply) {
   if (told(t, "speechless")) return 7;
   t->stamps_ns[t->seen++ % 16] = frame->stamp_ns;
   reply->keypoints = frame->color[0] + 1000 * frame->depth[0];
+  if (frame->laser_count == 1) /* the name's first letter, the last range */
+    reply->keypoints =
+        frame->lasers[0].name[0] +
+        (int32_t)(1000 * frame->lasers[0].ranges_m[frame->lasers[0].range_count - 1] +
+                  10 * frame->lasers[0].camera_from_laser.values[1] + frame->lasers[0].max_range_m);
   reply->inliers = told(t, "count") ? -2 : frame->labels != NULL ? frame->labels[0] : MH_UNKNOWN;
   reply->keyframe_added = t->seen == 1 && !told(t, "lost");
   return stand_still(t, reply);

@@ -254,6 +254,36 @@ TEST(ReadSensors, LasersAndSonarsMeasureTheRoom) {
   EXPECT_NEAR(with.moments.at(0).sonars_m[1], 1.5 - 0.0718 - 0.22, 0.04);
 }
 
+TEST(ReadSensors, LaserNoiseIsTheLargerOfALengthAndAShare) {
+  Robot robot = pepper();
+  auto equipment = std::make_shared<Equipment>(*robot.equipment);
+  LaserScanner& laser = equipment->lasers[0];
+  laser.rays = 2001;
+  laser.field_of_view_rad = 1e-6;  // all rays measure one range
+  laser.sigma_m = 0.010;
+  laser.sigma_share = 0.035;
+  robot.equipment = equipment;
+  for (const double ahead_m : {0.25, 2.0}) {
+    Scene scene = empty_room();
+    const float x = static_cast<float>(5.0562 + ahead_m);
+    add_box(scene, "box", {x, 4, 0}, {x + 0.5F, 6, 1});
+    const Trajectory base = {{0, SE3(Eigen::Matrix3d::Identity(), {5, 5, 0})}};
+    const auto ranges_m = [&](std::uint64_t seed) {
+      return read_sensors(scene, robot, base, seed).moments[0].lasers_m[0];
+    };
+    double sum = 0, squares = 0;
+    for (const float range_m : ranges_m(1)) {
+      sum += range_m - ahead_m;
+      squares += (range_m - ahead_m) * (range_m - ahead_m);
+    }
+    const double sigma_m = std::max(0.010, 0.035 * ahead_m);
+    EXPECT_NEAR(sum / 2001, 0, 4 * sigma_m / std::sqrt(2001.0)) << ahead_m;
+    EXPECT_NEAR(std::sqrt(squares / 2001), sigma_m, 0.07 * sigma_m) << ahead_m;
+    EXPECT_EQ(ranges_m(1), ranges_m(1));
+    EXPECT_NE(ranges_m(1), ranges_m(2));
+  }
+}
+
 TEST(ReadSensors, TheBumperThatIsTouchedIsPressed) {
   const VelocityCommand west{.duration_s = 15, .forward_m_per_s = -0.5};
   const CommandedDrive back = drive(empty_room(), pepper(), script_of({west}));
