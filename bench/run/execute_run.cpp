@@ -120,7 +120,6 @@ void execute_run(const RunOrder& order, const RunListener& listener) {
                                  .progress = listener.progress,
                                  .status = listener.status,
                                  .system = {},
-                                 .tamper = {},
                                  .occupancy = !order.metrics_only,
                                  .maps = Cache(order.maps),
                                  .episodes = {.ended = Cache(ended), .key = order.key}});
