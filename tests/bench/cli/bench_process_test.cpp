@@ -428,6 +428,29 @@ TEST(BenchProcess, AnOutsideProgramFindsNoTruth) {
   EXPECT_EQ(log.find('\n'), log.size() - 2) << log;
 }
 
+TEST(BenchProcess, ASystemOfLasersAloneMapsAndRelocalizes) {
+  const fs::path suite = test_folder() / "lasers.yaml";
+  mh::test::SmallSuite{
+      .systems = "[{name: laser, protocol: conversation, command: /usr/bin/python3 " MH_SOURCE_DIR
+                 "/examples/laser_slam/laser_slam.py}]",
+      .labels = "[none]",
+      .robot = MH_SOURCE_DIR "/robots/turtlebot3/turtlebot3.yaml",
+      .more = "senses: [laser, odometry]\n"}
+      .write(suite);
+  ASSERT_EQ(
+      run("bench " + suite.string() + " --frames 120 --cache " +
+          (test_folder() / "cache").string() + " --out " + (test_folder() / "lasers").string()),
+      0)
+      << errors();
+  SQLite::Database db((test_folder() / "lasers/results.sqlite").string());
+  const auto value = [&](const std::string& metric) {
+    return db.execAndGet("SELECT value FROM metrics WHERE name = '" + metric + "'").getDouble();
+  };
+  EXPECT_LT(value("ate_rmse_m"), 0.05);
+  EXPECT_EQ(value("completeness"), 1);
+  EXPECT_GE(value("held_out.correct"), 0.9);
+}
+
 TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
   const fs::path suite = write_suite("deleted", "[plain]");
   EXPECT_EQ(run(bench(suite, "deleted")), 0) << errors();

@@ -44,6 +44,7 @@ inline std::string write_small_pepper(const std::filesystem::path& file) {
 struct SmallSuite {
   std::string scene = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
   std::string systems = "[semantic, plain]", labels = "[exact, boxes]", level = "pepper";
+  std::string robot = MH_SOURCE_DIR "/bench/scenarios/robot.yaml";
   std::string more = "";
 
   void write(const std::filesystem::path& file) const {
@@ -51,11 +52,10 @@ struct SmallSuite {
     std::ofstream(file) << "environments:\n- {category: room, scene: " << scene
                         << ", mapping_tour: " << root
                         << "/bench/scenarios/tours/room.yaml, query_tour: " << root
-                        << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << root
-                        << "/bench/scenarios/robot.yaml\nvocabulary: " << root
-                        << "/assets/vocabulary.mhvoc\nlevels: [" << root << "/sim/sensors/levels/"
-                        << level << ".yaml]\nsystems: " << systems << "\nlabels: " << labels
-                        << "\nprotocol: {test_interval: 10}\n"
+                        << "/bench/scenarios/tours/room_query.yaml}\nrobot: " << robot
+                        << "\nvocabulary: " << root << "/assets/vocabulary.mhvoc\nlevels: [" << root
+                        << "/sim/sensors/levels/" << level << ".yaml]\nsystems: " << systems
+                        << "\nlabels: " << labels << "\nprotocol: {test_interval: 10}\n"
                         << more;
   }
 };

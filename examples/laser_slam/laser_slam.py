@@ -1,0 +1,218 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""SLAM by laser scans alone: each is matched to a map of all before it; a lost robot is looked for
+wherever it has been.
+
+Speaks docs/outside_systems.md's conversation; the images are not read. Needs `senses: [laser]` and
+numpy: apt-get install python3-numpy. With `senses: [laser, odometry]` the wheels predict the motion.
+"""
+import json
+import sys
+
+import numpy as np
+
+CELL_M = 0.05      # of the map, a square of CELLS cells around the start
+CELLS = 1200
+SIGMA_M = 0.07     # by which a ray's end is spread
+KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # the map grows by scans this far from all before
+LEAST_ENDS = 20    # of a scan, to be of use
+LEAST_SHARE = 0.5  # of them that must be where others were, for a pose to be believed
+
+
+def matrix(pose):
+    """4 x 4 from x y z qx qy qz qw."""
+    x, y, z, w = pose[3:]
+    found = np.eye(4)
+    found[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
+    found[:3, 3] = pose[:3]
+    return found
+
+
+def numbers(pose):
+    """x y z qx qy qz qw of a 4 x 4 matrix."""
+    r = pose[:3, :3]
+    four = np.array([[r[0, 0] - r[1, 1] - r[2, 2], 0, 0, 0],
+                     [r[0, 1] + r[1, 0], r[1, 1] - r[0, 0] - r[2, 2], 0, 0],
+                     [r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], r[2, 2] - r[0, 0] - r[1, 1], 0],
+                     [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], np.trace(r)]])
+    quaternion = np.linalg.eigh(four)[1][:, 3]  # eigh reads the lower triangle
+    return [*pose[:3, 3], *quaternion]
+
+
+def planar(pose):
+    """x, y and heading as a 4 x 4 matrix."""
+    c, s = np.cos(pose[2]), np.sin(pose[2])
+    found = np.eye(4)
+    found[:2, :2] = [[c, -s], [s, c]]
+    found[:2, 3] = pose[:2]
+    return found
+
+
+def flat(pose):
+    """x, y and heading of a 4 x 4 matrix."""
+    return np.array([pose[0, 3], pose[1, 3], np.arctan2(pose[1, 0], pose[0, 0])])
+
+
+def compose(a, b):
+    return flat(planar(a) @ planar(b))
+
+
+def ends_of(scans):
+    """Where the rays of all lasers end, in the plane of the first, m; N x 2."""
+    first_from_camera = np.linalg.inv(matrix(scans[0]["camera_from_laser"]))
+    ends = []
+    for scan in scans:
+        ranges = np.array(scan["ranges_m"])
+        angles = scan["first_rad"] + scan["step_rad"] * np.arange(len(ranges))
+        hit = ranges > 0
+        rays = np.zeros((hit.sum(), 4))
+        rays[:, 0], rays[:, 1] = ranges[hit] * np.cos(angles[hit]), ranges[hit] * np.sin(angles[hit])
+        rays[:, 3] = 1
+        first_from_laser = first_from_camera @ matrix(scan["camera_from_laser"])
+        ends.append((rays @ first_from_laser.T)[:, :2])
+    return np.concatenate(ends)
+
+
+class Map:
+    """How many rays ended in or beside each cell, spread by SIGMA_M: densest on the walls."""
+
+    def __init__(self):
+        self.ends = np.zeros((CELLS, CELLS), np.float32)
+        self.seen_from = []  # poses of the scans that it is made of
+        reach = int(3 * SIGMA_M / CELL_M)
+        off = np.arange(-reach, reach + 1) * CELL_M
+        self.stamp = np.exp(-0.5 * (off[:, None] ** 2 + off[None, :] ** 2) / SIGMA_M ** 2)
+        self.reach = reach
+
+    def cells(self, pose, ends):
+        """Row and column of each end, of one pose or of many (N x 3); those outside are moved in."""
+        pose = np.asarray(pose)[..., None, :]
+        c, s = np.cos(pose[..., 2]), np.sin(pose[..., 2])
+        x = pose[..., 0] + c * ends[:, 0] - s * ends[:, 1]
+        y = pose[..., 1] + s * ends[:, 0] + c * ends[:, 1]
+        into = lambda m: np.clip(np.rint(m / CELL_M) + CELLS // 2, self.reach,
+                                 CELLS - 1 - self.reach).astype(int)
+        return into(y), into(x)
+
+    def score(self, poses, ends):
+        """How well the ends fit, by pose; a wall that was seen often counts little more."""
+        return np.log1p(self.ends[self.cells(poses, ends)]).mean(axis=-1)
+
+    def share(self, pose, ends):
+        """Of the ends, how many are where others were."""
+        return (self.ends[self.cells(pose, ends)] > 0.5).mean()
+
+    def add(self, pose, ends):
+        for row, column in {*zip(*self.cells(pose, ends))}:
+            around = np.s_[row - self.reach:row + self.reach + 1,
+                           column - self.reach:column + self.reach + 1]
+            self.ends[around] += self.stamp
+        self.seen_from.append(pose)
+
+    def is_new(self, pose):
+        away = np.abs(np.array(self.seen_from) - pose)
+        away[:, 2] = np.minimum(away[:, 2] % (2 * np.pi), -away[:, 2] % (2 * np.pi))
+        return np.all((np.hypot(away[:, 0], away[:, 1]) > KEYFRAME_M) | (away[:, 2] > KEYFRAME_RAD))
+
+    def refine(self, pose, ends, step_m, step_rad):
+        """Climbs to the best pose nearby, by ever smaller steps."""
+        best, steps = self.score(pose, ends), np.array([step_m, step_m, step_rad])
+        around = np.array(np.meshgrid(*[[-1, 0, 1]] * 3)).reshape(3, -1).T
+        while steps[0] > 0.002:
+            tried = pose + around * steps
+            scores = self.score(tried, ends)
+            if scores.max() > best + 1e-9:
+                pose, best = tried[scores.argmax()], scores.max()
+            else:
+                steps = steps / 2
+        return pose
+
+    def search(self, ends):
+        """The best pose near any that the map was seen from, in any direction."""
+        if len(ends) < LEAST_ENDS:
+            return np.zeros(3)
+        few = ends[::max(1, len(ends) // 90)]
+        places = {(round(p[0] / 0.2), round(p[1] / 0.2)) for p in self.seen_from}
+        places = {(x + i, y + j) for x, y in places for i in (-1, 0, 1) for j in (-1, 0, 1)}
+        headings = np.arange(0, 2 * np.pi, np.pi / 36)
+        tried = np.array([(0.2 * x, 0.2 * y, a) for x, y in sorted(places) for a in headings])
+        scores = np.concatenate([self.score(part, few) for part in np.array_split(tried, 40)])
+        best = [self.refine(tried[i], ends, 0.1, 0.05) for i in np.argsort(-scores)[:20]]
+        return max(best, key=lambda pose: self.score(pose, ends))
+
+
+class LaserSlam:
+    def __init__(self):
+        self.restart()
+
+    def restart(self):
+        self.map, self.last, self.step, self.wheels = Map(), None, np.zeros(3), None
+
+    def predict(self, wheels):
+        if wheels is not None and self.wheels is not None:
+            return compose(self.last, flat(np.linalg.inv(self.wheels) @ wheels))
+        return compose(self.last, self.step)
+
+    def track(self, request):
+        ends, laser_from_camera = self.scan(request)
+        wheels = None
+        if "odometry" in request:
+            wheels = matrix(request["odometry"]) @ np.linalg.inv(laser_from_camera)
+        if self.last is not None and len(ends) > 0:
+            found = self.map.refine(self.predict(wheels), ends, 0.08, 0.04)
+        else:
+            found = self.map.search(ends) if self.map.seen_from else np.zeros(3)
+        if not self.is_believed(found, ends):
+            self.last, self.wheels = None, None
+            return {"pose": None}
+        if self.last is not None:
+            self.step = flat(np.linalg.inv(planar(self.last)) @ planar(found))
+        self.last, self.wheels = found, wheels
+        is_keyframe = not self.map.seen_from or self.map.is_new(found)
+        if is_keyframe:
+            self.map.add(found, ends)
+        return {"pose": numbers(planar(found) @ laser_from_camera), "keyframe": bool(is_keyframe)}
+
+    def relocalize(self, request):
+        ends, laser_from_camera = self.scan(request)
+        found = self.map.search(ends) if self.map.seen_from else np.zeros(3)
+        believed = self.map.seen_from and self.is_believed(found, ends)
+        return {"pose": numbers(planar(found) @ laser_from_camera) if believed else None}
+
+    def is_believed(self, pose, ends):
+        """Whether enough of a scan fits; the first one has nothing to fit to."""
+        fits = not self.map.seen_from or self.map.share(pose, ends) > LEAST_SHARE
+        return len(ends) >= LEAST_ENDS and fits
+
+    @staticmethod
+    def scan(request):
+        scans = request.get("lasers", [])
+        if not scans:
+            sys.exit("no lasers: the suite must say `senses: [laser]`")
+        return ends_of(scans), np.linalg.inv(matrix(scans[0]["camera_from_laser"]))
+
+
+def main():
+    slam = LaserSlam()
+    for line in sys.stdin:
+        request = json.loads(line)
+        do, reply = request["do"], {"id": request["id"]}
+        if do == "hello":
+            reply.update(protocol=1, name="laser_slam")
+        elif do == "track":
+            reply.update(slam.track(request))
+        elif do == "relocalize":
+            reply.update(slam.relocalize(request))
+        elif do == "rewind":
+            slam.last = None
+        elif do == "reset":
+            slam.restart()
+        elif do == "blank":
+            reply.update(pose=None)
+        print(json.dumps(reply), flush=True)
+
+
+if __name__ == "__main__":
+    main()
