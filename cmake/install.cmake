@@ -24,6 +24,11 @@ install(FILES ${made}/completion.zsh RENAME _modelhouse
 install(FILES ${made}/completion.fish RENAME modelhouse.fish
         DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
+# With ${data_dir}/python on PYTHONPATH: import modelhouse.
+install(DIRECTORY python/modelhouse/ DESTINATION ${data_dir}/python/modelhouse
+        PATTERN "__pycache__" EXCLUDE)
+install(TARGETS modelhouse_python LIBRARY DESTINATION ${data_dir}/python/modelhouse)
+
 # Used as #include <modelhouse/semantics/augmented_vector.hpp>.
 install(DIRECTORY slam/semantics/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/modelhouse/semantics
         FILES_MATCHING PATTERN "*.hpp")

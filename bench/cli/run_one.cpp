@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "bench/cli/commands.hpp"
 #include "bench/run/execute_run.hpp"
 #include "bench/run/run_process.hpp"
+#include "bench/suite/shipped.hpp"
 
 namespace mh::cli {
 
@@ -51,6 +53,13 @@ class ToParent {
   std::string last_word_;
 };
 
+/// Systems in Python find `from modelhouse import System, serve`.
+void offer_python_package() {
+  const char* const set = std::getenv("PYTHONPATH");
+  const std::string more = set != nullptr && *set != 0 ? std::string(set) + ":" : "";
+  setenv("PYTHONPATH", (more + (data_folder() / "python").string()).c_str(), 1);
+}
+
 }  // namespace
 
 void add_run_one(CLI::App& app) {
@@ -62,6 +71,7 @@ void add_run_one(CLI::App& app) {
   command->callback([file] {
     const RunOrder order = read_order(*file);
     if (order.parent != 0) die_with(order.parent);
+    offer_python_package();
     ToParent parent;
     execute_run(order, {.say = [&](std::string_view stage) { parent.say(stage); },
                         .progress = [&](double share) { parent.share(share); },

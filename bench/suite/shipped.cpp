@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/suite/shipped.hpp"
 
+#include <dlfcn.h>
+
 #include <map>
 #include <string_view>
 
@@ -114,6 +116,12 @@ fs::path data_folder() {
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     const fs::path installed = (program.parent_path() / MH_DATA_FROM_PROGRAM).lexically_normal();
     if (!error && fs::is_directory(installed / "bench/suites", error)) return installed;
+    // In the Python package, which is installed among the data.
+    if (Dl_info here{}; dladdr(reinterpret_cast<const void*>(&data_folder), &here) != 0) {
+      const fs::path data =
+          (fs::absolute(here.dli_fname).parent_path() / "../..").lexically_normal();
+      if (fs::is_directory(data / "bench/suites", error)) return data;
+    }
     return fs::path(MH_SOURCE_DIR);
   }();
   return folder;

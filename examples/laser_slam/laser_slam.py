@@ -3,13 +3,12 @@
 """SLAM by laser scans alone: each is matched to a map of all before it; a lost robot is looked for
 wherever it has been.
 
-Speaks docs/outside_systems.md's conversation; the images are not read. Needs `senses: [laser]` and
-numpy: apt-get install python3-numpy. With `senses: [laser, odometry]` the wheels predict the motion.
+The images are not read. Needs `senses: [laser]` and numpy: apt-get install python3-numpy. With
+`senses: [laser, odometry]` the wheels predict the motion.
 """
-import json
-import sys
-
 import numpy as np
+
+from modelhouse.system import Reply, System, serve
 
 CELL_M = 0.05      # of the map, a square of CELLS cells around the start
 CELLS = 1200
@@ -17,28 +16,6 @@ SIGMA_M = 0.07     # by which a ray's end is spread
 KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # the map grows by scans this far from all before
 LEAST_ENDS = 20    # of a scan, to be of use
 LEAST_SHARE = 0.5  # of them that must be where others were, for a pose to be believed
-
-
-def matrix(pose):
-    """4 x 4 from x y z qx qy qz qw."""
-    x, y, z, w = pose[3:]
-    found = np.eye(4)
-    found[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
-    found[:3, 3] = pose[:3]
-    return found
-
-
-def numbers(pose):
-    """x y z qx qy qz qw of a 4 x 4 matrix."""
-    r = pose[:3, :3]
-    four = np.array([[r[0, 0] - r[1, 1] - r[2, 2], 0, 0, 0],
-                     [r[0, 1] + r[1, 0], r[1, 1] - r[0, 0] - r[2, 2], 0, 0],
-                     [r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], r[2, 2] - r[0, 0] - r[1, 1], 0],
-                     [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], np.trace(r)]])
-    quaternion = np.linalg.eigh(four)[1][:, 3]  # eigh reads the lower triangle
-    return [*pose[:3, 3], *quaternion]
 
 
 def planar(pose):
@@ -61,16 +38,14 @@ def compose(a, b):
 
 def ends_of(scans):
     """Where the rays of all lasers end, in the plane of the first, m; N x 2."""
-    first_from_camera = np.linalg.inv(matrix(scans[0]["camera_from_laser"]))
     ends = []
     for scan in scans:
-        ranges = np.array(scan["ranges_m"])
-        angles = scan["first_rad"] + scan["step_rad"] * np.arange(len(ranges))
-        hit = ranges > 0
+        hit = scan.ranges > 0
         rays = np.zeros((hit.sum(), 4))
-        rays[:, 0], rays[:, 1] = ranges[hit] * np.cos(angles[hit]), ranges[hit] * np.sin(angles[hit])
+        rays[:, 0] = scan.ranges[hit] * np.cos(scan.angles[hit])
+        rays[:, 1] = scan.ranges[hit] * np.sin(scan.angles[hit])
         rays[:, 3] = 1
-        first_from_laser = first_from_camera @ matrix(scan["camera_from_laser"])
+        first_from_laser = np.linalg.inv(scans[0].camera_from_laser) @ scan.camera_from_laser
         ends.append((rays @ first_from_laser.T)[:, :2])
     return np.concatenate(ends)
 
@@ -143,76 +118,60 @@ class Map:
         return max(best, key=lambda pose: self.score(pose, ends))
 
 
-class LaserSlam:
-    def __init__(self):
-        self.restart()
-
-    def restart(self):
+class LaserSlam(System):
+    def start(self):
         self.map, self.last, self.step, self.wheels = Map(), None, np.zeros(3), None
+
+    def reset(self):
+        self.start()
+
+    def rewind(self):
+        self.last = None
 
     def predict(self, wheels):
         if wheels is not None and self.wheels is not None:
             return compose(self.last, flat(np.linalg.inv(self.wheels) @ wheels))
         return compose(self.last, self.step)
 
-    def track(self, request):
-        ends, laser_from_camera = self.scan(request)
+    def track(self, frame):
+        ends, laser_from_camera = scan_of(frame)
         wheels = None
-        if "odometry" in request:
-            wheels = matrix(request["odometry"]) @ np.linalg.inv(laser_from_camera)
+        if frame.odometry is not None:
+            wheels = frame.odometry @ np.linalg.inv(laser_from_camera)
         if self.last is not None and len(ends) > 0:
             found = self.map.refine(self.predict(wheels), ends, 0.08, 0.04)
         else:
             found = self.map.search(ends) if self.map.seen_from else np.zeros(3)
         if not self.is_believed(found, ends):
             self.last, self.wheels = None, None
-            return {"pose": None}
+            return None
         if self.last is not None:
             self.step = flat(np.linalg.inv(planar(self.last)) @ planar(found))
         self.last, self.wheels = found, wheels
-        is_keyframe = not self.map.seen_from or self.map.is_new(found)
+        is_keyframe = not self.map.seen_from or bool(self.map.is_new(found))
         if is_keyframe:
             self.map.add(found, ends)
-        return {"pose": numbers(planar(found) @ laser_from_camera), "keyframe": bool(is_keyframe)}
+        return Reply(planar(found) @ laser_from_camera, keyframe=is_keyframe)
 
-    def relocalize(self, request):
-        ends, laser_from_camera = self.scan(request)
-        found = self.map.search(ends) if self.map.seen_from else np.zeros(3)
-        believed = self.map.seen_from and self.is_believed(found, ends)
-        return {"pose": numbers(planar(found) @ laser_from_camera) if believed else None}
+    def relocalize(self, frame):
+        ends, laser_from_camera = scan_of(frame)
+        if not self.map.seen_from:
+            return None
+        found = self.map.search(ends)
+        return planar(found) @ laser_from_camera if self.is_believed(found, ends) else None
 
     def is_believed(self, pose, ends):
         """Whether enough of a scan fits; the first one has nothing to fit to."""
         fits = not self.map.seen_from or self.map.share(pose, ends) > LEAST_SHARE
         return len(ends) >= LEAST_ENDS and fits
 
-    @staticmethod
-    def scan(request):
-        scans = request.get("lasers", [])
-        if not scans:
-            sys.exit("no lasers: the suite must say `senses: [laser]`")
-        return ends_of(scans), np.linalg.inv(matrix(scans[0]["camera_from_laser"]))
 
-
-def main():
-    slam = LaserSlam()
-    for line in sys.stdin:
-        request = json.loads(line)
-        do, reply = request["do"], {"id": request["id"]}
-        if do == "hello":
-            reply.update(protocol=1, name="laser_slam")
-        elif do == "track":
-            reply.update(slam.track(request))
-        elif do == "relocalize":
-            reply.update(slam.relocalize(request))
-        elif do == "rewind":
-            slam.last = None
-        elif do == "reset":
-            slam.restart()
-        elif do == "blank":
-            reply.update(pose=None)
-        print(json.dumps(reply), flush=True)
+def scan_of(frame):
+    """The ends of all rays, and first_laser_from_camera."""
+    if not frame.lasers:
+        raise ValueError("no lasers: the suite must say `senses: [laser]`")
+    return ends_of(frame.lasers), np.linalg.inv(frame.lasers[0].camera_from_laser)
 
 
 if __name__ == "__main__":
-    main()
+    serve(LaserSlam())

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "sim/motion/start.hpp"
-#include "sim/world/simulated_sequence.hpp"
 #include "sim/world/travel.hpp"
 #include "slam/io/error.hpp"
 
@@ -60,20 +59,21 @@ void Simulation::tick() {
   if (recent_.size() > kClip) recent_.erase(recent_.begin());
 }
 
-RgbdFrame Simulation::frame() const {
+SensedMoment Simulation::frame() const {
   const std::size_t at = recent_.size() < 2 ? 0 : recent_.size() - 2;
   const Stamp stamp_ns = recent_[at].stamp_ns;
   if (!light_)
-    return {.stamp_ns = stamp_ns,
-            .color = Grid2d<Rgb8>(robot_.camera.width_px, robot_.camera.height_px),
-            .depth_m = Grid2d<float>(robot_.camera.width_px, robot_.camera.height_px),
-            .semantics = {}};
+    return {.frame = {.stamp_ns = stamp_ns,
+                      .color = Grid2d<Rgb8>(robot_.camera.width_px, robot_.camera.height_px),
+                      .depth_m = Grid2d<float>(robot_.camera.width_px, robot_.camera.height_px),
+                      .semantics = {}},
+            .exact = {}};
   Trajectory path;
   for (const TimedPose& pose : recent_)
     path.push_back({pose.stamp_ns, pose.world_from_camera * robot_.base_from_camera});
   const Shutter shutter(moment_of_scene(scene_), robot_.camera, std::move(path), level_);
   const RandomStream noise = RandomStream(config_.seed).fork(static_cast<std::uint64_t>(ticks_));
-  return sense_moment(shutter, level_, config_.labels, at, noise).frame;
+  return sense_moment(shutter, level_, config_.labels, at, noise);
 }
 
 RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
@@ -93,10 +93,13 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
     tick();
     due = due || ticks_ % config_.ticks_per_frame == 0;
   }
-  if (due) seen.frame = frame();
-  seen.reading = read_ranges(
-      base_.world(), *robot_.equipment, base_.world_from_base(),
-      laser_noise(config_.seed, static_cast<std::size_t>(ticks_)));
+  if (due) {
+    SensedMoment moment = frame();
+    seen.frame = std::move(moment.frame);
+    seen.instances = std::move(moment.exact.instances);
+  }
+  seen.reading = read_ranges(base_.world(), *robot_.equipment, base_.world_from_base(),
+                             laser_noise(config_.seed, static_cast<std::size_t>(ticks_)));
   seen.stamp_ns = seen.reading.stamp_ns = recent_.back().stamp_ns;
   seen.reading.bumpers = std::move(pressed);
   const std::size_t n = recent_.size(), here = n < 2 ? 0 : n - 2;

@@ -13,6 +13,7 @@
 #include "sim/sensors/sense.hpp"
 #include "sim/sensors/shutter.hpp"
 #include "sim/world/pedestrian.hpp"
+#include "sim/world/simulated_sequence.hpp"
 #include "slam/core/rgbd_frame.hpp"
 
 namespace mh {
@@ -42,6 +43,7 @@ struct RobotObservation {
   /// If one was due during the step; the latest, if several. Stamped one tick of the camera before
   /// it arrives: an exposure is over before it is read out.
   std::optional<RgbdFrame> frame;
+  Grid2d<InstanceId> instances;  ///< of its pixels: not for systems; empty without a frame
   /// Lasers, sonars and bumpers now; the IMU one tick ago.
   RobotReading reading;
   SE3 odom_from_base;  ///< wheel odometry
@@ -75,7 +77,7 @@ class Simulation {
  private:
   void tick();
   TimedPose pose_now() const;
-  RgbdFrame frame() const;
+  SensedMoment frame() const;
 
   SimulatedScene scene_;
   Robot robot_;

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "python/bind.hpp"
+#include "slam/semantics/augmented_vector.hpp"
+#include "slam/semantics/candidate_selection.hpp"
+#include "slam/semantics/descriptor_distance.hpp"
+
+namespace mh::python {
+namespace {
+
+using Ids = Array<std::uint32_t>;
+
+VoidPolicy policy(bool void_is_a_label) {
+  return void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown;
+}
+
+std::span<const std::uint32_t> ids(const Ids& array, const char* what) {
+  if (array.ndim() != 1) throw py::value_error(fmt::format("{}: expected (N,)", what));
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+AugmentedVector make_vector(const Ids& labels, const Ids& words, double gamma,
+                            const std::optional<Array<double>>& eta, bool void_is_a_label) {
+  if (!(gamma >= 0)) throw py::value_error(fmt::format("gamma={}: must be at least 0", gamma));
+  const auto weight = [&](std::uint32_t word) {
+    if (!eta) return 1.0;
+    if (word >= eta->size()) throw py::value_error(fmt::format("eta has no word {}", word));
+    return eta->data()[word];
+  };
+  return augmented_vector(ids(labels, "labels"), ids(words, "words"), gamma, weight,
+                          policy(void_is_a_label));
+}
+
+py::dict members(const std::vector<WeightedMember>& all) {
+  py::dict d;
+  for (const WeightedMember& member : all) d[py::int_(member.id)] = member.weight;
+  return d;
+}
+
+py::array_t<float> distances(const Array<float>& distance, const Ids& p, const Ids& q, float xi,
+                             bool void_is_a_label) {
+  if (!(xi >= 1)) throw py::value_error(fmt::format("xi={}: must be at least 1", xi));
+  if (p.size() != distance.size() || q.size() != distance.size())
+    throw py::value_error("distances and labels differ in length");
+  py::array_t<float> made(distance.size());
+  for (py::ssize_t i = 0; i < distance.size(); ++i)
+    made.mutable_data()[i] = semantic_distance(
+        distance.data()[i], labels_disagree(p.data()[i], q.data()[i], policy(void_is_a_label)), xi);
+  return made;
+}
+
+py::tuple select(const Array<int>& overlap, const std::vector<std::vector<int>>& neighbors,
+                 const Array<double>& similarity, double alpha, double beta) {
+  const auto count = static_cast<std::size_t>(overlap.size());
+  if (neighbors.size() != count || static_cast<std::size_t>(similarity.size()) != count)
+    throw py::value_error("overlap, neighbors and similarity differ in length");
+  for (const double share : {alpha, beta})
+    if (!(share >= 0 && share < 1))
+      throw py::value_error(fmt::format("alpha and beta are in [0, 1), not {}", share));
+  for (const auto& list : neighbors)
+    for (const int k : list)
+      if (k < 0 || static_cast<std::size_t>(k) >= count)
+        throw py::value_error(fmt::format("a neighbor is keyframe {} of {}", k, count));
+  std::vector<int> keyframes(count);
+  for (std::size_t k = 0; k < count; ++k) keyframes[k] = static_cast<int>(k);
+  const auto at = [](int k) { return static_cast<std::size_t>(k); };
+  const auto made = select_candidates<int>(
+      keyframes, [&](int k) { return overlap.data()[k]; },
+      [&](int k) -> const std::vector<int>& { return neighbors[at(k)]; },
+      [&](int k) { return similarity.data()[k]; }, alpha, beta);
+  py::list candidates;
+  for (const auto& candidate : made.candidates)
+    candidates.append(py::make_tuple(candidate.keyframe, candidate.score));
+  py::dict left;
+  left["c1"] = made.c1, left["c2"] = made.c2, left["c3"] = made.c3;
+  left["final"] = made.candidates.size();
+  return py::make_tuple(candidates, left);
+}
+
+}  // namespace
+
+void bind_semantics(py::module_& m) {
+  py::module_ s = m.def_submodule("semantics", "Equations 1 to 6 of the paper on arrays.");
+  py::class_<AugmentedVector>(s, "AugmentedVector", "Equation 1, L1-normalized.")
+      .def_property_readonly(
+          "labels", [](const AugmentedVector& v) { return members(v.labels); }, "id: share")
+      .def_property_readonly(
+          "words", [](const AugmentedVector& v) { return members(v.words); }, "id: share")
+      .def_property_readonly("label_mass", &AugmentedVector::label_mass,
+                             "share of the mass that comes from labels");
+  s.def(
+      "augmented_vector", &make_vector, py::arg("labels"), py::arg("words"), py::arg("gamma"),
+      py::arg("eta") = py::none(), py::arg("void_is_a_label") = false,
+      "Equation 1 from one label and one word per keypoint, (N,) each. eta: factor by word, (W,); "
+      "None: 1. Label 0 is void.");
+  s.def("similarity", &l1_similarity, py::arg("f"), py::arg("k"),
+        "1 - |f - k|_1 / 2, in [0, 1]: the paper's ||f, k||_1.");
+  s.def("shared_labels", &shared_labels, py::arg("f"), py::arg("k"),
+        "n of equation 3, over distinct labels.");
+  s.def("shared_words", &shared_words, py::arg("f"), py::arg("k"),
+        "n of equation 3, over distinct words.");
+  s.def("distance", &distances, py::arg("distances"), py::arg("labels_p"), py::arg("labels_q"),
+        py::arg("xi"), py::arg("void_is_a_label") = false,
+        "Equation 2 over pairs, (N,) each: xi times the distance where labels disagree.");
+  s.def(
+      "select_candidates", &select, py::arg("overlap"), py::arg("neighbors"), py::arg("similarity"),
+      py::arg("alpha"), py::arg("beta"),
+      "Equations 3 to 6 (Algorithm 1) over keyframes 0 to N - 1: overlap (N,) is n of equation 3, "
+      "neighbors lists each keyframe's neighborhood, itself included, similarity (N,) is to the "
+      "query. Returns [(keyframe, score), ...] and how many are left: c1, c2, c3, final.");
+}
+
+}  // namespace mh::python

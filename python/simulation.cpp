@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "bench/protocol/episodes/starts.hpp"
+#include "bench/protocol/world/cached_light.hpp"
+#include "bench/suite/cache.hpp"
+#include "bench/suite/labels.hpp"
+#include "bench/suite/shipped.hpp"
+#include "python/bind.hpp"
+#include "robots/navigation/grid.hpp"
+#include "scenes/load.hpp"
+#include "sim/motion/floor_grid.hpp"
+#include "sim/world/lit_scene.hpp"
+#include "sim/world/simulation.hpp"
+#include "slam/io/error.hpp"
+
+namespace mh::python {
+namespace {
+
+LabelMode label_mode(const std::string& word) {
+  for (const LabelMode mode : {LabelMode::kNone, LabelMode::kExact, LabelMode::kAnnotated,
+                               LabelMode::kBoxes, LabelMode::kDetector})
+    if (name(mode) == word) return mode;
+  throw py::value_error(
+      fmt::format("labels='{}' is not one of none, exact, annotated, boxes, detector", word));
+}
+
+/// What a step delivers, with names for what the robot's sensors are called.
+struct Observed {
+  RobotObservation seen;
+  std::shared_ptr<RgbdFrame> frame;  ///< or null
+  std::shared_ptr<const Equipment> equipment;
+};
+
+/// x, y (m) and heading (rad).
+using Place = std::array<double, 3>;
+
+/// A scene, a robot and a level, loaded once; reset() begins again.
+class PythonSimulation {
+ public:
+  PythonSimulation(const std::string& scene, const std::string& robot, const std::string& level,
+                   std::uint64_t seed, const std::string& labels, int ticks_per_frame,
+                   const std::string& cache)
+      : robot_(load_robot(find_shipped(robot, Shipped::kRobot))),
+        level_(load_sensor_config(find_shipped(level, Shipped::kLevel))),
+        config_{.ticks_per_frame = ticks_per_frame, .labels = label_mode(labels), .seed = seed} {
+    if (!robot_.equipment || robot_.wheels() == nullptr)
+      throw InputError(fmt::format("robot '{}' has no wheels: it cannot drive", robot_.name));
+    const py::gil_scoped_release others_run;
+    Scene loaded = load_scene(find_scene(scene));
+    if (!loaded.floor.is_level_zero())
+      throw InputError(fmt::format("{}: its floor is not at z = 0", loaded.name));
+    const std::filesystem::path kept = cache == "none" ? std::filesystem::path()
+                                       : cache.empty() ? Cache::default_folder()
+                                                       : std::filesystem::absolute(cache);
+    light_from_cache(loaded, 2, Cache(kept));
+    scene_.scene = std::make_shared<const Scene>(std::move(loaded));
+    scene_.renderer = make_scene_renderer(*scene_.scene);
+  }
+
+  void reset(const std::optional<Place>& pose, const std::optional<std::uint64_t>& seed) {
+    if (seed) config_.seed = *seed;
+    const Place start = pose ? *pose : draw_place();
+    config_.start_m = {start[0], start[1]};
+    config_.start_heading_rad = start[2];
+    const py::gil_scoped_release others_run;
+    simulation_ = std::make_unique<Simulation>(scene_, robot_, level_, config_);
+  }
+
+  std::shared_ptr<Observed> step(double vx, double vy, double wz, double dt_s) {
+    if (!std::isfinite(vx) || !std::isfinite(vy) || !std::isfinite(wz))
+      throw py::value_error("a velocity is not finite");
+    if (!(dt_s > 0 && dt_s <= 60))
+      throw py::value_error(fmt::format("dt={} s: not in (0, 60]", dt_s));
+    if (!simulation_) reset({}, {});
+    const py::gil_scoped_release others_run;
+    auto made = std::make_shared<Observed>();
+    made->seen = simulation_->step({vx, vy, wz}, dt_s);
+    if (made->seen.frame) made->frame = std::make_shared<RgbdFrame>(std::move(*made->seen.frame));
+    made->equipment = robot_.equipment;
+    return made;
+  }
+
+  void carry_to(const Place& place) { running().carry_to({place[0], place[1]}, place[2]); }
+  void switch_light(bool on) { running().switch_light(on); }
+
+  py::dict truth() {
+    const CommandedBase& base = running().truth();
+    py::dict d;
+    const SE3 world_from_base = base.world_from_base();
+    d["world_from_base"] = to_python(world_from_base);
+    d["world_from_camera"] = to_python(world_from_base * robot_.base_from_camera);
+    d["touching"] = base.contact().touching;
+    d["bumps"] = base.bumps().size();
+    d["length_m"] = base.length_m();
+    d["time_s"] = base.time_s();
+    return d;
+  }
+
+  py::dict render(const Array<double>& poses) const {
+    const bool is_one = poses.ndim() == 2;
+    if (!is_one && !(poses.ndim() == 3 && poses.shape(1) == 4 && poses.shape(2) == 4))
+      throw py::value_error("expected a pose (4, 4), or (N, 4, 4)");
+    const py::ssize_t count = is_one ? 1 : poses.shape(0);
+    const py::ssize_t h = robot_.camera.height_px, w = robot_.camera.width_px;
+    std::vector<SE3> at;
+    for (py::ssize_t i = 0; i < count; ++i)
+      at.push_back(to_pose(Array<double>(std::vector<py::ssize_t>{4, 4}, poses.data() + 16 * i)));
+    std::vector<py::ssize_t> shape{h, w};
+    if (!is_one) shape.insert(shape.begin(), count);
+    std::vector<py::ssize_t> colored = shape;
+    colored.push_back(3);
+    py::array_t<std::uint8_t> color(colored), labels(shape);
+    py::array_t<float> depth(shape);
+    py::array_t<std::uint16_t> instances(shape);
+    {
+      auto* const c = color.mutable_data();
+      auto* const l = labels.mutable_data();
+      auto* const d = depth.mutable_data();
+      auto* const n = instances.mutable_data();
+      const py::gil_scoped_release others_run;
+      const auto pixels = static_cast<std::size_t>(h * w);
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        const RenderedFrame frame = scene_.renderer->render(robot_.camera, at[i]);
+        std::memcpy(c + 3 * pixels * i, frame.color.data(), 3 * pixels);
+        std::copy_n(frame.classes.data(), pixels, l + pixels * i);
+        std::copy_n(frame.depth_m.data(), pixels, d + pixels * i);
+        std::copy_n(frame.instances.data(), pixels, n + pixels * i);
+      }
+    }
+    py::dict made;
+    made["color"] = color, made["depth"] = depth;
+    made["labels"] = labels, made["instances"] = instances;
+    return made;
+  }
+
+  EpisodeStart draw_start(const std::vector<std::string>& goals, std::uint64_t seed,
+                          double arrival_m) const {
+    EpisodesSpec spec;
+    spec.goals = goals;
+    spec.starts = 1;
+    spec.seed = seed;
+    spec.arrival_m = arrival_m;
+    return draw_starts(spec, *scene_.scene, robot_).front();
+  }
+
+  Camera camera() const { return with_lens(robot_.camera, level_); }
+  std::vector<std::string> things() const {
+    std::set<std::string> names;
+    for (const Instance& instance : scene_.scene->instances)
+      names.emplace(classes()[instance.class_id].name);
+    return {names.begin(), names.end()};
+  }
+
+ private:
+  Simulation& running() {
+    if (!simulation_) reset({}, {});
+    return *simulation_;
+  }
+  /// Anywhere on the floor that the robot can reach, turned anyhow, by the seed.
+  Place draw_place() const {
+    constexpr double kClear_m = 0.05;
+    const FloorGrid grid = make_floor_grid(*scene_.scene, {.top_m = robot_.height_m});
+    const auto region = largest_region(grid, robot_.footprint_radius_m + kClear_m);
+    std::vector<Eigen::Vector2d> places;
+    for (int y = 0; y < region.height(); ++y)
+      for (int x = 0; x < region.width(); ++x)
+        if (region(x, y) != 0) places.push_back(grid.center_of({x, y}));
+    if (places.empty())
+      throw InputError(fmt::format("{}: there is no floor for the robot", scene_.scene->name));
+    const RandomStream draw = RandomStream(config_.seed).fork(0x706c616365);
+    const Eigen::Vector2d& at = places[draw.below(0, places.size())];
+    return {at.x(), at.y(), draw.uniform(1, -std::numbers::pi, std::numbers::pi)};
+  }
+
+  Robot robot_;
+  SensorConfig level_;
+  SimulationConfig config_;
+  SimulatedScene scene_;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+template <class Sensors, class Value>
+py::dict by_name(const Sensors& sensors, const Value& value) {
+  py::dict d;
+  for (std::size_t k = 0; k < sensors.size(); ++k) d[sensors[k].name.c_str()] = value(k);
+  return d;
+}
+
+template <class Read>
+auto of_frame(Read read) {
+  return [read](const Observed& o) -> py::object {
+    return o.frame ? py::cast(o.frame).attr(read) : py::none();
+  };
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& m) {
+  py::class_<Observed, std::shared_ptr<Observed>>(
+      m, "Observation", "What the robot's sensors deliver at the end of a step.")
+      .def_property_readonly(
+          "stamp", [](const Observed& o) { return 1e-9 * static_cast<double>(o.seen.stamp_ns); },
+          "s")
+      .def_property_readonly(
+          "stamp_ns", [](const Observed& o) { return o.seen.stamp_ns; }, "ns")
+      .def_property_readonly(
+          "frame", [](const Observed& o) { return o.frame; },
+          "The Frame that was due during the step, stamped one tick of the camera before it ends; "
+          "None if none was")
+      .def_property_readonly("color", of_frame("color"), "(H, W, 3) uint8 of that frame, or None")
+      .def_property_readonly("depth", of_frame("depth"), "(H, W) float32, m, or None")
+      .def_property_readonly("labels", of_frame("labels"), "(H, W) uint8 class ids, or None")
+      .def_property_readonly(
+          "instances",
+          [](py::object self) -> py::object {
+            const Observed& o = self.cast<Observed&>();
+            if (o.seen.instances.empty()) return py::none();
+            return view_of(o.seen.instances, self);
+          },
+          "(H, W) which object each pixel shows, 0 none: the truth, for training; or None")
+      .def_property_readonly(
+          "odometry", [](const Observed& o) { return to_python(o.seen.odom_from_base); },
+          "4 x 4, where the wheels place the base; drifts")
+      .def_property_readonly(
+          "imu",
+          [](const Observed& o) {
+            Array<double> six(6);
+            for (int k = 0; k < 3; ++k) {
+              six.mutable_data()[k] = o.seen.reading.turn_rad_per_s(k);
+              six.mutable_data()[3 + k] = o.seen.reading.specific_force_m_per_s2(k);
+            }
+            return six;
+          },
+          "(6,) angular rate (rad/s) and specific force (m/s^2) of the base's IMU one tick ago; 0 "
+          "without one")
+      .def_property_readonly(
+          "lasers",
+          [](const Observed& o) {
+            return by_name(o.equipment->lasers, [&](std::size_t k) {
+              const std::vector<float>& m = o.seen.reading.lasers_m[k];
+              return Array<float>(static_cast<py::ssize_t>(m.size()), m.data());
+            });
+          },
+          "By laser: (N,) m, right to left; 0 where nothing is in range")
+      .def_property_readonly(
+          "sonars",
+          [](const Observed& o) {
+            return by_name(o.equipment->sonars,
+                           [&](std::size_t k) { return o.seen.reading.sonars_m[k]; });
+          },
+          "By sonar: m; 0 if nothing is in range")
+      .def_property_readonly(
+          "bumpers",
+          [](const Observed& o) {
+            py::dict d;
+            for (std::size_t k = 0; k < o.equipment->bumpers.size(); ++k)
+              d[o.equipment->bumpers[k].c_str()] = static_cast<bool>(o.seen.reading.bumpers[k]);
+            return d;
+          },
+          "By bumper: whether it was pressed during the step");
+
+  py::class_<EpisodeStart>(m, "SearchStart", "Where a robot is put, and what it is to find.")
+      .def_property_readonly(
+          "pose",
+          [](const EpisodeStart& s) {
+            return Place{s.place_m.x(), s.place_m.y(), s.heading_rad};
+          },
+          "x, y (m) and heading (rad)")
+      .def_readonly("goal", &EpisodeStart::goal, "class")
+      .def_readonly("shortest_m", &EpisodeStart::shortest_m, "of the ways to it")
+      .def(
+          "is_arrival",
+          [](const EpisodeStart& s, double x, double y, double arrival_m) {
+            return is_arrival(s, {x, y}, arrival_m);
+          },
+          py::arg("x"), py::arg("y"), py::arg("arrival_m") = 1.0,
+          "Whether a place is so near to one of them, with no wall between.");
+
+  py::class_<PythonSimulation>(
+      m, "Simulation",
+      "A robot in a scene that obeys velocity commands. The same commands give the same bits, "
+      "those "
+      "of `modelhouse drive` and `render`.\n\n"
+      "scene: a shipped name, a file, 'generated:CATEGORY:SEED'. robot, level: a shipped name or a "
+      "file. labels: none, exact, annotated, boxes or detector. ticks_per_frame: a frame is "
+      "delivered every so many ticks of the camera. cache: the folder that keeps baked light; '' "
+      "the "
+      "usual one, 'none' keeps nothing. Raises InputError.")
+      .def(py::init<const std::string&, const std::string&, const std::string&, std::uint64_t,
+                    const std::string&, int, const std::string&>(),
+           py::arg("scene"), py::arg("robot") = "pepper", py::arg("level") = "handheld",
+           py::arg("seed") = 0, py::arg("labels") = "exact", py::arg("ticks_per_frame") = 3,
+           py::arg("cache") = "")
+      .def("reset", &PythonSimulation::reset, py::arg("pose") = py::none(),
+           py::arg("seed") = py::none(),
+           "Begins anew at a pose (x, y in m, heading in rad), or where the seed places it. Raises "
+           "InputError if the robot cannot stand there.")
+      .def(
+          "step", &PythonSimulation::step, py::arg("vx"), py::arg("vy"), py::arg("wz"),
+          py::arg("dt") = 0.1,
+          "Drives with a velocity (m/s, rad/s, base frame) for dt seconds, rounded to ticks of the "
+          "camera, within the robot's limits; returns an Observation. A differential base does not "
+          "obey vy.")
+      .def("carry_to", &PythonSimulation::carry_to, py::arg("pose"),
+           "Lifts the robot to another pose; its wheels do not turn.")
+      .def("switch_light", &PythonSimulation::switch_light, py::arg("on"),
+           "While the light is off, frames are blank.")
+      .def("truth", &PythonSimulation::truth,
+           "What no system may see: world_from_base, world_from_camera (4 x 4), touching, bumps, "
+           "length_m, time_s.")
+      .def("render", &PythonSimulation::render, py::arg("poses"),
+           "The exact view from world_from_camera (4, 4), or from N of them: a dict of color, "
+           "depth, "
+           "labels, instances, without noise or lens.")
+      .def("draw_start", &PythonSimulation::draw_start, py::arg("goals"), py::arg("seed") = 0,
+           py::arg("arrival_m") = 1.0,
+           "A SearchStart for one of the goals (classes), as suites with `episodes` draw them.")
+      .def_property_readonly("camera", &PythonSimulation::camera, "as SLAM should know it")
+      .def_property_readonly("things", &PythonSimulation::things,
+                             "classes of what is in the scene");
+}
+
+}  // namespace mh::python
