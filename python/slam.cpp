@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/protocol/streams.hpp"
 #include "bench/suite/shipped.hpp"
 #include "python/bind.hpp"
 #include "slam/config/by_name.hpp"
@@ -39,14 +40,18 @@ std::shared_ptr<const Vocabulary> vocabulary_of(const std::string& name) {
       Vocabulary::load(find_shipped(name, Shipped::kVocabulary)));
 }
 
-/// A SLAM system that maps frame by frame.
+/// A SLAM system that maps frame by frame, with the random draws of `modelhouse slam`.
 struct PythonSlam {
   SlamState state;
   std::uint64_t seed = 0;
   std::uint64_t frames = 0;
 
   StepReport step(const RgbdFrame& frame) {
-    return mh::step(state, frame, RandomStream(seed).fork(frames++));
+    RunSpec spec;
+    spec.seed = seed;
+    const std::uint64_t no_restart = 0;
+    return mh::step(state, frame,
+                    mapping_stream(spec).fork(RunDraw::kSlam).fork(no_restart).fork(frames++));
   }
   StepReport relocalize(const RgbdFrame& frame) const {
     Tracker lost;

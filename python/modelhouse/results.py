@@ -28,7 +28,7 @@ class Results:
         columns = [column[0] for column in found.description]
         rows = found.fetchall()
         try:
-            import pandas
+            import pandas  # type: ignore[import]
         except ImportError:
             return {name: [row[k] for row in rows] for k, name in enumerate(columns)}
         return pandas.DataFrame(rows, columns=columns)
