@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulated robot, its sensors and object search."""
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+import modelhouse as mh
+from tests.python.tools import CACHE, PROGRAM, ROOM
+
+COMMANDS = [(3.0, 0.3, 0.0, 0.0), (2.0, 0.1, 0.1, 0.5), (2.0, 0.0, 0.0, -0.6)]
+
+
+class SimulationTest(unittest.TestCase):
+    def setUp(self):
+        self.sim = mh.Simulation(ROOM, level="ideal", seed=7, cache=CACHE)
+
+    def drive(self):
+        """Each observation and true camera pose along COMMANDS, a step a tick."""
+        self.sim.reset(pose=(2.0, 2.0, 0.0))
+        seen = []
+        for duration, vx, vy, wz in COMMANDS:
+            for _ in range(round(30 * duration)):
+                seen.append((self.sim.step(vx, vy, wz, 1 / 30), self.sim.truth()))
+        return seen
+
+    def test_is_the_drive_of_the_program_to_the_bit(self):
+        seen = self.drive()
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            script = out / "commands.yaml"
+            script.write_text("name: commands\nstart: {position: [2, 2], heading_deg: 0}\ncommands:\n" + "".join(
+                f"- {{duration_s: {duration}, forward_m_per_s: {vx}, left_m_per_s: {vy}, "
+                f"turn_rad_per_s: {wz}}}\n" for duration, vx, vy, wz in COMMANDS))
+            subprocess.run([PROGRAM, "drive", ROOM, f"commands:{script}", "--sensors", "--seed", "7",
+                            "--out", out / "drive"], check=True, capture_output=True)
+            base = mh.read_trajectory(out / "drive/base.tum")
+            odometry = mh.read_trajectory(out / "drive/odometry.tum")
+        self.assertEqual(len(base), len(seen) + 1)
+        for i, (observation, truth) in enumerate(seen):
+            self.assertEqual(observation.stamp_ns, base.stamps_ns[i + 1])
+            for ours, theirs in ((truth["world_from_base"], base), (observation.odometry, odometry)):
+                np.testing.assert_array_equal(ours[:3, 3], theirs.positions[i + 1])
+                np.testing.assert_allclose(ours, theirs.poses[i + 1], atol=1e-12)
+
+    def test_the_same_commands_give_the_same_bits(self):
+        first, second = self.drive(), self.drive()
+        frames = [[o for o, _ in seen if o.frame is not None] for seen in (first, second)]
+        self.assertEqual(len(frames[0]), 70)
+        for a, b in zip(*frames):
+            for name in ("color", "depth", "labels", "instances"):
+                np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+
+    def test_a_frame_is_what_is_rendered_at_its_pose(self):
+        seen = self.drive()
+        k = next(i for i, (o, _) in enumerate(seen) if i > 30 and o.frame is not None)
+        exact = self.sim.render(seen[k - 1][1]["world_from_camera"])  # a tick before it arrived
+        np.testing.assert_array_equal(exact["color"], seen[k][0].color)
+        np.testing.assert_array_equal(exact["instances"], seen[k][0].instances)
+        np.testing.assert_array_equal(exact["labels"], seen[k][0].labels)
+
+    def test_batches_are_single_views(self):
+        poses = np.stack([truth["world_from_camera"] for _, truth in self.drive()[::70]])
+        together = self.sim.render(poses)
+        self.assertEqual(together["color"].shape, (3, 480, 640, 3))
+        for i, pose in enumerate(poses):
+            for name, image in self.sim.render(pose).items():
+                np.testing.assert_array_equal(image, together[name][i])
+
+    def test_observations_have_shapes_and_types(self):
+        self.sim.reset(pose=(2.0, 2.0, 0.0))
+        seen = self.sim.step(0.2, 0, 0)
+        self.assertEqual((seen.color.shape, seen.color.dtype), ((480, 640, 3), np.uint8))
+        self.assertEqual((seen.depth.shape, seen.depth.dtype), ((480, 640), np.float32))
+        self.assertEqual((seen.labels.dtype, seen.instances.dtype), (np.uint8, np.uint16))
+        self.assertFalse(seen.color.flags.writeable)
+        self.assertEqual(sorted(seen.lasers), ["front", "left", "right"])
+        self.assertEqual(seen.lasers["front"].shape, (15,))
+        self.assertEqual(sorted(seen.sonars), ["back", "front"])
+        self.assertEqual(seen.imu.shape, (6,))
+        self.assertIsNone(self.sim.step(0, 0, 0, 1 / 30).frame)
+
+    def test_images_outlive_what_they_came_from(self):
+        color = self.sim.step(0, 0, 0).color
+        copy = color.copy()
+        for _ in range(5):
+            self.sim.step(0.1, 0, 0.3)
+        del self.sim
+        np.testing.assert_array_equal(color, copy)
+
+    def test_a_kidnapped_robot_does_not_feel_it(self):
+        self.sim.reset(pose=(2.0, 2.0, 0.0))
+        before = self.sim.step(0, 0, 0).odometry
+        self.sim.carry_to((3.0, 2.5, 1.0))
+        np.testing.assert_allclose(self.sim.step(0, 0, 0).odometry, before, atol=1e-6)
+        self.assertAlmostEqual(self.sim.truth()["world_from_base"][0, 3], 3.0, 5)
+        self.sim.switch_light(False)
+        self.assertEqual(self.sim.step(0, 0, 0).color.max(), 0)
+
+    def test_bad_input_is_one_clear_error(self):
+        for arguments, part in ((("no_such_place",), "no scene of that name"),
+                                ((ROOM, "no_robot"), "no robot of that name"),
+                                ((ROOM, "pepper", "no_level"), "no level of that name")):
+            with self.assertRaisesRegex(mh.InputError, part):
+                mh.Simulation(*arguments)
+        with self.assertRaisesRegex(ValueError, "labels='exakt'"):
+            mh.Simulation(ROOM, labels="exakt", cache=CACHE)
+        with self.assertRaises(mh.InputError):
+            self.sim.reset(pose=(100.0, 100.0, 0.0))
+        with self.assertRaisesRegex(ValueError, "not finite"):
+            self.sim.step(float("nan"), 0, 0)
+        with self.assertRaisesRegex(ValueError, "dt=0"):
+            self.sim.step(0, 0, 0, 0)
+        with self.assertRaisesRegex(ValueError, "not a rigid pose"):
+            self.sim.render(2 * np.eye(4))
+
+
+class SearchTest(unittest.TestCase):
+    def test_spl_is_the_shortest_way_over_the_way_driven(self):
+        sim = mh.Simulation(ROOM, level="ideal", labels="none", cache=CACHE)
+        env = mh.SearchEnv(sim, sim.things, limit_s=3)
+        observation, info = env.reset(seed=3)
+        self.assertIn(info["goal"], sim.things)
+        self.assertIsNotNone(observation.frame)
+        self.assertEqual(env.reset(seed=3)[1], info)
+        self.assertGreaterEqual(env.start.shortest_m, 0.5)
+        _, reward, terminated, truncated, info = env.step((0, 0, 0, 1))
+        self.assertEqual((reward, terminated, truncated), (0, True, False))
+        self.assertFalse(info["success"])
+        env.reset(seed=3)
+        cut = [env.step((0.1, 0, 0.1, 0))[3] for _ in range(30)]
+        self.assertTrue(cut[-1] and not any(cut[:-2]))
+        # Put beside it, it has arrived without a way.
+        env.reset(seed=3)
+        places = [(x, y) for x in np.arange(0, 5, 0.1) for y in np.arange(0, 4.2, 0.1)
+                  if env.start.is_arrival(x, y)]
+        for x, y in places:
+            try:
+                sim.carry_to((x, y, 0.0))
+                break
+            except mh.InputError:
+                continue
+        _, reward, _, _, info = env.step((0, 0, 0, 1))
+        self.assertTrue(info["success"])
+        self.assertEqual((reward, info["spl"]), (1, 1))
+
+
+if __name__ == "__main__":
+    unittest.main()
