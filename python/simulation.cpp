@@ -193,7 +193,8 @@ py::dict by_name(const Sensors& sensors, const Value& value) {
 template <class Read>
 auto of_frame(Read read) {
   return [read](const Observed& o) -> py::object {
-    return o.frame ? py::cast(o.frame).attr(read) : py::none();
+    if (!o.frame) return py::none();
+    return py::cast(o.frame).attr(read);
   };
 }
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The simulated robot, its sensors and object search."""
+import math
 import pathlib
 import subprocess
 import tempfile
@@ -10,7 +11,8 @@ import numpy as np
 import modelhouse as mh
 from tests.python.tools import CACHE, PROGRAM, ROOM
 
-COMMANDS = [(3.0, 0.3, 0.0, 0.0), (2.0, 0.1, 0.1, 0.5), (2.0, 0.0, 0.0, -0.6)]
+# For so many seconds: m/s ahead and to the left, deg/s.
+COMMANDS = [(3.0, 0.3, 0.0, 0.0), (2.0, 0.1, 0.1, 30.0), (2.0, 0.0, 0.0, -35.0)]
 
 
 class SimulationTest(unittest.TestCase):
@@ -21,9 +23,9 @@ class SimulationTest(unittest.TestCase):
         """Each observation and true camera pose along COMMANDS, a step a tick."""
         self.sim.reset(pose=(2.0, 2.0, 0.0))
         seen = []
-        for duration, vx, vy, wz in COMMANDS:
+        for duration, vx, vy, turn in COMMANDS:
             for _ in range(round(30 * duration)):
-                seen.append((self.sim.step(vx, vy, wz, 1 / 30), self.sim.truth()))
+                seen.append((self.sim.step(vx, vy, turn * (math.pi / 180), 1 / 30), self.sim.truth()))
         return seen
 
     def test_is_the_drive_of_the_program_to_the_bit(self):
@@ -31,9 +33,10 @@ class SimulationTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
             script = out / "commands.yaml"
-            script.write_text("name: commands\nstart: {position: [2, 2], heading_deg: 0}\ncommands:\n" + "".join(
-                f"- {{duration_s: {duration}, forward_m_per_s: {vx}, left_m_per_s: {vy}, "
-                f"turn_rad_per_s: {wz}}}\n" for duration, vx, vy, wz in COMMANDS))
+            script.write_text(
+                "name: commands\nstart: {position: [2, 2], heading_deg: 0}\nreflex: false\ncommands:\n"
+                + "".join(f"- {{for_s: {duration}, forward_m_per_s: {vx}, left_m_per_s: {vy}, "
+                          f"turn_deg_per_s: {turn}}}\n" for duration, vx, vy, turn in COMMANDS))
             subprocess.run([PROGRAM, "drive", ROOM, f"commands:{script}", "--sensors", "--seed", "7",
                             "--out", out / "drive"], check=True, capture_output=True)
             base = mh.read_trajectory(out / "drive/base.tum")
@@ -102,7 +105,7 @@ class SimulationTest(unittest.TestCase):
     def test_bad_input_is_one_clear_error(self):
         for arguments, part in ((("no_such_place",), "no scene of that name"),
                                 ((ROOM, "no_robot"), "no robot of that name"),
-                                ((ROOM, "pepper", "no_level"), "no level of that name")):
+                                ((ROOM, "pepper", "no_level"), "no sensor level of that name")):
             with self.assertRaisesRegex(mh.InputError, part):
                 mh.Simulation(*arguments)
         with self.assertRaisesRegex(ValueError, "labels='exakt'"):
