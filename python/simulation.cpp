@@ -93,6 +93,8 @@ class PythonSimulation {
     const SE3 world_from_base = base.world_from_base();
     d["world_from_base"] = to_python(world_from_base);
     d["world_from_camera"] = to_python(world_from_base * robot_.base_from_camera);
+    const auto& frame = simulation_->truth_of_frame();
+    d["frame_pose"] = frame ? py::object(to_python(frame->world_from_camera)) : py::none();
     d["touching"] = base.contact().touching;
     d["bumps"] = base.bumps().size();
     d["length_m"] = base.length_m();
@@ -311,7 +313,9 @@ void bind_simulation(py::module_& m) {
       .def("switch_light", &PythonSimulation::switch_light, py::arg("on"),
            "While the light is off, frames are blank.")
       .def("truth", &PythonSimulation::truth,
-           "What no system may see: world_from_base, world_from_camera (4 x 4), touching, bumps, "
+           "What no system may see: world_from_base and world_from_camera now, frame_pose of the "
+           "camera at "
+           "the last frame (4 x 4, or None), touching, bumps, "
            "length_m, time_s.")
       .def("render", &PythonSimulation::render, py::arg("poses"),
            "The exact view from world_from_camera (4, 4), or from N of them: a dict of color, "

@@ -95,6 +95,8 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
   }
   if (due) {
     SensedMoment moment = frame();
+    const TimedPose& then = recent_[recent_.size() < 2 ? 0 : recent_.size() - 2];
+    frame_pose_ = {then.stamp_ns, then.world_from_camera * robot_.base_from_camera};
     seen.frame = std::move(moment.frame);
     seen.instances = std::move(moment.exact.instances);
   }

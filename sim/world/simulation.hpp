@@ -72,6 +72,8 @@ class Simulation {
 
   // The truth: for scores only.
   const CommandedBase& truth() const { return base_; }
+  /// world_from_camera of the last frame that was delivered, at its stamp; or none.
+  const std::optional<TimedPose>& truth_of_frame() const { return frame_pose_; }
   double time_s() const { return base_.time_s(); }
 
  private:
@@ -87,6 +89,7 @@ class Simulation {
   WheelOdometer odometer_;
   SE3 odom_from_base_;
   std::vector<TimedPose> recent_;  ///< world_from_base, one per tick, since it was last carried
+  std::optional<TimedPose> frame_pose_;
   long ticks_ = 0;
   bool light_ = true;
 };

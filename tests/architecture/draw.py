@@ -12,7 +12,7 @@ import sys
 from links import read_targets
 
 COLUMNS = [("slam", 3, "#dbe9f6"), ("scenes", 2, "#e3f1dc"), ("robots", 1, "#fbeed2"),
-           ("sim", 2, "#f9e0d6"), ("bench", 5, "#e8e2f2")]  # width in boxes
+           ("sim", 2, "#f9e0d6"), ("bench", 5, "#e8e2f2"), ("python", 1, "#eceff1")]  # width in boxes
 BOX_W, BOX_H, STEP_X, STEP_Y, MARGIN = 104, 30, 122, 58, 24
 
 

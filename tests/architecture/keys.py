@@ -32,6 +32,8 @@ CHANGES = {  # a file, and the keys that it changes
     "bench/protocol/episodes/judge.cpp": {"RUN"},
     "bench/audit/trials.cpp": {"AUDIT"},
     "include/modelhouse/system.h": {"RUN"},
+    "python/modelhouse/system.py": {"RUN"},
+    "python/slam.cpp": set(),
     "bench/run/pool.cpp": set(),
     "bench/results/rows.cpp": set(),
     "bench/report/results_table.cpp": set(),
@@ -77,7 +79,7 @@ def keys(root, decides):
 
 def byte_faults(patterns, root):
     with tempfile.TemporaryDirectory() as copy:
-        for folder in ("slam", "scenes", "robots", "sim", "bench", "include", "cmake"):
+        for folder in ("slam", "scenes", "robots", "sim", "bench", "include", "cmake", "python"):
             shutil.copytree(os.path.join(root, folder), os.path.join(copy, folder),
                             ignore=shutil.ignore_patterns("node_modules", "*.png"))
         decides = os.path.join(copy, "decides.txt")

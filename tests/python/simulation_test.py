@@ -59,7 +59,9 @@ class SimulationTest(unittest.TestCase):
     def test_a_frame_is_what_is_rendered_at_its_pose(self):
         seen = self.drive()
         k = next(i for i, (o, _) in enumerate(seen) if i > 30 and o.frame is not None)
-        exact = self.sim.render(seen[k - 1][1]["world_from_camera"])  # a tick before it arrived
+        pose = seen[k - 1][1]["world_from_camera"]  # a tick before it arrived
+        np.testing.assert_array_equal(seen[k][1]["frame_pose"], pose)
+        exact = self.sim.render(pose)
         np.testing.assert_array_equal(exact["color"], seen[k][0].color)
         np.testing.assert_array_equal(exact["instances"], seen[k][0].instances)
         np.testing.assert_array_equal(exact["labels"], seen[k][0].labels)
