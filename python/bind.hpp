@@ -13,9 +13,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "slam/config/slam.hpp"
 #include "slam/core/grid2d.hpp"
 #include "slam/core/rgbd_frame.hpp"
 #include "slam/core/se3.hpp"
+#include "slam/core/sequence.hpp"
 #include "slam/core/trajectory.hpp"
 
 // What the parts of the Python module have in common. In Python poses are 4 x 4 arrays, images are
@@ -80,6 +82,13 @@ Array<double> rows_of(const std::vector<std::vector<Number>>& rows, py::ssize_t 
     std::copy(rows[i].begin(), rows[i].end(), all.mutable_data(static_cast<py::ssize_t>(i), 0));
   return all;
 }
+
+/// A recording, with the settings in its calibration and what was noticed when it was opened.
+struct Recording {
+  std::shared_ptr<const Sequence> frames;
+  SlamConfig slam;
+  std::vector<std::string> notes;
+};
 
 void bind_core(py::module_& m);
 void bind_simulation(py::module_& m);

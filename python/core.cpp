@@ -93,12 +93,6 @@ Trajectory make_trajectory(const Array<std::int64_t>& stamps_ns, const Array<dou
   return made;
 }
 
-/// A recording, with what was noticed when it was opened.
-struct Recording {
-  std::shared_ptr<const Sequence> frames;
-  std::vector<std::string> notes;
-};
-
 Recording open_recording(const std::string& source, const std::string& settings, bool labels,
                          const std::string& topics) {
   Settings read;
@@ -115,7 +109,7 @@ Recording open_recording(const std::string& source, const std::string& settings,
   require_undistortable(opened.sequence->camera());
   std::vector<std::string> notes = std::move(read.notes);
   notes.insert(notes.end(), opened.notes.begin(), opened.notes.end());
-  return {std::move(opened.sequence), std::move(notes)};
+  return {std::move(opened.sequence), read.slam, std::move(notes)};
 }
 
 RgbdFrame frame_at(const Recording& recording, py::ssize_t i) {
@@ -311,7 +305,8 @@ void bind_core(py::module_& m) {
   py::class_<Recording>(m, "Sequence", "A recording; frames are read when they are asked for.")
       .def("__len__", [](const Recording& r) { return r.frames->size(); })
       .def("__getitem__", &frame_at, py::arg("index"))
-      .def_property_readonly("camera", [](const Recording& r) { return r.frames->camera(); })
+      .def_property_readonly(
+          "camera", [](const Recording& r) { return r.frames->camera(); }, "Its Camera")
       .def_property_readonly(
           "stamps_ns",
           [](const Recording& r) {

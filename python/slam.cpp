@@ -16,10 +16,11 @@ namespace mh::python {
 namespace {
 
 /// The settings that {"features.count": 1000, ...} names, or those of a file.
-SlamConfig config_of(const py::object& settings) {
-  if (settings.is_none()) return {};
+/// @param base  where they say nothing
+SlamConfig config_of(const py::object& settings, const SlamConfig& base) {
+  if (settings.is_none()) return base;
   if (py::isinstance<py::str>(settings))
-    return load_settings(find_shipped(settings.cast<std::string>(), Shipped::kSettings)).slam;
+    return load_settings(find_shipped(settings.cast<std::string>(), Shipped::kSettings), base).slam;
   std::map<std::string, std::string> sections;
   for (const auto& [key, value] : settings.cast<py::dict>()) {
     const auto full = key.cast<std::string>();
@@ -32,7 +33,7 @@ SlamConfig config_of(const py::object& settings) {
   }
   std::string text;
   for (const auto& [section, lines] : sections) text += section + ":\n" + lines;
-  return text.empty() ? SlamConfig{} : parse_settings(text, "settings").slam;
+  return text.empty() ? base : parse_settings(text, "settings", base).slam;
 }
 
 std::shared_ptr<const Vocabulary> vocabulary_of(const std::string& name) {
@@ -116,15 +117,25 @@ void bind_slam(py::module_& m) {
   py::class_<PythonSlam>(
       m, "Slam",
       "The semantic RGB-D SLAM system.\n\n"
-      "camera: of a Simulation or a Sequence. settings: a dict of full names "
-      "({'features.count': 500}; docs/reference/slam.md), or a file. Raises InputError.")
-      .def(py::init([](const Camera& camera, const py::object& settings,
-                       const std::string& vocabulary, std::uint64_t seed) {
-             return PythonSlam{make_slam(camera, config_of(settings), vocabulary_of(vocabulary)),
+      "of: the Camera of a Simulation, or a Sequence, whose calibration may hold settings. "
+      "settings: a "
+      "dict of full names ({'features.count': 500}; docs/reference/slam.md), or a file. Raises "
+      "InputError.")
+      .def(py::init([](const Camera& of, const py::object& settings, const std::string& vocabulary,
+                       std::uint64_t seed) {
+             return PythonSlam{make_slam(of, config_of(settings, {}), vocabulary_of(vocabulary)),
                                seed};
            }),
-           py::arg("camera"), py::arg("settings") = py::none(),
-           py::arg("vocabulary") = "vocabulary", py::arg("seed") = 0)
+           py::arg("of"), py::arg("settings") = py::none(), py::arg("vocabulary") = "vocabulary",
+           py::arg("seed") = 0)
+      .def(py::init([](const Recording& of, const py::object& settings,
+                       const std::string& vocabulary, std::uint64_t seed) {
+             return PythonSlam{make_slam(of.frames->camera(), config_of(settings, of.slam),
+                                         vocabulary_of(vocabulary)),
+                               seed};
+           }),
+           py::arg("of"), py::arg("settings") = py::none(), py::arg("vocabulary") = "vocabulary",
+           py::arg("seed") = 0)
       .def_static(
           "load",
           [](const std::filesystem::path& file, const std::string& vocabulary, std::uint64_t seed) {

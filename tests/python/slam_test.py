@@ -25,7 +25,7 @@ class RecordingTest(unittest.TestCase):
                         "pepper", "--frames", "60", "--out", cls.out / "room"],
                        check=True, capture_output=True)
         cls.recording = mh.open_sequence(f"tum:{cls.out / 'room'}")
-        cls.slam = mh.Slam(cls.recording.camera)
+        cls.slam = mh.Slam(cls.recording)
         cls.steps = [cls.slam.step(cls.recording[i]) for i in range(len(cls.recording))]
 
     @classmethod
@@ -100,12 +100,12 @@ class RecordingTest(unittest.TestCase):
             mh.Frame(frame.depth, frame.depth)
 
     def test_settings_are_checked(self):
-        few = mh.Slam(self.recording.camera, {"features.count": 300, "semantics.gamma": 0})
+        few = mh.Slam(self.recording, {"features.count": 300, "semantics.gamma": 0})
         self.assertLess(few.step(self.recording[0]).keypoints, self.steps[0].keypoints)
         for settings, part in (({"features.cuont": 3}, "features.cuont"),
                                ({"features.count": -3}, "count"), ({"features.count": "many"}, "count")):
             with self.assertRaisesRegex(mh.InputError, part):
-                mh.Slam(self.recording.camera, settings)
+                mh.Slam(self.recording, settings)
         with self.assertRaisesRegex(mh.InputError, "stamp"):
             few.step(self.recording[0])
 
