@@ -15,7 +15,7 @@ CELLS = 1200
 SIGMA_M = 0.07     # by which a ray's end is spread
 KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # the map grows by scans this far from all before
 LEAST_ENDS = 20    # of a scan, to be of use
-LEAST_SHARE = 0.85 # of them that must be where others were, for a pose to be believed
+LEAST_SHARE = 0.85  # of them that must be where others were, for a pose to be believed
 
 
 def planar(pose):

@@ -137,8 +137,7 @@ RobotReadings read_sensors(const Scene& scene, const Robot& robot, const Traject
     const Vector3d ahead = world_from_base.rotation().col(0);
     world.place(place_m, std::atan2(ahead.y(), ahead.x()));
     world.show_at(1e-9 * static_cast<double>(base[i].stamp_ns));
-    RobotReading reading =
-        read_ranges(world, equipment, world_from_base, laser_noise(seed, i));
+    RobotReading reading = read_ranges(world, equipment, world_from_base, laser_noise(seed, i));
     reading.stamp_ns = base[i].stamp_ns;
     reading.bumpers = pressed_bumpers(world.contact(), equipment, world_from_base);
     if (equipment.base_from_imu)

@@ -51,7 +51,7 @@ TEST(LasersAlong, PlaceWhatTheyMeasureByTheCamera) {
         EXPECT_NEAR(end_m.x(), 7, 1e-4) << i << " " << scan.name << " " << k;
         ++on_the_wall;
       }
-  EXPECT_GT(on_the_wall, 5 * 15);
+  EXPECT_EQ(on_the_wall, 5 * 15);
   EXPECT_EQ(lasers.at(0).size(), 3U);
   EXPECT_EQ(lasers.at(0)[0].max_range_m, 3.0);
 }
@@ -64,7 +64,7 @@ TEST(LasersAlong, SeeWhoWalksByAtThatMomentInAnyOrder) {
                            {person});
   const auto ahead_m = [&](std::size_t i) { return lasers.at(i)[0].ranges_m[7]; };
   const float later_m = ahead_m(1), first_m = ahead_m(0);
-  EXPECT_NEAR(first_m, 2 - 0.22 - 0.0562, 1e-3);
+  EXPECT_NEAR(first_m, 2 - 0.22 - 0.0562, 5e-3);  // a cylinder of flat faces
   EXPECT_GT(later_m, first_m + 0.05F);
   EXPECT_EQ(ahead_m(1), later_m);
 }
