@@ -159,6 +159,7 @@ vocabulary: vocabulary
 levels: [pepper]
 systems:
 - {{name: mine, protocol: conversation, command: "exec /usr/bin/python3 {out}/mine.py"}}
+- {{name: opencv, protocol: conversation, command: "exec /usr/bin/python3 {ROOT}/examples/peers/opencv_odometry.py"}}
 - {{name: bad, protocol: conversation, command: "exec /usr/bin/python3 {out}/mine.py bad"}}
 labels: [none]
 protocol: {{test_interval: 10}}
@@ -184,15 +185,20 @@ serve(Mine())
             self.assertIn("ValueError: no idea", bench.stdout + bench.stderr)
             results = mh.Results(out / "results")
             runs = results.runs()
-            self.assertEqual(list(runs["name"]), ["bad-pepper-0", "mine-pepper-0"])
-            self.assertEqual(list(runs["status"]), ["failed", "done"])
+            self.assertEqual(list(runs["name"]), ["bad-pepper-0", "mine-pepper-0", "opencv-pepper-0"])
+            self.assertEqual(list(runs["status"]), ["failed", "done", "done"])
             metrics = results.metrics()
-            value = dict(zip(metrics["name"], metrics["value"]))
-            self.assertEqual(value["completeness"], 1)
-            self.assertEqual(len(results.frames()["frame"]), 30)
+            value = {(run, name): value for run, name, value in
+                     zip(metrics["run"], metrics["name"], metrics["value"])}
+            self.assertEqual(value["mine-pepper-0", "completeness"], 1)
+            self.assertEqual(value["opencv-pepper-0", "completeness"], 1)
+            self.assertLess(value["opencv-pepper-0", "ate_rmse_m"], 0.05)
+            self.assertEqual(len(results.frames()["frame"]), 2 * 30)
             self.assertEqual(set(results.queries()["query_set"]), {"held_out"})
             self.assertIn("<td>mine</td><td>none</td>", results._repr_html_())
-            self.assertEqual(results.table(["completeness"]), [("room", "mine", "none", {"completeness": 1})])
+            self.assertEqual(results.table(["completeness"]),
+                             [("room", system, "none", {"completeness": 1})
+                              for system in ("mine", "opencv")])
         with self.assertRaises(FileNotFoundError):
             mh.Results("/nowhere")
 
