@@ -3,8 +3,8 @@
 class for a SLAM system of one's own (System, serve), which needs numpy alone."""
 from typing import TYPE_CHECKING, Any
 
+from .environments import KidnapEnv, SearchEnv
 from .results import Results
-from .search import SearchEnv
 from .system import Reply, System, serve
 
 if TYPE_CHECKING:
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
                         Sequence, Simulation, Slam, Step, Trajectory, classes, evaluate,
                         open_sequence, read_trajectory, semantics)
 
-__all__ = ["Camera", "Frame", "InputError", "LaserScan", "MachineError", "Observation", "Reply",
+__all__ = ["Camera", "Frame", "InputError", "KidnapEnv", "LaserScan", "MachineError", "Observation", "Reply",
            "Results", "SearchEnv", "SearchStart", "Sequence", "Simulation", "Slam", "Step", "System",
            "Trajectory", "classes", "evaluate", "open_sequence", "read_trajectory", "semantics",
            "serve"]

@@ -152,5 +152,30 @@ class SearchTest(unittest.TestCase):
         self.assertEqual((reward, info["spl"]), (1, 1))
 
 
+class KidnapTest(unittest.TestCase):
+    def test_slam_says_where_it_is(self):
+        sim = mh.Simulation(ROOM, level="ideal", cache=CACHE)
+        sim.reset(pose=(2.5, 2.0, 0.0))
+        slam, first = mh.Slam(sim.camera), None
+        for _ in range(70):
+            seen = sim.step(0, 0, 1.0)
+            slam.step(seen.frame)
+            first = sim.truth()["frame_pose"] if first is None else first
+        env = mh.KidnapEnv(sim, limit_s=4)
+        seen, _ = env.reset(options={"pose": (2.3, 2.1, 0.7)})
+        found = slam.relocalize(seen.frame)
+        self.assertEqual(found.status, "relocalized")
+        _, reward, terminated, truncated, info = env.step((0, 0, 0.3, first @ found.pose))
+        self.assertEqual((reward, terminated, truncated), (1, True, False))
+        self.assertLess(info["distance_m"], 0.05)
+        env.reset(seed=1)
+        env.step((0, 0, 0.3, None))
+        _, reward, terminated, _, info = env.step((0, 0, 0, np.eye(4)))
+        self.assertEqual((reward, terminated), (-1, True))
+        env.reset(seed=1)
+        cut = [env.step((0, 0, 0.3, None))[3] for _ in range(30)]
+        self.assertTrue(cut[-1])
+
+
 if __name__ == "__main__":
     unittest.main()

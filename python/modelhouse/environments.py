@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Object search by a robot, in the shape of a gymnasium environment; needs none of it."""
+"""Object search and kidnapping in the shape of gymnasium environments; needs none of it."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+import numpy.typing as npt
 
 if TYPE_CHECKING:
     from ._core import Observation, SearchStart, Simulation
@@ -53,3 +56,47 @@ class SearchEnv:
                 spl = self.start.shortest_m / max(truth["length_m"], self.start.shortest_m)
             info.update(success=success, spl=spl)
         return seen, spl, stopped, cut and not stopped, info
+
+
+class KidnapEnv:
+    """A robot is carried somewhere in the dark and is to say where it is.
+
+    An action is (vx, vy, wz, answer): m/s and rad/s held for dt seconds, and world_from_camera of the
+    last frame (4 x 4), or None to look further. An answer ends the episode: the reward is 1 if it is
+    within 0.25 m and 10 degrees of the truth, as the bench judges, else -1. It is cut off after limit_s.
+    """
+
+    def __init__(self, simulation: Simulation, dt: float = 0.1, limit_s: float = 60,
+                 dark_s: float = 1.0) -> None:
+        self.simulation = simulation
+        self.dt, self.limit_s, self.dark_s = dt, limit_s, dark_s
+        self._episodes = 0
+
+    def reset(self, *, seed: Optional[int] = None,
+              options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
+        """Carries the robot to where the seed says; `options`: {"pose": (x, y, heading)} says it itself.
+        Returns what it senses when the light is on again."""
+        self._episodes += 1
+        self.simulation.reset((options or {}).get("pose"), self._episodes if seed is None else seed)
+        self.simulation.switch_light(False)
+        self.simulation.step(0, 0, 0, self.dark_s)
+        self.simulation.switch_light(True)
+        return self.simulation.step(0, 0, 0, self.dt), {}
+
+    def step(self, action: Tuple[float, float, float, Optional[npt.ArrayLike]]
+             ) -> Tuple[Observation, float, bool, bool, Dict[str, Any]]:
+        """Returns observation, reward, terminated, truncated and info: at the end `distance_m` and
+        `angle_deg` of the answer."""
+        vx, vy, wz, answer = action
+        truth = self.simulation.truth()
+        info: Dict[str, Any] = {}
+        reward = 0.0
+        if answer is not None:
+            error = np.linalg.inv(truth["frame_pose"]) @ np.asarray(answer, dtype=np.float64)
+            turn = np.clip((np.trace(error[:3, :3]) - 1) / 2, -1, 1)
+            info = {"distance_m": float(np.linalg.norm(error[:3, 3])),
+                    "angle_deg": float(np.degrees(np.arccos(turn)))}
+            reward = 1.0 if info["distance_m"] <= 0.25 and info["angle_deg"] <= 10 else -1.0
+        seen = self.simulation.step(vx, vy, wz, self.dt)
+        cut = self.simulation.truth()["time_s"] >= self.limit_s
+        return seen, reward, answer is not None, cut and answer is None, info
