@@ -33,6 +33,11 @@ if(NOT table MATCHES "the paper's semantic system")
   message(FATAL_ERROR "no table: ${table}")
 endif()
 
+# So does the Python package.
+run(${CMAKE_COMMAND} -E env PYTHONPATH=${data}/python PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c
+    "import modelhouse as mh; sim = mh.Simulation('model_house', level='installed', cache='${BUILD_DIR}/cache_of_tests'); assert sim.step(0, 0, 0).color.shape == (480, 640, 3); mh.Slam(sim.camera)"
+    WORKING_DIRECTORY ${elsewhere})
+
 # Documents, examples, manual page and completion are there, too.
 foreach(file doc/Modelhouse/README.md doc/Modelhouse/docs/tutorial.md
              modelhouse/examples/python_slam/odometry.py man/man1/modelhouse.1
