@@ -14,7 +14,7 @@
 #include "bench/cli/sequence_source.hpp"
 #include "bench/cli/slam_report.hpp"
 #include "bench/protocol/world/cached_detections.hpp"
-#include "bench/protocol/world/first_frames.hpp"
+#include "bench/protocol/world/parts.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/systems/builtin.hpp"
 #include "slam/core/trajectory_io.hpp"
