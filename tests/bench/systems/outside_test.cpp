@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -43,7 +45,10 @@ class OutsideOdometry : public testing::Test {
       path_.push_back({static_cast<Stamp>(i) * 33'333'333, middle * sway});
     }
   }
-  static void TearDownTestSuite() { renderer_.reset(); }
+  static void TearDownTestSuite() {
+    renderer_.reset();
+    made_.clear();
+  }
 
   OutsideOdometry() : folder_(fs::temp_directory_path() / ("mh_vo_" + std::to_string(getpid()))) {
     fs::remove_all(folder_);
@@ -60,7 +65,13 @@ class OutsideOdometry : public testing::Test {
     c.cy_px = 119.5;
     return c;
   }
+  /// Made once for all tests.
   static RgbdFrame frame(std::size_t index, RandomStream noise) {
+    RgbdFrame& made = made_[{index, noise.key()}];
+    if (made.color.empty()) made = make_frame(index, noise);
+    return made;
+  }
+  static RgbdFrame make_frame(std::size_t index, RandomStream noise) {
     const RenderedFrame exact = renderer_->render(camera(), path_[index].world_from_camera);
     RgbdFrame seen = sense(exact, camera(), {}, noise.fork(index), path_[index].stamp_ns);
     seen.semantics = label_image(exact, LabelMode::kExact);
@@ -85,6 +96,7 @@ class OutsideOdometry : public testing::Test {
 
   static inline std::unique_ptr<Renderer> renderer_;
   static inline Trajectory path_;
+  static inline std::map<std::pair<std::size_t, std::uint64_t>, RgbdFrame> made_;
   fs::path folder_;
 };
 
