@@ -7,7 +7,7 @@ install(TARGETS modelhouse modelhouse-library-host RUNTIME DESTINATION ${CMAKE_I
 
 # Data keep the layout of the sources: suites name their files relative to their own folder.
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)
-foreach(folder assets bench/report/pages/bundle bench/scenarios bench/studies bench/suites robots/pepper robots/turtlebot3
+foreach(folder assets bench/live/page bench/report/pages/bundle bench/scenarios bench/studies bench/suites robots/pepper robots/turtlebot3
                scenes/model_house scenes/rooms sim/sensors/levels)
   install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder})
 endforeach()

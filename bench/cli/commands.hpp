@@ -15,6 +15,7 @@ void add_check(CLI::App& app);
 void add_detector(CLI::App& app);
 void add_detector_score(CLI::App& detector);
 void add_drive(CLI::App& app);
+void add_live(CLI::App& app);
 void add_episode(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_export(CLI::App& app);

@@ -97,6 +97,7 @@ int run(int argc, char** argv) {
   mh::cli::add_evaluate(app);
   mh::cli::add_scene(app);
   mh::cli::add_drive(app);
+  mh::cli::add_live(app);
   mh::cli::add_render(app);
   mh::cli::add_sensors(app);
   mh::cli::add_slam(app);

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <memory>
+#include <random>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/arguments.hpp"
+#include "bench/cli/commands.hpp"
+#include "bench/cli/scene_option.hpp"
+#include "bench/cli/usual_cache.hpp"
+#include "bench/live/live_drive.hpp"
+#include "bench/live/live_server.hpp"
+#include "bench/protocol/world/cached_light.hpp"
+#include "bench/run/signal_watch.hpp"
+#include "bench/suite/shipped.hpp"
+#include "scenes/load.hpp"
+#include "sim/world/lit_scene.hpp"
+#include "slam/io/error.hpp"
+
+namespace mh::cli {
+namespace {
+
+struct LiveArguments {
+  std::string scene, robot = "pepper", level = "pepper", vocabulary = "vocabulary";
+  LiveAddress address{.port = 8642};
+  std::uint64_t seed = 0;
+  bool fast = false;
+};
+
+std::string new_token() {
+  std::random_device draw;
+  return fmt::format("{:08x}{:08x}", draw(), draw());
+}
+
+void run(LiveArguments options) {
+  resolve(options.scene, Shipped::kScene);
+  resolve(options.robot, Shipped::kRobot);
+  resolve(options.level, Shipped::kLevel);
+  resolve(options.vocabulary, Shipped::kVocabulary);
+  std::vector<std::string> warnings;
+  const Robot robot = load_robot(options.robot, &warnings);
+  const SensorConfig level = load_sensor_config(options.level);
+  const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
+  Scene loaded = load_scene(options.scene, &warnings);
+  print_warnings(warnings);
+  if (!loaded.floor.is_level_zero())
+    throw InputError(fmt::format("{}: its floor is not at z = 0", loaded.name));
+  light_from_cache(loaded, 2, usual_cache(),
+                   [](std::string_view line) { fmt::print(stderr, "live: {}\n", line); });
+  SimulatedScene scene;
+  scene.scene = std::make_shared<const Scene>(std::move(loaded));
+  scene.renderer = make_scene_renderer(*scene.scene);
+  LiveDrive drive(std::move(scene), robot, level, vocabulary, options.seed);
+  if (options.address.host != "127.0.0.1" && options.address.token.empty())
+    options.address.token = new_token();
+
+  LiveServer server(
+      options.address, data_folder() / "bench/live/page", [&] { return drive.greeting(); },
+      [&](const std::string& message) {
+        const std::string why = drive.take(message);
+        return why.empty() ? "" : nlohmann::json{{"error", why}}.dump();
+      });
+  fmt::print("live: {}\n", server.url());
+  std::fflush(stdout);
+
+  const SignalWatch watch;
+  using Clock = std::chrono::steady_clock;
+  const auto period = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(LiveDrive::kStep_s));
+  auto due = Clock::now();
+  while (watch.signal() == 0) {
+    LiveDrive::Shown shown = drive.step();
+    if (server.viewers() > 0 && !shown.state.empty()) {
+      server.send_text(std::move(shown.state));
+      char kind = 0;
+      for (std::string* image : {&shown.color, &shown.depth, &shown.labels})
+        server.send_image(std::string(1, kind++) + *image);
+    }
+    // A machine that is too slow drives in slow motion, not in leaps.
+    due = std::max(due + period, Clock::now() - period);
+    if (!options.fast) std::this_thread::sleep_until(due);
+  }
+}
+
+}  // namespace
+
+void add_live(CLI::App& app) {
+  auto options = std::make_shared<LiveArguments>();
+  CLI::App* command =
+      app.add_subcommand("live", "Drives the robot from a browser, while SLAM maps what it sees.");
+  command
+      ->add_option("scene", options->scene,
+                   "Scene (YAML), mesh file, or the name of a shipped scene")
+      ->required();
+  command->add_option("--robot", options->robot, "Robot (YAML), or the name of a shipped one");
+  command->add_option("--level", options->level,
+                      "Sensor level (YAML), or the name of a shipped one");
+  command->add_option("--vocabulary", options->vocabulary,
+                      "Vocabulary file, or the name of the shipped one");
+  command->add_option("--port", options->address.port, "0: any that is free")
+      ->check(CLI::Range(0, 65535));
+  command->add_option("--host", options->address.host,
+                      "Address to listen on; another than 127.0.0.1 asks everybody for a token");
+  command->add_option("--token", options->address.token, "Asked of everybody; without: drawn");
+  command->add_option("--seed", options->seed, "Of the start and of all noise")
+      ->check(seed_number());
+  command->add_flag("--fast", options->fast, "As fast as the machine can, not in real time");
+  command->footer("Example:\n  modelhouse live model_house");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace mh::cli

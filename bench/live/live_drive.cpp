@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live/live_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+
+#include "bench/report/drawing/false_colors.hpp"
+#include "robots/navigation/grid.hpp"
+#include "scenes/image_file.hpp"
+#include "sim/motion/floor_grid.hpp"
+#include "slam/core/labels.hpp"
+#include "slam/io/error.hpp"
+#include "slam/io/json_text.hpp"
+
+namespace mh {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kTicksPerFrame = 2;          // of the camera's 30 Hz
+constexpr int kStepsWithoutDriver = 8;     // half a second
+constexpr int kDarkSteps = 15;             // a kidnapping takes a second
+constexpr std::size_t kMostPoints = 4000;  // of the map, in one message
+constexpr std::uint64_t kStepsPerMap = 15;
+constexpr int kJpegQuality = 80;
+constexpr double kMaxSpeed_m_per_s = 5, kMaxTurn_rad_per_s = 10;
+
+double rounded(double value) {
+  return std::round(1000 * value) / 1000;
+}
+
+/// x, y and heading of a camera, seen from above.
+Json from_above(const SE3& world_from_camera) {
+  const Eigen::Vector3d& at = world_from_camera.translation();
+  const Eigen::Vector3d ahead = world_from_camera.rotation().col(2);
+  return {rounded(at.x()), rounded(at.y()), rounded(std::atan2(ahead.y(), ahead.x()))};
+}
+
+/// Anywhere that the robot can stand, turned anyhow.
+std::pair<Eigen::Vector2d, double> draw_place(const Scene& scene, const Robot& robot,
+                                              RandomStream draw) {
+  constexpr double kClear_m = 0.05;
+  const FloorGrid grid = make_floor_grid(scene, {.top_m = robot.height_m});
+  const auto region = largest_region(grid, robot.footprint_radius_m + kClear_m);
+  std::vector<Eigen::Vector2d> places;
+  for (int y = 0; y < region.height(); ++y)
+    for (int x = 0; x < region.width(); ++x)
+      if (region(x, y) != 0) places.push_back(grid.center_of({x, y}));
+  if (places.empty())
+    throw InputError(fmt::format("{}: there is no floor for the robot", scene.name));
+  return {places[draw.below(0, places.size())],
+          draw.uniform(1, -std::numbers::pi, std::numbers::pi)};
+}
+
+SimulationConfig config_of(const SimulatedScene& scene, const Robot& robot, std::uint64_t seed) {
+  const auto [place_m, heading_rad] = draw_place(*scene.scene, robot, RandomStream(seed));
+  return {.start_m = place_m,
+          .start_heading_rad = heading_rad,
+          .ticks_per_frame = kTicksPerFrame,
+          .seed = seed};
+}
+
+Grid2d<Rgb8> colors_of(const SemanticImage& semantics, int width, int height) {
+  Grid2d<Rgb8> image(width, height);
+  if (semantics.index.empty()) return image;
+  std::vector<Rgb8> color_of;
+  for (const ClassDistribution& entry : semantics.palette)
+    color_of.push_back(class_color(entry.most_probable()));
+  std::transform(semantics.index.begin(), semantics.index.end(), image.begin(),
+                 [&](std::uint8_t k) { return color_of[k]; });
+  return image;
+}
+
+Grid2d<Rgb8> colors_of(const Grid2d<float>& depth_m) {
+  const cv::Mat bgr = depth_colors(depth_m, 0.4F, 8.0F);
+  Grid2d<Rgb8> image(bgr.cols, bgr.rows);
+  for (int y = 0; y < bgr.rows; ++y)
+    for (int x = 0; x < bgr.cols; ++x) {
+      const auto& c = bgr.at<cv::Vec3b>(y, x);
+      image(x, y) = {c[2], c[1], c[0]};
+    }
+  return image;
+}
+
+}  // namespace
+
+LiveDrive::LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
+                     std::shared_ptr<const Vocabulary> vocabulary, std::uint64_t seed)
+    : scene_(std::move(scene)),
+      robot_(robot),
+      level_(level),
+      vocabulary_(std::move(vocabulary)),
+      seed_(seed),
+      simulation_(scene_, robot_, level_, config_of(scene_, robot_, seed)),
+      slam_(make_slam(with_lens(robot.camera, level), {}, vocabulary_)) {}
+
+std::string LiveDrive::greeting() const {
+  Json rooms = Json::array(), things = Json::array(), names = Json::array();
+  for (const Room& room : scene_.scene->rooms) {
+    Json outline = Json::array();
+    for (const Eigen::Vector2d& p : room.polygon_m)
+      outline.push_back({rounded(p.x()), rounded(p.y())});
+    rooms.push_back({{"name", room.name}, {"outline", outline}});
+  }
+  for (const Instance& thing : scene_.scene->instances) {
+    const std::string_view name = classes()[thing.class_id].name;
+    if (name == "floor" || name == "wall" || name == "ceiling") continue;
+    things.push_back({rounded(thing.min_m.x()), rounded(thing.min_m.y()), rounded(thing.max_m.x()),
+                      rounded(thing.max_m.y()), thing.class_id});
+  }
+  for (const ClassInfo& info : classes()) {
+    const Rgb8 color = class_color(info.id);
+    names.push_back(
+        {std::string(info.name), fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b)});
+  }
+  const BaseLimits& limits = robot_.limits;
+  return Json{{"hello",
+               {{"scene", scene_.scene->name},
+                {"robot", robot_.name},
+                {"rooms", rooms},
+                {"things", things},
+                {"classes", names},
+                {"radius_m", robot_.footprint_radius_m},
+                {"speed_m_per_s", limits.max_velocity_m_per_s},
+                {"turn_rad_per_s", limits.max_turn_rad_per_s}}}}
+      .dump();
+}
+
+std::string LiveDrive::take(const std::string& message) {
+  const Json json = parse_json_or_discard<Json>(message);
+  if (!json.is_object() || json.size() != 1) return "expected an object with one key";
+  const std::string& key = json.begin().key();
+  const Json& value = json.begin().value();
+  const auto number = [](const Json& n, double low, double high) -> std::optional<double> {
+    if (!n.is_number() || !std::isfinite(n.get<double>())) return std::nullopt;
+    return std::clamp(n.get<double>(), low, high);
+  };
+  const std::lock_guard lock(mutex_);
+  if (key == "drive" && value.is_array() && value.size() == 3) {
+    const auto vx = number(value[0], -kMaxSpeed_m_per_s, kMaxSpeed_m_per_s),
+               vy = number(value[1], -kMaxSpeed_m_per_s, kMaxSpeed_m_per_s),
+               wz = number(value[2], -kMaxTurn_rad_per_s, kMaxTurn_rad_per_s);
+    if (!vx || !vy || !wz) return "drive: expected three finite numbers";
+    asked_.velocity = {*vx, *vy, *wz};
+    asked_.steps_left = kStepsWithoutDriver;
+    return "";
+  }
+  if (key == "do" && value == "kidnap") {
+    asked_.kidnap = true;
+    return "";
+  }
+  if (key == "do" && value == "restart") {
+    asked_.restart = true;
+    return "";
+  }
+  if (key == "light" && value.is_boolean()) {
+    asked_.light = value.get<bool>();
+    return "";
+  }
+  if (key == "gamma")
+    if (const auto gamma = number(value, 0, 1000)) {
+      asked_.gamma = gamma;
+      return "";
+    }
+  if (key == "xi")
+    if (const auto xi = number(value, 1, 1000)) {
+      asked_.xi = xi;
+      return "";
+    }
+  return "not understood: one of drive, do, light, gamma, xi";
+}
+
+void LiveDrive::obey(const Asked& asked) {
+  if (asked.restart) {
+    SemanticConfig semantics = slam_.config.semantics;
+    slam_ = make_slam(with_lens(robot_.camera, level_), {}, vocabulary_);
+    set_query_settings(slam_, semantics);
+    world_from_map_.reset();
+  }
+  if (asked.gamma || asked.xi) {
+    SemanticConfig semantics = slam_.config.semantics;
+    semantics.gamma = asked.gamma.value_or(semantics.gamma);
+    semantics.xi = asked.xi.value_or(semantics.xi);
+    set_query_settings(slam_, semantics);
+  }
+  if (asked.light) light_ = *asked.light;
+  if (asked.kidnap) {
+    const auto [place_m, heading_rad] =
+        draw_place(*scene_.scene, robot_, RandomStream(seed_).fork(++carried_));
+    simulation_.carry_to(place_m, heading_rad);
+    dark_steps_ = kDarkSteps;
+  }
+  simulation_.switch_light(light_ && dark_steps_ == 0);
+  if (dark_steps_ > 0) --dark_steps_;
+}
+
+LiveDrive::Shown LiveDrive::step() {
+  Asked asked;
+  {
+    const std::lock_guard lock(mutex_);
+    if (asked_.steps_left == 0)
+      asked_.velocity = {};
+    else
+      --asked_.steps_left;
+    asked = asked_;
+    asked_.kidnap = asked_.restart = false;
+    asked_.light.reset();
+    asked_.gamma.reset();
+    asked_.xi.reset();
+  }
+  obey(asked);
+  const RobotObservation seen = simulation_.step(asked.velocity, kStep_s);
+  if (!seen.frame) return {};
+  const RgbdFrame& frame = *seen.frame;
+  const StepReport report = mh::step(slam_, frame, RandomStream(seed_).fork(frames_++));
+  if (!world_from_map_ && report.world_from_camera)
+    world_from_map_ =
+        simulation_.truth_of_frame()->world_from_camera * report.world_from_camera->inverse();
+  return {.state = state(seen, report),
+          .color = encode_jpeg(frame.color, kJpegQuality),
+          .depth = encode_jpeg(colors_of(frame.depth_m), kJpegQuality),
+          .labels = encode_jpeg(
+              colors_of(frame.semantics, frame.color.width(), frame.color.height()), kJpegQuality)};
+}
+
+std::string LiveDrive::state(const RobotObservation& seen, const StepReport& report) const {
+  const SE3 world_from_base = simulation_.truth().world_from_base();
+  const Eigen::Vector3d ahead = world_from_base.rotation().col(0);
+  Json lasers = Json::array();
+  const Equipment& equipment = *robot_.equipment;
+  for (std::size_t k = 0; k < seen.reading.lasers_m.size(); ++k) {
+    const LaserScanner& laser = equipment.lasers[k];
+    const SE3 world_from_laser = world_from_base * laser.base_from_laser;
+    for (std::size_t i = 0; i < seen.reading.lasers_m[k].size(); ++i) {
+      const double range_m = seen.reading.lasers_m[k][i];
+      if (range_m == 0) continue;
+      const double a =
+          laser.field_of_view_rad * (static_cast<double>(i) / std::max(1, laser.rays - 1) - 0.5);
+      const Eigen::Vector3d end_m =
+          world_from_laser * Eigen::Vector3d(range_m * std::cos(a), range_m * std::sin(a), 0);
+      lasers.push_back({rounded(end_m.x()), rounded(end_m.y())});
+    }
+  }
+  Json json = {
+      {"time_s", rounded(simulation_.time_s())},
+      {"base",
+       {rounded(world_from_base.translation().x()), rounded(world_from_base.translation().y()),
+        rounded(std::atan2(ahead.y(), ahead.x()))}},
+      {"camera", from_above(simulation_.truth_of_frame()->world_from_camera)},
+      {"estimate", nullptr},
+      {"status", std::string(name(report.status))},
+      {"keypoints", report.keypoints},
+      {"inliers", report.inliers},
+      {"keyframes", slam_.map.keyframe_count()},
+      {"landmarks", slam_.map.landmark_count()},
+      {"light", light_ && dark_steps_ == 0},
+      {"gamma", slam_.config.semantics.gamma},
+      {"xi", slam_.config.semantics.xi},
+      {"lasers", lasers}};
+  if (world_from_map_ && report.world_from_camera) {
+    const SE3 estimate = *world_from_map_ * *report.world_from_camera;
+    json["estimate"] = from_above(estimate);
+    json["error_m"] = rounded(
+        (estimate.translation() - simulation_.truth_of_frame()->world_from_camera.translation())
+            .norm());
+  }
+  if (frames_ % kStepsPerMap == 1 && world_from_map_) {
+    Json points = Json::array(), keyframes = Json::array();
+    const std::size_t every =
+        1 + static_cast<std::size_t>(slam_.map.landmark_count()) / kMostPoints;
+    std::size_t count = 0;
+    for (const Landmark& landmark : slam_.map.landmarks()) {
+      if (landmark.erased || count++ % every != 0) continue;
+      const Eigen::Vector3d at = *world_from_map_ * landmark.position_in_world;
+      points.push_back({rounded(at.x()), rounded(at.y()), landmark.label});
+    }
+    for (const Keyframe& keyframe : slam_.map.keyframes())
+      if (!keyframe.erased)
+        keyframes.push_back(from_above(*world_from_map_ * keyframe.camera_from_world.inverse()));
+    json["map"] = {{"points", points}, {"keyframes", keyframes}};
+  }
+  return json.dump();
+}
+
+}  // namespace mh

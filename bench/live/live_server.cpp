@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/live/live_server.hpp"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "slam/io/error.hpp"
+#include "slam/io/files.hpp"
+
+namespace mh {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using Tcp = asio::ip::tcp;
+using Error = beast::error_code;
+
+constexpr std::size_t kMostConnections = 32, kMostQueued = 16, kMostMessageBytes = 4096,
+                      kMostHeaderBytes = 8192;
+constexpr auto kRequestTime = std::chrono::seconds(10);
+
+struct PageFile {
+  const char *target, *file, *type;
+};
+constexpr std::array<PageFile, 3> kPage = {{{"/", "index.html", "text/html; charset=utf-8"},
+                                            {"/live.js", "live.js", "text/javascript"},
+                                            {"/live.css", "live.css", "text/css"}}};
+
+/// In a time that does not tell how much of it is right.
+bool is_same(std::string_view a, std::string_view b) {
+  unsigned differs = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    differs |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  return differs == 0;
+}
+
+struct Outgoing {
+  std::shared_ptr<const std::string> content;
+  bool is_image = false;
+};
+
+std::string text_of(beast::string_view view) {
+  return {view.data(), view.size()};
+}
+
+}  // namespace
+
+struct LiveServer::Impl {
+  class Viewer;
+
+  std::size_t connections = 0;  // before what may still hold some
+  asio::io_context io{1};
+  Tcp::acceptor acceptor{io};
+  LiveAddress address;
+  std::filesystem::path page;
+  std::function<std::string()> greeting;
+  std::function<std::string(const std::string&)> heard;
+  std::set<std::shared_ptr<Viewer>> joined;  // on the server's thread alone
+  std::atomic<int> count{0};
+  std::thread thread;
+
+  void accept();
+  void send(Outgoing message);
+  /// Why a request is refused; empty: it is not.
+  std::string refusal(const http::request<http::string_body>& request) const;
+};
+
+/// One connection: a request for a part of the page, or a WebSocket.
+class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
+ public:
+  Viewer(Impl& server, Tcp::socket socket) : server_(server), stream_(std::move(socket)) {
+    ++server_.connections;
+    parser_.header_limit(kMostHeaderBytes);
+    parser_.body_limit(0);
+  }
+  ~Viewer() { --server_.connections; }
+
+  void start() {
+    stream_.expires_after(kRequestTime);
+    http::async_read(stream_, buffer_, parser_,
+                     [self = shared_from_this()](Error error, std::size_t) {
+                       if (!error) self->answer();
+                     });
+  }
+  void queue(Outgoing message) {
+    if (queue_.size() >= kMostQueued) {
+      if (message.is_image) return;
+      if (queue_.size() >= 4 * kMostQueued) return leave();
+    }
+    queue_.push_back(std::move(message));
+    if (queue_.size() == 1) write();
+  }
+
+ private:
+  void answer() {
+    const auto& request = parser_.get();
+    if (const std::string why = server_.refusal(request); !why.empty())
+      return reply(http::status::forbidden, "text/plain", why + "\n");
+    if (websocket::is_upgrade(request)) return upgrade();
+    std::string target = text_of(request.target());
+    target = target.substr(0, target.find('?'));
+    if (request.method() == http::verb::get)
+      for (const PageFile& file : kPage)
+        if (target == file.target)
+          return reply(http::status::ok, file.type, read_file(server_.page / file.file));
+    reply(http::status::not_found, "text/plain", "nothing is here\n");
+  }
+
+  void reply(http::status status, const char* type, std::string body) {
+    response_ = {status, 11};
+    response_.set(http::field::content_type, type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Content-Security-Policy",
+                  "default-src 'self'; img-src blob: 'self'; connect-src 'self' ws:");
+    response_.keep_alive(false);
+    response_.body() = std::move(body);
+    response_.prepare_payload();
+    http::async_write(stream_, response_, [self = shared_from_this()](Error, std::size_t) {
+      Error no_matter;
+      self->stream_.socket().shutdown(Tcp::socket::shutdown_send, no_matter);
+    });
+  }
+
+  void upgrade() {
+    stream_.expires_never();
+    socket_ = std::make_unique<websocket::stream<beast::tcp_stream>>(std::move(stream_));
+    socket_->set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    socket_->read_message_max(kMostMessageBytes);
+    socket_->async_accept(parser_.get(), [self = shared_from_this()](Error error) {
+      if (error) return;
+      self->server_.joined.insert(self);
+      ++self->server_.count;
+      self->queue({std::make_shared<const std::string>(self->server_.greeting()), false});
+      self->buffer_.clear();
+      self->read();
+    });
+  }
+
+  void read() {
+    socket_->async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
+      if (error) return self->leave();
+      if (self->socket_->got_text()) {
+        std::string answer = self->server_.heard(beast::buffers_to_string(self->buffer_.data()));
+        if (!answer.empty())
+          self->queue({std::make_shared<const std::string>(std::move(answer)), false});
+      }
+      self->buffer_.consume(self->buffer_.size());
+      self->read();
+    });
+  }
+
+  void write() {
+    socket_->text(!queue_.front().is_image);
+    socket_->async_write(asio::buffer(*queue_.front().content),
+                         [self = shared_from_this()](Error error, std::size_t) {
+                           if (error) return self->leave();
+                           self->queue_.pop_front();
+                           if (!self->queue_.empty()) self->write();
+                         });
+  }
+
+  void leave() {
+    if (server_.joined.erase(shared_from_this()) > 0) --server_.count;
+    Error no_matter;
+    beast::get_lowest_layer(*socket_).socket().close(no_matter);
+  }
+
+  Impl& server_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{kMostHeaderBytes + kMostMessageBytes};
+  http::request_parser<http::string_body> parser_;
+  http::response<http::string_body> response_;
+  std::unique_ptr<websocket::stream<beast::tcp_stream>> socket_;
+  std::deque<Outgoing> queue_;  // the first one is being written
+};
+
+void LiveServer::Impl::accept() {
+  acceptor.async_accept([this](Error error, Tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (!error && connections < kMostConnections)
+      std::make_shared<Viewer>(*this, std::move(socket))->start();
+    accept();
+  });
+}
+
+void LiveServer::Impl::send(Outgoing message) {
+  asio::post(io, [this, message = std::move(message)] {
+    for (const auto& viewer : std::vector(joined.begin(), joined.end())) viewer->queue(message);
+  });
+}
+
+std::string LiveServer::Impl::refusal(const http::request<http::string_body>& request) const {
+  const std::string host = text_of(request[http::field::host]);
+  const int port = acceptor.local_endpoint().port();
+  if (address.token.empty()) {
+    // A name of somebody's that leads here would let his page in.
+    const bool is_ours = host == fmt::format("127.0.0.1:{}", port) ||
+                         host == fmt::format("localhost:{}", port) ||
+                         host == fmt::format("[::1]:{}", port);
+    if (!is_ours) return "this is for the machine's own programs";
+  } else {
+    const std::string target = text_of(request.target());
+    const auto at = target.find("token=");
+    const std::string given =
+        at == std::string::npos ? "" : target.substr(at + 6, target.find('&', at) - at - 6);
+    const bool is_part = target == "/live.js" || target == "/live.css";  // tell nothing
+    if (!is_part && !is_same(given, address.token)) return "the token is missing or wrong";
+  }
+  if (const std::string origin = text_of(request[http::field::origin]);
+      !origin.empty() && origin != "http://" + host)
+    return "another page may not open this";
+  return "";
+}
+
+LiveServer::LiveServer(const LiveAddress& address, const std::filesystem::path& page,
+                       std::function<std::string()> greeting,
+                       std::function<std::string(const std::string&)> heard)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->address = address;
+  impl_->page = page;
+  impl_->greeting = std::move(greeting);
+  impl_->heard = std::move(heard);
+  Error error;
+  const auto host = asio::ip::make_address(address.host, error);
+  if (error) throw InputError(fmt::format("host '{}': is no address", address.host));
+  if (address.token.empty() && !host.is_loopback())
+    throw InputError(
+        fmt::format("host {}: whoever is not on this machine needs a token", address.host));
+  const Tcp::endpoint endpoint(host, static_cast<unsigned short>(address.port));
+  impl_->acceptor.open(endpoint.protocol(), error);
+  if (!error) impl_->acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) impl_->acceptor.bind(endpoint, error);
+  if (!error) impl_->acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error)
+    throw InputError(fmt::format("{} port {}: {}", address.host, address.port, error.message()));
+  impl_->accept();
+  impl_->thread = std::thread([this] { impl_->io.run(); });
+}
+
+LiveServer::~LiveServer() {
+  impl_->io.stop();
+  impl_->thread.join();
+  impl_->joined.clear();
+}
+
+std::string LiveServer::url() const {
+  const std::string& token = impl_->address.token;
+  return fmt::format("http://{}:{}/{}", impl_->address.host, port(),
+                     token.empty() ? "" : "?token=" + token);
+}
+int LiveServer::port() const {
+  return impl_->acceptor.local_endpoint().port();
+}
+void LiveServer::send_text(std::string text) {
+  impl_->send({std::make_shared<const std::string>(std::move(text)), false});
+}
+void LiveServer::send_image(std::string bytes) {
+  impl_->send({std::make_shared<const std::string>(std::move(bytes)), true});
+}
+int LiveServer::viewers() const {
+  return impl_->count;
+}
+
+}  // namespace mh
