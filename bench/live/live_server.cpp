@@ -129,7 +129,7 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
     response_.set(http::field::cache_control, "no-store");
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Content-Security-Policy",
-                  "default-src 'self'; img-src blob: 'self'; connect-src 'self' ws:");
+                  "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws:");
     response_.keep_alive(false);
     response_.body() = std::move(body);
     response_.prepare_payload();

@@ -102,8 +102,8 @@ function draw() {
   const width = canvas.clientWidth, height = canvas.clientHeight;
   if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
   if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
-  const g = canvas.getContext("2d"), style = getComputedStyle(document.documentElement);
-  const ink = (name) => style.getPropertyValue(`--${name}`);
+  const g = canvas.getContext("2d");
+  const ink = (name) => getComputedStyle(document.querySelector(`.key .${name}`) ?? $("scene")).color;
   g.setTransform(ratio, 0, 0, ratio, 0, 0);
   g.clearRect(0, 0, width, height);
   if (!hello || !state) return;
