@@ -111,7 +111,11 @@ std::string LiveDrive::greeting() const {
   }
   for (const Instance& thing : scene_.scene->instances) {
     const std::string_view name = classes()[thing.class_id].name;
-    if (name == "floor" || name == "wall" || name == "ceiling") continue;
+    constexpr float kHall_m2 = 12;  // walls, floors and what else surrounds a room
+    const Eigen::Vector3f size_m = thing.max_m - thing.min_m;
+    if (name == "floor" || name == "wall" || name == "ceiling" ||
+        size_m.x() * size_m.y() > kHall_m2)
+      continue;
     things.push_back({rounded(thing.min_m.x()), rounded(thing.min_m.y()), rounded(thing.max_m.x()),
                       rounded(thing.max_m.y()), thing.class_id});
   }
@@ -164,6 +168,10 @@ std::string LiveDrive::take(const std::string& message) {
     asked_.light = value.get<bool>();
     return "";
   }
+  if (key == "wheels" && value.is_boolean()) {
+    asked_.wheels = value.get<bool>();
+    return "";
+  }
   if (key == "gamma")
     if (const auto gamma = number(value, 0, 1000)) {
       asked_.gamma = gamma;
@@ -174,7 +182,7 @@ std::string LiveDrive::take(const std::string& message) {
       asked_.xi = xi;
       return "";
     }
-  return "not understood: one of drive, do, light, gamma, xi";
+  return "not understood: one of drive, do, light, wheels, gamma, xi";
 }
 
 void LiveDrive::obey(const Asked& asked) {
@@ -191,6 +199,7 @@ void LiveDrive::obey(const Asked& asked) {
     set_query_settings(slam_, semantics);
   }
   if (asked.light) light_ = *asked.light;
+  if (asked.wheels) wheels_ = *asked.wheels;
   if (asked.kidnap) {
     const auto [place_m, heading_rad] =
         draw_place(*scene_.scene, robot_, RandomStream(seed_).fork(++carried_));
@@ -212,13 +221,15 @@ LiveDrive::Shown LiveDrive::step() {
     asked = asked_;
     asked_.kidnap = asked_.restart = false;
     asked_.light.reset();
+    asked_.wheels.reset();
     asked_.gamma.reset();
     asked_.xi.reset();
   }
   obey(asked);
   const RobotObservation seen = simulation_.step(asked.velocity, kStep_s);
   if (!seen.frame) return {};
-  const RgbdFrame& frame = *seen.frame;
+  RgbdFrame frame = *seen.frame;
+  if (wheels_) frame.odom_from_camera = seen.odom_from_camera;
   const StepReport report = mh::step(slam_, frame, RandomStream(seed_).fork(frames_++));
   if (!world_from_map_ && report.world_from_camera)
     world_from_map_ =
@@ -261,6 +272,7 @@ std::string LiveDrive::state(const RobotObservation& seen, const StepReport& rep
       {"keyframes", slam_.map.keyframe_count()},
       {"landmarks", slam_.map.landmark_count()},
       {"light", light_ && dark_steps_ == 0},
+      {"wheels", wheels_},
       {"gamma", slam_.config.semantics.gamma},
       {"xi", slam_.config.semantics.xi},
       {"lasers", lasers}};

@@ -46,7 +46,7 @@ class LiveDrive {
     Twist2d velocity;
     int steps_left = 0;  ///< then the robot stops: its driver is gone
     bool kidnap = false, restart = false;
-    std::optional<bool> light;
+    std::optional<bool> light, wheels;
     std::optional<double> gamma, xi;
   };
   void obey(const Asked& asked);
@@ -63,6 +63,7 @@ class LiveDrive {
   std::uint64_t frames_ = 0, carried_ = 0;
   int dark_steps_ = 0;  ///< until the light is on again
   bool light_ = true;
+  bool wheels_ = true;  ///< whether SLAM is given their odometry
   std::mutex mutex_;
   Asked asked_;  ///< guarded by it
 };

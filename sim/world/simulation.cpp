@@ -54,6 +54,7 @@ TimedPose Simulation::pose_now() const {
 
 void Simulation::tick() {
   ++ticks_;
+  odom_before_ = odom_from_base_;
   odom_from_base_ = odometer_.drive_to(base_.world_from_base());
   recent_.push_back(pose_now());
   if (recent_.size() > kClip) recent_.erase(recent_.begin());
@@ -109,6 +110,7 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
     feel(seen.reading, recent_[here == 0 ? 0 : here - 1], recent_[here], recent_[n - 1],
          *robot_.equipment->base_from_imu);
   seen.odom_from_base = odom_from_base_;
+  seen.odom_from_camera = odom_before_ * robot_.base_from_camera;
   return seen;
 }
 

@@ -46,7 +46,8 @@ struct RobotObservation {
   Grid2d<InstanceId> instances;  ///< of its pixels: not for systems; empty without a frame
   /// Lasers, sonars and bumpers now; the IMU one tick ago.
   RobotReading reading;
-  SE3 odom_from_base;  ///< wheel odometry
+  SE3 odom_from_base;    ///< wheel odometry
+  SE3 odom_from_camera;  ///< the same of the camera at the frame's stamp
 };
 
 /// A robot in a scene, stepped by its controller: physics, sensors and camera of a robot that is
@@ -87,8 +88,8 @@ class Simulation {
   SimulationConfig config_;
   CommandedBase base_;
   WheelOdometer odometer_;
-  SE3 odom_from_base_;
-  std::vector<TimedPose> recent_;  ///< world_from_base, one per tick, since it was last carried
+  SE3 odom_from_base_, odom_before_;  ///< now and one tick ago
+  std::vector<TimedPose> recent_;     ///< world_from_base, one per tick, since it was last carried
   std::optional<TimedPose> frame_pose_;
   long ticks_ = 0;
   bool light_ = true;

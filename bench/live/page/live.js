@@ -49,11 +49,12 @@ for (const button of document.querySelectorAll("[data-drive]")) {
 }
 $("kidnap").onclick = () => { send({ do: "kidnap" }); trail.true.push(null); trail.estimate.push(null); };
 $("restart").onclick = () => { send({ do: "restart" }); map = { points: [], keyframes: [] }; trail.estimate = []; };
-$("light").onclick = () => {
-  const on = $("light").getAttribute("aria-pressed") !== "true";
-  $("light").setAttribute("aria-pressed", on);
-  send({ light: on });
-};
+for (const what of ["light", "wheels"])
+  $(what).onclick = () => {
+    const on = $(what).getAttribute("aria-pressed") !== "true";
+    $(what).setAttribute("aria-pressed", on);
+    send({ [what]: on });
+  };
 for (const dial of ["gamma", "xi"])
   $(dial).oninput = () => { send({ [dial]: Number($(dial).value) }); };
 
@@ -81,6 +82,7 @@ function take(message) {
   const lost = state.status === "lost";
   $("status").className = lost ? "lost" : "";
   $("status").textContent = !state.light ? "dark" : lost ? "lost" : state.status;
+  $("wheels").setAttribute("aria-pressed", state.wheels);
   for (const dial of ["gamma", "xi"]) {
     $(`${dial}_is`).textContent = state[dial].toFixed(2);
     if (document.activeElement !== $(dial)) $(dial).value = state[dial];
