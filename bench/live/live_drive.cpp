@@ -205,6 +205,7 @@ void LiveDrive::obey(const Asked& asked) {
         draw_place(*scene_.scene, robot_, RandomStream(seed_).fork(++carried_));
     simulation_.carry_to(place_m, heading_rad);
     dark_steps_ = kDarkSteps;
+    lifted_ = true;
   }
   simulation_.switch_light(light_ && dark_steps_ == 0);
   if (dark_steps_ > 0) --dark_steps_;
@@ -229,8 +230,10 @@ LiveDrive::Shown LiveDrive::step() {
   const RobotObservation seen = simulation_.step(asked.velocity, kStep_s);
   if (!seen.frame) return {};
   RgbdFrame frame = *seen.frame;
-  if (wheels_) frame.odom_from_camera = seen.odom_from_camera;
+  if (wheels_ && !lifted_) frame.odom_from_camera = seen.odom_from_camera;
   const StepReport report = mh::step(slam_, frame, RandomStream(seed_).fork(frames_++));
+  if (dark_steps_ == 0 && report.inliers > 0 && report.status != TrackStatus::kLost)
+    lifted_ = false;
   if (!world_from_map_ && report.world_from_camera)
     world_from_map_ =
         simulation_.truth_of_frame()->world_from_camera * report.world_from_camera->inverse();

@@ -64,6 +64,8 @@ class LiveDrive {
   int dark_steps_ = 0;  ///< until the light is on again
   bool light_ = true;
   bool wheels_ = true;  ///< whether SLAM is given their odometry
+  /// Carried away, and not found again: wheels that hung in the air tell nothing.
+  bool lifted_ = false;
   std::mutex mutex_;
   Asked asked_;  ///< guarded by it
 };
