@@ -53,6 +53,14 @@ TEST(LargestRegion, IsConnectedBySides) {
             "x..."
             "....");
   EXPECT_EQ(marked(1.5), std::string(12, '.'));
+  // A single cell is a region, in the first row and column, too.
+  for (const auto& [x, y] : {std::pair(0, 0), std::pair(3, 0), std::pair(0, 2)}) {
+    grid.clearance_m = Grid2d<float>(4, 3);
+    grid.clearance_m(x, y) = 1;
+    std::string alone(12, '.');
+    alone[static_cast<std::size_t>(4 * y + x)] = 'x';
+    EXPECT_EQ(marked(0.5), alone);
+  }
 }
 
 TEST(FloorGrid, ClearanceIsTheDistanceToTheNearestObstacleOrLess) {

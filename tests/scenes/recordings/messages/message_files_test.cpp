@@ -314,6 +314,15 @@ TEST(Bag, NamesATopicInItsConnectionsHeaderAndData) {
   int found = 0;
   for (auto at = bag.find(field); at != std::string::npos; at = bag.find(field, at + 1)) ++found;
   EXPECT_EQ(found, 4) << "in the chunk and in the index, each with header and data";
+  // The record of the bag's header takes 4096 bytes, so that it can be written last.
+  const auto number_at = [&](std::size_t at) {
+    std::uint32_t number = 0;
+    std::memcpy(&number, bag.data() + at, sizeof number);
+    return number;
+  };
+  constexpr std::size_t kMagic = 13;  // "#ROSBAG V2.0" and the end of its line
+  const std::uint32_t header_bytes = number_at(kMagic);
+  EXPECT_EQ(4 + header_bytes + 4 + number_at(kMagic + 4 + header_bytes), 4096u);
 }
 
 TEST(Bag, OfBz2ByRosIsRead) {
