@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <libdeflate.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
