@@ -67,6 +67,9 @@ Grid2d<T> grid_of(const Array<T>& image, const char* what) {
 }
 Grid2d<Rgb8> color_of(const Array<std::uint8_t>& image);
 
+/// Of what a pose may be; also of places in a scene.
+inline constexpr double kFarthest_m = 1e6;
+
 /// 4 x 4.
 Array<double> to_python(const SE3& pose);
 py::object to_python(const std::optional<SE3>& pose);

@@ -51,6 +51,10 @@ SE3 to_pose(const Array<double>& matrix) {
     translation_m(i) = m(i, 3);
   }
   constexpr double kRound = 1e-4;
+  if (!(translation_m.norm() <= kFarthest_m))
+    throw py::value_error(fmt::format("a pose is not within {:g} m", kFarthest_m));
+  if (m(3, 0) != 0 || m(3, 1) != 0 || m(3, 2) != 0 || m(3, 3) != 1)
+    throw py::value_error("not a rigid pose: its last row is not 0 0 0 1");
   if (!translation_m.allFinite() || !rotation.allFinite() ||
       (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).norm() > kRound ||
       rotation.determinant() < 0)
@@ -120,13 +124,28 @@ RgbdFrame frame_at(const Recording& recording, py::ssize_t i) {
   return recording.frames->frame(at, RandomStream(0).fork(at));
 }
 
-RgbdFrame make_frame(const Array<std::uint8_t>& color, const Array<float>& depth, Stamp stamp_ns,
-                     const std::optional<Array<std::uint8_t>>& labels,
+/// @throws py::value_error unless numbers are of one of these kinds ("u", "i", "f"), since others
+/// would be converted to something else than was meant
+void require_kind(const py::array& image, const std::string& kinds, const char* what,
+                  const char* expected) {
+  if (kinds.find(image.dtype().kind()) == std::string::npos)
+    throw py::value_error(fmt::format("{}: expected {}, got {}", what, expected,
+                                      py::str(image.dtype()).cast<std::string>()));
+}
+
+RgbdFrame make_frame(const py::array& color, const py::array& depth, Stamp stamp_ns,
+                     const std::optional<py::array>& labels,
                      const std::optional<Array<double>>& odometry) {
+  require_kind(color, "u", "color", "uint8");
+  if (color.itemsize() != 1) throw py::value_error("color: expected uint8");
+  require_kind(depth, "f", "depth", "meters as floating-point numbers");
   RgbdFrame frame{.stamp_ns = stamp_ns,
-                  .color = color_of(color),
-                  .depth_m = grid_of(depth, "depth"),
+                  .color = color_of(Array<std::uint8_t>(color)),
+                  .depth_m = grid_of(Array<float>(depth), "depth"),
                   .semantics = {}};
+  for (const float depth_m : frame.depth_m)
+    if (!(depth_m >= 0 && std::isfinite(depth_m)))
+      throw py::value_error("depth: a value is negative or not finite (no return is 0)");
   const auto same_size = [&](int w, int h, const char* what) {
     if (w != frame.color.width() || h != frame.color.height())
       throw py::value_error(fmt::format("{} is {} x {}, color {} x {}", what, w, h,
@@ -134,10 +153,16 @@ RgbdFrame make_frame(const Array<std::uint8_t>& color, const Array<float>& depth
   };
   same_size(frame.depth_m.width(), frame.depth_m.height(), "depth");
   if (labels) {
-    const Grid2d<ClassId> given = grid_of(*labels, "labels");
+    require_kind(*labels, "ui", "labels", "integers");
+    const Grid2d<std::int64_t> given = grid_of(Array<std::int64_t>(*labels), "labels");
     same_size(given.width(), given.height(), "labels");
     Grid2d<std::uint16_t> ids(given.width(), given.height());
-    std::copy(given.begin(), given.end(), ids.begin());
+    for (int y = 0; y < given.height(); ++y)
+      for (int x = 0; x < given.width(); ++x) {
+        if (given(x, y) < 0 || static_cast<std::size_t>(given(x, y)) >= classes().size())
+          throw py::value_error(fmt::format("labels: {} is no class", given(x, y)));
+        ids(x, y) = static_cast<std::uint16_t>(given(x, y));
+      }
     frame.semantics = one_hot(ids, nullptr);
   }
   if (odometry) frame.odom_from_camera = to_pose(*odometry);
@@ -173,6 +198,11 @@ py::dict evaluate_paths(const Trajectory& truth, const Trajectory& estimate,
     throw py::value_error(fmt::format("align='{}' is not one of none, origin, se3, sim3", align));
   options.alignment = word->second;
   const Evaluation e = evaluate(truth, estimate, options);
+  if (e.pairs == 0) throw py::value_error("no pose of the estimate is within 10 ms of a true one");
+  if (e.ape_translation_m.count == 0 || !std::isfinite(e.ape_translation_m.rmse))
+    throw py::value_error(fmt::format(
+        "the alignment '{}' is undetermined: fewer than three poses, all on a line, or no numbers",
+        align));
   py::dict d;
   d["pairs"] = e.pairs;
   d["ate_m"] = statistics(e.ape_translation_m);
@@ -202,6 +232,9 @@ void bind_core(py::module_& m) {
              Camera c;
              c.width_px = width, c.height_px = height;
              c.fx_px = fx, c.fy_px = fy, c.cx_px = cx, c.cy_px = cy;
+             if (distortion.size() > 8 ||
+                 !std::ranges::all_of(distortion, [](double k) { return std::isfinite(k); }))
+               throw py::value_error("distortion: expected at most 8 finite numbers");
              c.distortion = distortion_of(distortion);
              c.rate_hz = fps, c.baseline_m = baseline_m;
              validate(c);

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdint>
+#include <span>
+
 #include <fmt/format.h>
 
 #include "python/bind.hpp"
@@ -9,26 +13,53 @@
 namespace mh::python {
 namespace {
 
-using Ids = Array<std::uint32_t>;
+/// Ids of labels or words. @throws py::value_error unless they are integers of 32 bits
+class Ids {
+ public:
+  Ids(const py::array& given, const char* what) {
+    if (given.ndim() != 1) throw py::value_error(fmt::format("{}: expected (N,)", what));
+    if (given.size() == 0) return;
+    if (given.dtype().kind() != 'u' && given.dtype().kind() != 'i')
+      throw py::value_error(fmt::format("{}: expected integers", what));
+    const Array<std::int64_t> all(given);
+    for (py::ssize_t i = 0; i < all.size(); ++i) {
+      if (all.data()[i] < 0 || all.data()[i] > UINT32_MAX)
+        throw py::value_error(fmt::format("{}: {} is no id", what, all.data()[i]));
+      ids_.push_back(static_cast<std::uint32_t>(all.data()[i]));
+    }
+  }
+  operator std::span<const std::uint32_t>() const { return ids_; }
+  std::uint32_t operator[](std::size_t i) const { return ids_[i]; }
+  std::size_t size() const { return ids_.size(); }
+
+ private:
+  std::vector<std::uint32_t> ids_;
+};
+
+/// @throws py::value_error unless all numbers are finite and at least 0
+void require_finite(const Array<double>& numbers, const char* what) {
+  for (py::ssize_t i = 0; i < numbers.size(); ++i)
+    if (!(numbers.data()[i] >= 0 && std::isfinite(numbers.data()[i])))
+      throw py::value_error(
+          fmt::format("{}: {} is negative or not finite", what, numbers.data()[i]));
+}
 
 VoidPolicy policy(bool void_is_a_label) {
   return void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown;
 }
 
-std::span<const std::uint32_t> ids(const Ids& array, const char* what) {
-  if (array.ndim() != 1) throw py::value_error(fmt::format("{}: expected (N,)", what));
-  return {array.data(), static_cast<std::size_t>(array.size())};
-}
-
-AugmentedVector make_vector(const Ids& labels, const Ids& words, double gamma,
+AugmentedVector make_vector(const py::array& labels, const py::array& words, double gamma,
                             const std::optional<Array<double>>& eta, bool void_is_a_label) {
-  if (!(gamma >= 0)) throw py::value_error(fmt::format("gamma={}: must be at least 0", gamma));
+  if (!(gamma >= 0 && gamma <= 1e6))
+    throw py::value_error(fmt::format("gamma={}: not in 0 to 1e6", gamma));
+  if (eta && eta->ndim() != 1) throw py::value_error("eta: expected (W,)");
+  if (eta) require_finite(*eta, "eta");
   const auto weight = [&](std::uint32_t word) {
     if (!eta) return 1.0;
     if (word >= eta->size()) throw py::value_error(fmt::format("eta has no word {}", word));
     return eta->data()[word];
   };
-  return augmented_vector(ids(labels, "labels"), ids(words, "words"), gamma, weight,
+  return augmented_vector(Ids(labels, "labels"), Ids(words, "words"), gamma, weight,
                           policy(void_is_a_label));
 }
 
@@ -38,15 +69,17 @@ py::dict members(const std::vector<WeightedMember>& all) {
   return d;
 }
 
-py::array_t<float> distances(const Array<float>& distance, const Ids& p, const Ids& q, float xi,
-                             bool void_is_a_label) {
+py::array_t<float> distances(const Array<float>& distance, const py::array& labels_p,
+                             const py::array& labels_q, float xi, bool void_is_a_label) {
+  const Ids p(labels_p, "labels_p"), q(labels_q, "labels_q");
+  const auto count = static_cast<std::size_t>(distance.size());
   if (!(xi >= 1)) throw py::value_error(fmt::format("xi={}: must be at least 1", xi));
-  if (p.size() != distance.size() || q.size() != distance.size())
+  if (p.size() != count || q.size() != count)
     throw py::value_error("distances and labels differ in length");
   py::array_t<float> made(distance.size());
-  for (py::ssize_t i = 0; i < distance.size(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
     made.mutable_data()[i] = semantic_distance(
-        distance.data()[i], labels_disagree(p.data()[i], q.data()[i], policy(void_is_a_label)), xi);
+        distance.data()[i], labels_disagree(p[i], q[i], policy(void_is_a_label)), xi);
   return made;
 }
 
@@ -55,6 +88,7 @@ py::tuple select(const Array<int>& overlap, const std::vector<std::vector<int>>&
   const auto count = static_cast<std::size_t>(overlap.size());
   if (neighbors.size() != count || static_cast<std::size_t>(similarity.size()) != count)
     throw py::value_error("overlap, neighbors and similarity differ in length");
+  require_finite(similarity, "similarity");
   for (const double share : {alpha, beta})
     if (!(share >= 0 && share < 1))
       throw py::value_error(fmt::format("alpha and beta are in [0, 1), not {}", share));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -47,6 +48,8 @@ class PythonSimulation {
       : robot_(load_robot(find_shipped(robot, Shipped::kRobot))),
         level_(load_sensor_config(find_shipped(level, Shipped::kLevel))),
         config_{.ticks_per_frame = ticks_per_frame, .labels = label_mode(labels), .seed = seed} {
+    if (ticks_per_frame < 1 || ticks_per_frame > 60)
+      throw InputError(fmt::format("ticks_per_frame={}: not in 1 to 60", ticks_per_frame));
     if (!robot_.equipment || robot_.wheels() == nullptr)
       throw InputError(fmt::format("robot '{}' has no wheels: it cannot drive", robot_.name));
     const py::gil_scoped_release others_run;
@@ -62,12 +65,9 @@ class PythonSimulation {
   }
 
   void reset(const std::optional<Place>& pose, const std::optional<std::uint64_t>& seed) {
-    if (seed) config_.seed = *seed;
-    const Place start = pose ? *pose : draw_place();
-    config_.start_m = {start[0], start[1]};
-    config_.start_heading_rad = start[2];
     const py::gil_scoped_release others_run;
-    simulation_ = std::make_unique<Simulation>(scene_, robot_, level_, config_);
+    const std::lock_guard lock(mutex_);
+    begin(pose, seed);
   }
 
   std::shared_ptr<Observed> step(double vx, double vy, double wz, double dt_s) {
@@ -75,30 +75,44 @@ class PythonSimulation {
       throw py::value_error("a velocity is not finite");
     if (!(dt_s > 0 && dt_s <= 60))
       throw py::value_error(fmt::format("dt={} s: not in (0, 60]", dt_s));
-    if (!simulation_) reset({}, {});
     const py::gil_scoped_release others_run;
+    const std::lock_guard lock(mutex_);
     auto made = std::make_shared<Observed>();
-    made->seen = simulation_->step({vx, vy, wz}, dt_s);
+    made->seen = running().step({vx, vy, wz}, dt_s);
     if (made->seen.frame) made->frame = std::make_shared<RgbdFrame>(std::move(*made->seen.frame));
     made->equipment = robot_.equipment;
     return made;
   }
 
-  void carry_to(const Place& place) { running().carry_to({place[0], place[1]}, place[2]); }
-  void switch_light(bool on) { running().switch_light(on); }
+  void carry_to(const Place& place) {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard lock(mutex_);
+    const Place at = checked(place);
+    running().carry_to({at[0], at[1]}, at[2]);
+  }
+  void switch_light(bool on) {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard lock(mutex_);
+    running().switch_light(on);
+  }
 
   py::dict truth() {
-    const CommandedBase& base = running().truth();
+    SE3 world_from_base;
+    std::optional<TimedPose> frame;
     py::dict d;
-    const SE3 world_from_base = base.world_from_base();
+    {
+      const std::unique_lock lock = locked();
+      const CommandedBase& base = running().truth();
+      world_from_base = base.world_from_base();
+      frame = simulation_->truth_of_frame();
+      d["touching"] = base.contact().touching;
+      d["bumps"] = base.bumps().size();
+      d["length_m"] = base.length_m();
+      d["time_s"] = base.time_s();
+    }
     d["world_from_base"] = to_python(world_from_base);
     d["world_from_camera"] = to_python(world_from_base * robot_.base_from_camera);
-    const auto& frame = simulation_->truth_of_frame();
     d["frame_pose"] = frame ? py::object(to_python(frame->world_from_camera)) : py::none();
-    d["touching"] = base.contact().touching;
-    d["bumps"] = base.bumps().size();
-    d["length_m"] = base.length_m();
-    d["time_s"] = base.time_s();
     return d;
   }
 
@@ -158,12 +172,34 @@ class PythonSimulation {
   }
 
  private:
+  // Of what follows, the callers hold the lock.
   Simulation& running() {
-    if (!simulation_) reset({}, {});
+    if (!simulation_) begin({}, {});
     return *simulation_;
   }
+  void begin(const std::optional<Place>& pose, const std::optional<std::uint64_t>& seed) {
+    SimulationConfig config = config_;
+    if (seed) config.seed = *seed;
+    const Place start = pose ? checked(*pose) : draw_place(config.seed);
+    config.start_m = {start[0], start[1]};
+    config.start_heading_rad = start[2];
+    simulation_ = std::make_unique<Simulation>(scene_, robot_, level_, config);
+    config_ = config;
+  }
+  static Place checked(const Place& place) {
+    for (const double number : place)
+      if (!(std::abs(number) <= kFarthest_m))
+        throw InputError(
+            fmt::format("pose ({}, {}, {}): is no place", place[0], place[1], place[2]));
+    return place;
+  }
+  /// The lock, taken without keeping other threads of Python from running meanwhile.
+  std::unique_lock<std::mutex> locked() {
+    const py::gil_scoped_release others_run;
+    return std::unique_lock(mutex_);
+  }
   /// Anywhere on the floor that the robot can reach, turned anyhow, by the seed.
-  Place draw_place() const {
+  Place draw_place(std::uint64_t seed) const {
     constexpr double kClear_m = 0.05;
     const FloorGrid grid = make_floor_grid(*scene_.scene, {.top_m = robot_.height_m});
     const auto region = largest_region(grid, robot_.footprint_radius_m + kClear_m);
@@ -173,7 +209,7 @@ class PythonSimulation {
         if (region(x, y) != 0) places.push_back(grid.center_of({x, y}));
     if (places.empty())
       throw InputError(fmt::format("{}: there is no floor for the robot", scene_.scene->name));
-    const RandomStream draw = RandomStream(config_.seed).fork(0x706c616365);
+    const RandomStream draw = RandomStream(seed).fork(0x706c616365);
     const Eigen::Vector2d& at = places[draw.below(0, places.size())];
     return {at.x(), at.y(), draw.uniform(1, -std::numbers::pi, std::numbers::pi)};
   }
@@ -183,6 +219,7 @@ class PythonSimulation {
   SimulationConfig config_;
   SimulatedScene scene_;
   std::unique_ptr<Simulation> simulation_;
+  std::mutex mutex_;  ///< of simulation_ and config_: threads of Python may share one object
 };
 
 template <class Sensors, class Value>

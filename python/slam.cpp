@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
+#include <mutex>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,8 @@ SlamConfig config_of(const py::object& settings, const SlamConfig& base) {
     return load_settings(find_shipped(settings.cast<std::string>(), Shipped::kSettings), base).slam;
   std::map<std::string, std::string> sections;
   for (const auto& [key, value] : settings.cast<py::dict>()) {
+    if (!py::isinstance<py::str>(key))
+      throw InputError(fmt::format("settings: {} is no name", py::repr(key).cast<std::string>()));
     const auto full = key.cast<std::string>();
     if (!is_setting(full)) throw InputError(fmt::format("settings: '{}' is no setting", full));
     const auto dot = full.find('.');
@@ -46,8 +49,11 @@ struct PythonSlam {
   SlamState state;
   std::uint64_t seed = 0;
   std::uint64_t frames = 0;
+  /// Threads of Python may share one object.
+  std::unique_ptr<std::mutex> mutex = std::make_unique<std::mutex>();
 
   StepReport step(const RgbdFrame& frame) {
+    const std::lock_guard lock(*mutex);
     RunSpec spec;
     spec.seed = seed;
     const std::uint64_t no_restart = 0;
@@ -55,12 +61,21 @@ struct PythonSlam {
                     mapping_stream(spec).fork(RunDraw::kSlam).fork(no_restart).fork(frames++));
   }
   StepReport relocalize(const RgbdFrame& frame) const {
+    const std::lock_guard lock(*mutex);
     Tracker lost;
     return localize(state, lost, frame, RandomStream(seed).fork(~std::uint64_t{0}));
   }
 };
 
-py::object landmarks(const Map& map, bool classes) {
+/// The lock, taken without keeping other threads of Python from running meanwhile.
+std::unique_lock<std::mutex> locked(const PythonSlam& slam) {
+  const py::gil_scoped_release others_run;
+  return std::unique_lock(*slam.mutex);
+}
+
+py::object landmarks(const PythonSlam& slam, bool classes) {
+  const auto lock = locked(slam);
+  const Map& map = slam.state.map;
   std::vector<std::vector<double>> rows;
   std::vector<std::uint8_t> labels;
   for (const Landmark& landmark : map.landmarks()) {
@@ -73,9 +88,10 @@ py::object landmarks(const Map& map, bool classes) {
   return Array<std::uint8_t>(static_cast<py::ssize_t>(labels.size()), labels.data());
 }
 
-Trajectory keyframes(const Map& map) {
+Trajectory keyframes(const PythonSlam& slam) {
+  const auto lock = locked(slam);
   Trajectory poses;
-  for (const Keyframe& keyframe : map.keyframes())
+  for (const Keyframe& keyframe : slam.state.map.keyframes())
     if (!keyframe.erased)
       poses.push_back({keyframe.stamp_ns, keyframe.camera_from_world.inverse()});
   return poses;
@@ -150,23 +166,33 @@ void bind_slam(py::module_& m) {
           py::call_guard<py::gil_scoped_release>(),
           "Finds a Frame in the map as a lost system does; the map stays as it is. Returns a Step.")
       .def(
-          "rewind", [](PythonSlam& s) { rewind(s.state); },
+          "rewind",
+          [](PythonSlam& s) {
+            const auto lock = locked(s);
+            rewind(s.state);
+          },
           "The input jumps back in time: tracking is lost, the map is kept.")
       .def(
           "save",
-          [](const PythonSlam& s, const std::filesystem::path& f) { save_slam(f, s.state); },
+          [](const PythonSlam& s, const std::filesystem::path& f) {
+            const auto lock = locked(s);
+            save_slam(f, s.state);
+          },
           py::arg("file"), "Writes a map file.")
       .def(
-          "trajectory", [](const PythonSlam& s) { return trajectory(s.state); },
+          "trajectory",
+          [](const PythonSlam& s) {
+            const auto lock = locked(s);
+            return trajectory(s.state);
+          },
           "Each tracked frame once, with its pose in the map as it is now.")
       .def_property_readonly(
-          "landmarks", [](const PythonSlam& s) { return landmarks(s.state.map, false); },
-          "(N, 3) m, world")
+          "landmarks", [](const PythonSlam& s) { return landmarks(s, false); }, "(N, 3) m, world")
       .def_property_readonly(
-          "landmark_labels", [](const PythonSlam& s) { return landmarks(s.state.map, true); },
+          "landmark_labels", [](const PythonSlam& s) { return landmarks(s, true); },
           "(N,) class ids of them, 0 unknown")
       .def_property_readonly(
-          "keyframes", [](const PythonSlam& s) { return keyframes(s.state.map); },
+          "keyframes", [](const PythonSlam& s) { return keyframes(s); },
           "Poses of the keyframes, a Trajectory");
 }
 

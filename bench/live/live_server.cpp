@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/live/live_server.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <deque>
 #include <mutex>
@@ -13,6 +15,7 @@
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
@@ -32,9 +35,9 @@ namespace websocket = beast::websocket;
 using Tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
-constexpr std::size_t kMostConnections = 32, kMostQueued = 16, kMostMessageBytes = 4096,
-                      kMostHeaderBytes = 8192;
-constexpr auto kRequestTime = std::chrono::seconds(10);
+constexpr std::size_t kMostConnections = 256, kMostViewers = 32, kMostQueued = 16,
+                      kMostMessageBytes = 4096, kMostHeaderBytes = 8192;
+constexpr auto kRequestTime = std::chrono::seconds(5);
 
 struct PageFile {
   const char *target, *file, *type;
@@ -55,6 +58,15 @@ struct Outgoing {
   std::shared_ptr<const std::string> content;
   bool is_image = false;
 };
+
+/// The value of a key in a target's query; "" if it has none.
+std::string query_value(const std::string& target, const std::string& key) {
+  for (auto at = target.find('?'); at != std::string::npos; at = target.find('&', at + 1)) {
+    const std::string part = target.substr(at + 1, target.find('&', at + 1) - at - 1);
+    if (part.starts_with(key + "=")) return part.substr(key.size() + 1);
+  }
+  return "";
+}
 
 std::string text_of(beast::string_view view) {
   return {view.data(), view.size()};
@@ -113,9 +125,12 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
     const auto& request = parser_.get();
     if (const std::string why = server_.refusal(request); !why.empty())
       return reply(http::status::forbidden, "text/plain", why + "\n");
-    if (websocket::is_upgrade(request)) return upgrade();
     std::string target = text_of(request.target());
     target = target.substr(0, target.find('?'));
+    if (websocket::is_upgrade(request) && target == "/ws") {
+      if (server_.joined.size() < kMostViewers) return upgrade();
+      return reply(http::status::service_unavailable, "text/plain", "there are too many viewers\n");
+    }
     if (request.method() == http::verb::get)
       for (const PageFile& file : kPage)
         if (target == file.target)
@@ -218,11 +233,9 @@ std::string LiveServer::Impl::refusal(const http::request<http::string_body>& re
     if (!is_ours) return "this is for the machine's own programs";
   } else {
     const std::string target = text_of(request.target());
-    const auto at = target.find("token=");
-    const std::string given =
-        at == std::string::npos ? "" : target.substr(at + 6, target.find('&', at) - at - 6);
     const bool is_part = target == "/live.js" || target == "/live.css";  // tell nothing
-    if (!is_part && !is_same(given, address.token)) return "the token is missing or wrong";
+    if (!is_part && !is_same(query_value(target, "token"), address.token))
+      return "the token is missing or wrong";
   }
   if (const std::string origin = text_of(request[http::field::origin]);
       !origin.empty() && origin != "http://" + host)
@@ -244,6 +257,10 @@ LiveServer::LiveServer(const LiveAddress& address, const std::filesystem::path& 
   if (address.token.empty() && !host.is_loopback())
     throw InputError(
         fmt::format("host {}: whoever is not on this machine needs a token", address.host));
+  if (!std::ranges::all_of(address.token, [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '-' || c == '_';
+      }))
+    throw InputError("token: only letters, digits, '-' and '_'");
   const Tcp::endpoint endpoint(host, static_cast<unsigned short>(address.port));
   impl_->acceptor.open(endpoint.protocol(), error);
   if (!error) impl_->acceptor.set_option(asio::socket_base::reuse_address(true), error);
@@ -263,8 +280,11 @@ LiveServer::~LiveServer() {
 
 std::string LiveServer::url() const {
   const std::string& token = impl_->address.token;
-  return fmt::format("http://{}:{}/{}", impl_->address.host, port(),
-                     token.empty() ? "" : "?token=" + token);
+  const auto host = asio::ip::make_address(impl_->address.host);
+  const std::string name = host.is_unspecified() ? asio::ip::host_name()
+                           : host.is_v6()        ? "[" + impl_->address.host + "]"
+                                                 : impl_->address.host;
+  return fmt::format("http://{}:{}/{}", name, port(), token.empty() ? "" : "?token=" + token);
 }
 int LiveServer::port() const {
   return impl_->acceptor.local_endpoint().port();

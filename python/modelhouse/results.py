@@ -13,14 +13,19 @@ class Results:
     """What `modelhouse bench` wrote into a folder. Tables are pandas.DataFrame if pandas is there, else
     a dict of lists by column.
 
-    Raises FileNotFoundError if the folder holds no results.sqlite."""
+    Raises FileNotFoundError if the folder holds no results.sqlite, ValueError if that is something else."""
 
     def __init__(self, folder: Union[str, "os.PathLike[str]"]) -> None:
         self.folder = pathlib.Path(folder)
         file = self.folder if self.folder.suffix == ".sqlite" else self.folder / "results.sqlite"
         if not file.is_file():
             raise FileNotFoundError(f"{file}: there are no results")
-        self._database = sqlite3.connect(f"file:{file.absolute()}?mode=ro", uri=True)
+        self._database = sqlite3.connect(file.absolute().as_uri() + "?mode=ro", uri=True)
+        try:
+            self._database.execute("SELECT key, name FROM runs LIMIT 1")
+            self._database.execute("SELECT key, point, name, value FROM metrics LIMIT 1")
+        except sqlite3.DatabaseError as error:
+            raise ValueError(f"{file}: is no results file of this version ({error})") from None
 
     def sql(self, query: str, parameters: Sequence[Any] = ()) -> Any:
         """The rows of any query over the tables of docs/store.md."""

@@ -13,6 +13,7 @@ A suite names the program: {name: mine, protocol: conversation, command: /usr/bi
 from __future__ import annotations
 
 import json
+import operator
 import os
 import pathlib
 import sys
@@ -41,12 +42,17 @@ def matrix(numbers: Sequence[float]) -> Floats:
 def numbers(pose: Pose) -> List[float]:
     """x y z (m) and the unit quaternion x y z w of a 4 x 4 transform; seven numbers are kept.
 
-    Raises ValueError if it is neither, or holds a number that is not finite."""
+    Raises ValueError if it is neither, holds a number that is not finite, or is no rigid motion."""
     given = np.asarray(pose, dtype=np.float64)
     if given.shape not in ((4, 4), (7,)) or not np.isfinite(given).all():
-        raise ValueError(f"no pose: expected 4 x 4 or 7 finite numbers, got {given.shape}")
+        raise ValueError(f"no pose: expected 4 x 4 or 7 finite numbers, got shape {given.shape}")
     if given.shape == (7,):
+        if abs(np.linalg.norm(given[3:]) - 1) > 1e-3:
+            raise ValueError("no pose: its quaternion is not of unit length")
         return [float(number) for number in given]
+    if (np.abs(given[:3, :3].T @ given[:3, :3] - np.eye(3)).max() > 1e-3
+            or np.linalg.det(given[:3, :3]) < 0 or (given[3] != (0, 0, 0, 1)).any()):
+        raise ValueError("no pose: its rotation is none, or its last row is not 0 0 0 1")
     r = given[:3, :3]
     # Its largest eigenvalue's vector is the quaternion (Bar-Itzhack, 2000); the lower half counts.
     four = np.zeros((4, 4))
@@ -206,16 +212,14 @@ def serve(system: System) -> None:
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     for line in sys.stdin:
         request = json.loads(line)
-        reply: Dict[str, Any] = {"id": request["id"]}
         try:
-            reply.update(_answer(system, request))
-        except Exception as error:  # whatever it is, the bench is to be told
+            text = json.dumps({"id": request["id"], **_answer(system, request)}, allow_nan=False)
+        except BaseException as error:  # whatever it is, the bench is to be told
             traceback.print_exc()
             what = traceback.format_exception_only(type(error), error)[-1].strip()
-            reply["error"] = what.replace("\n", " ")
-            print(json.dumps(reply), file=replies)
+            print(json.dumps({"id": request["id"], "error": what.replace("\n", " ")}), file=replies)
             sys.exit(1)
-        print(json.dumps(reply), file=replies)
+        print(text, file=replies)
 
 
 def _answer(system: System, request: Dict[str, Any]) -> Dict[str, Any]:
@@ -248,12 +252,18 @@ def _answer(system: System, request: Dict[str, Any]) -> Dict[str, Any]:
 
 def _fields(reply: Reply) -> Dict[str, Any]:
     said: Dict[str, Any] = {"pose": None if reply.pose is None else numbers(reply.pose)}
-    for name in ("keypoints", "inliers", "stage"):
-        if getattr(reply, name) is not None:
-            said[name] = getattr(reply, name)
-    for name in ("keyframe", "map", "map_reset", "candidates"):
+    for name in ("keypoints", "inliers"):
+        if (number := getattr(reply, name)) is not None:
+            said[name] = operator.index(number)  # numpy's integers, too; no others
+    if reply.stage is not None:
+        said["stage"] = reply.stage
+    for name in ("keyframe", "map_reset"):
         if getattr(reply, name):
-            said[name] = getattr(reply, name)
+            said[name] = True
+    if reply.map:
+        said["map"] = operator.index(reply.map)
+    if reply.candidates:
+        said["candidates"] = {name: operator.index(count) for name, count in reply.candidates.items()}
     return said
 
 

@@ -115,8 +115,14 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
 }
 
 void Simulation::carry_to(const Eigen::Vector2d& place_m, double heading_rad) {
+  const BaseState before = base_.state();
   base_.carry_to(place_m, heading_rad);
-  check_start(base_.world(), *scene_.scene, place_m, "carried");
+  try {
+    check_start(base_.world(), *scene_.scene, place_m, "carried");
+  } catch (...) {
+    base_.carry_to(before.position_m, before.heading_rad);
+    throw;
+  }
   odometer_.lift_to(base_.world_from_base());
   recent_.clear();
   recent_.push_back(pose_now());

@@ -66,7 +66,7 @@ class Simulation {
   RobotObservation step(const Twist2d& command, double dt_s);
 
   /// Lifts the robot to another place; its wheels do not turn. @throws InputError if it cannot
-  /// stand there.
+  /// stand there; it then stands where it was.
   void carry_to(const Eigen::Vector2d& place_m, double heading_rad);
   /// While the light is off, frames are blank.
   void switch_light(bool on) { light_ = on; }

@@ -4,6 +4,7 @@ import math
 import pathlib
 import subprocess
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -118,8 +119,46 @@ class SimulationTest(unittest.TestCase):
             self.sim.step(float("nan"), 0, 0)
         with self.assertRaisesRegex(ValueError, "dt=0"):
             self.sim.step(0, 0, 0, 0)
-        with self.assertRaisesRegex(ValueError, "not a rigid pose"):
-            self.sim.render(2 * np.eye(4))
+        far, row = np.eye(4), np.eye(4)
+        far[0, 3], row[3, 0] = 1e300, 1
+        for pose, part in ((2 * np.eye(4), "not a rigid pose"), (far, "not within"), (row, "last row")):
+            with self.assertRaisesRegex(ValueError, part):
+                self.sim.render(pose)
+        with self.assertRaisesRegex(mh.InputError, "ticks_per_frame=0"):
+            mh.Simulation(ROOM, ticks_per_frame=0, cache=CACHE)
+
+    def test_what_is_refused_changes_nothing(self):
+        self.sim.reset(pose=(2.0, 2.0, 0.5))
+        before = self.sim.step(0, 0, 0), self.sim.truth()["world_from_base"]
+        for pose in ((0.0, 0.0, 0.0), (float("nan"), 2, 0), (2, 2, float("inf"))):
+            with self.assertRaises(mh.InputError):
+                self.sim.carry_to(pose)
+            with self.assertRaises(mh.InputError):
+                self.sim.reset(pose, seed=99)
+            np.testing.assert_array_equal(self.sim.truth()["world_from_base"], before[1])
+        self.sim.step(0, 0, 0)
+        self.sim.reset()
+        drawn = self.sim.truth()["world_from_base"]
+        again = mh.Simulation(ROOM, level="ideal", seed=7, cache=CACHE)
+        np.testing.assert_array_equal(again.truth()["world_from_base"], drawn)
+
+    def test_threads_may_share_a_simulation(self):
+        self.sim.reset(pose=(2.0, 2.0, 0.0))
+        stamps = []
+
+        def drive():
+            for k in range(10):
+                stamps.append(self.sim.step(0.05, 0, 0.1).stamp_ns)
+                if k == 5:
+                    self.sim.reset(pose=(2.0, 2.0, 0.0))
+                self.sim.truth()
+
+        threads = [threading.Thread(target=drive) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(stamps), 30)
 
 
 class SearchTest(unittest.TestCase):

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings, SLAM, evaluation, equations, results."""
+import json
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -70,6 +72,12 @@ class RecordingTest(unittest.TestCase):
         self.assertAlmostEqual(mh.evaluate(self.recording.truth, shifted)["ate_m"]["rmse"], 0)
         with self.assertRaisesRegex(ValueError, "align='umeyama'"):
             mh.evaluate(self.recording.truth, shifted, "umeyama")
+        later = mh.Trajectory(self.recording.truth.stamps_ns + 10 ** 12, moved)
+        with self.assertRaisesRegex(ValueError, "no pose of the estimate"):
+            mh.evaluate(self.recording.truth, later)
+        still = mh.Trajectory(self.recording.truth.stamps_ns, np.tile(np.eye(4), (60, 1, 1)))
+        with self.assertRaisesRegex(ValueError, "undetermined"):
+            mh.evaluate(self.recording.truth, still)
 
     def test_the_map_is_arrays_and_answers(self):
         landmarks = self.slam.landmarks
@@ -96,8 +104,15 @@ class RecordingTest(unittest.TestCase):
                                       self.slam.relocalize(frame).pose)
         with self.assertRaisesRegex(ValueError, "depth is 160 x 240"):
             mh.Frame(frame.color, frame.depth[:, :160])
-        with self.assertRaisesRegex(ValueError, "color: expected"):
-            mh.Frame(frame.depth, frame.depth)
+        for color, depth, labels, part in (
+                (frame.depth, frame.depth, None, "color: expected uint8, got float32"),
+                (frame.color.astype(np.uint16), frame.depth, None, "color: expected uint8"),
+                (frame.color, (5000 * frame.depth).astype(np.uint16), None, "depth: expected meters"),
+                (frame.color, -frame.depth, None, "negative"),
+                (frame.color, frame.depth, frame.labels + 0.5, "labels: expected integers"),
+                (frame.color, frame.depth, np.full(frame.labels.shape, 300), "300 is no class")):
+            with self.assertRaisesRegex(ValueError, part):
+                mh.Frame(color, depth, labels=labels)
 
     def test_settings_are_checked(self):
         few = mh.Slam(self.recording, {"features.count": 300, "semantics.gamma": 0})
@@ -125,8 +140,11 @@ class SemanticsTest(unittest.TestCase):
         self.assertEqual(weighed.words, {0: 0.75, 1: 0.25})
         with self.assertRaisesRegex(ValueError, "gamma"):
             mh.semantics.augmented_vector([1], [1], gamma=-1)
-        with self.assertRaisesRegex(ValueError, "no word 2"):
-            mh.semantics.augmented_vector([], [2], gamma=1, eta=[3, 1])
+        for arguments, part in ((([], [2], 1, [3, 1]), "no word 2"), (([-1], [1], 1), "-1 is no id"),
+                                (([1.5], [1], 1), "expected integers"), (([1], [1], np.inf), "gamma"),
+                                (([1], [1], 1, [1, np.nan]), "eta")):
+            with self.assertRaisesRegex(ValueError, part):
+                mh.semantics.augmented_vector(*arguments)
 
     def test_equation_2(self):
         np.testing.assert_array_equal(
@@ -201,6 +219,48 @@ serve(Mine())
                               for system in ("mine", "opencv")])
         with self.assertRaises(FileNotFoundError):
             mh.Results("/nowhere")
+        with tempfile.TemporaryDirectory(suffix="?a#b%41") as folder:
+            file = pathlib.Path(folder) / "results.sqlite"
+            file.write_text("this is text")
+            with self.assertRaisesRegex(ValueError, "no results file"):
+                mh.Results(folder)
+            self.assertEqual(file.read_text(), "this is text")
+
+
+class SystemTest(unittest.TestCase):
+    def test_poses_are_rigid(self):
+        numbers = mh.system.numbers
+        np.testing.assert_allclose(numbers(np.eye(4)), [0, 0, 0, 0, 0, 0, 1])
+        mirrored, row = np.diag([1, 1, -1, 1]), np.eye(4)
+        row[3, 3] = 2
+        for pose in (np.zeros((4, 4)), 5 * np.eye(4), mirrored, row, np.zeros(7), np.eye(3),
+                     np.full((4, 4), np.nan)):
+            with self.assertRaisesRegex(ValueError, "no pose"):
+                numbers(pose)
+
+    def test_what_it_says_is_passed_on_or_refused(self):
+        def said(reply):
+            with tempfile.TemporaryDirectory() as folder:
+                script = pathlib.Path(folder) / "mine.py"
+                script.write_text("import numpy as np\nfrom modelhouse import Reply, System, serve\n\n\n"
+                                  "class Mine(System):\n    def track(self, frame):\n"
+                                  f"        print('aside')\n        {reply}\n\n\nserve(Mine())\n")
+                camera = dict(width=4, height=2, fx=1, fy=1, cx=1, cy=1, k1=0, k2=0, p1=0, p2=0, k3=0,
+                              fps=30, bf=1)
+                asked = [dict(id=1, do="hello", camera=camera, depth_per_meter=5000.0, settings="",
+                              classes=[]), dict(id=2, do="track", stamp="0.5", seed=1)]
+                done = subprocess.run([sys.executable, script], capture_output=True, text=True,
+                                      input="\n".join(map(json.dumps, asked)))
+                return json.loads(done.stdout.splitlines()[1])
+
+        self.assertEqual(said("return Reply(np.eye(4), keypoints=np.int64(3), keyframe=np.bool_(True))"),
+                         {"id": 2, "pose": [0, 0, 0, 0, 0, 0, 1], "keypoints": 3, "keyframe": True})
+        self.assertEqual(said("return None"), {"id": 2, "pose": None})
+        for reply, part in (("return Reply(None, keypoints=2.5)", "TypeError"),
+                            ("return np.zeros((4, 4))", "ValueError: no pose"),
+                            ("raise SystemExit('enough')", "SystemExit: enough"),
+                            ("raise ValueError('two\\nlines')", "ValueError: two lines")):
+            self.assertIn(part, said(reply)["error"])
 
 
 if __name__ == "__main__":

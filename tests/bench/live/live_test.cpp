@@ -213,12 +213,16 @@ TEST_F(LiveServing, WhoeverIsNotMeantIsRefused) {
   const auto asking = serve({.token = "secret"});
   EXPECT_EQ(get(asking->port(), "/").first, 403);
   EXPECT_EQ(get(asking->port(), "/?token=secre").first, 403);
+  EXPECT_EQ(get(asking->port(), "/?xtoken=secret").first, 403);
+  EXPECT_EQ(get(asking->port(), "/?a=b&token=secret").first, 200);
   EXPECT_EQ(get(asking->port(), "/?token=secret").first, 200);
   EXPECT_THAT(asking->url(), HasSubstr("?token=secret"));
   EXPECT_THROW(Viewer(asking->port(), "/ws"), boost::system::system_error);
   EXPECT_EQ(Viewer(asking->port(), "/ws?token=secret").read(), "hello");
   EXPECT_THROW(serve({.host = "0.0.0.0"}), InputError) << "without a token";
+  EXPECT_THROW(Viewer(port, "/other"), boost::system::system_error);
   EXPECT_THROW(serve({.host = "nowhere"}), InputError);
+  EXPECT_THROW(serve({.token = "a&b"}), InputError);
   EXPECT_THROW(serve({.port = port}), InputError) << "it is taken";
 }
 
