@@ -67,6 +67,13 @@ Grid2d<T> grid_of(const Array<T>& image, const char* what) {
 }
 Grid2d<Rgb8> color_of(const Array<std::uint8_t>& image);
 
+/// What numpy makes of a list or an array. @throws py::value_error if that is nothing
+inline py::array array_of_numbers(const py::object& object, const char* what) {
+  py::array array = py::array::ensure(object);
+  if (!array) throw py::value_error(std::string(what) + ": is no array");
+  return array;
+}
+
 /// Of what a pose may be; also of places in a scene.
 inline constexpr double kFarthest_m = 1e6;
 

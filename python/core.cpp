@@ -133,9 +133,11 @@ void require_kind(const py::array& image, const std::string& kinds, const char* 
                                       py::str(image.dtype()).cast<std::string>()));
 }
 
-RgbdFrame make_frame(const py::array& color, const py::array& depth, Stamp stamp_ns,
-                     const std::optional<py::array>& labels,
+RgbdFrame make_frame(const py::object& colors, const py::object& depths, Stamp stamp_ns,
+                     const py::object& classes_of_pixels,
                      const std::optional<Array<double>>& odometry) {
+  const py::array color = array_of_numbers(colors, "color"),
+                  depth = array_of_numbers(depths, "depth");
   require_kind(color, "u", "color", "uint8");
   if (color.itemsize() != 1) throw py::value_error("color: expected uint8");
   require_kind(depth, "f", "depth", "meters as floating-point numbers");
@@ -152,9 +154,10 @@ RgbdFrame make_frame(const py::array& color, const py::array& depth, Stamp stamp
                                         frame.color.width(), frame.color.height()));
   };
   same_size(frame.depth_m.width(), frame.depth_m.height(), "depth");
-  if (labels) {
-    require_kind(*labels, "ui", "labels", "integers");
-    const Grid2d<std::int64_t> given = grid_of(Array<std::int64_t>(*labels), "labels");
+  if (!classes_of_pixels.is_none()) {
+    const py::array labels = array_of_numbers(classes_of_pixels, "labels");
+    require_kind(labels, "ui", "labels", "integers");
+    const Grid2d<std::int64_t> given = grid_of(Array<std::int64_t>(labels), "labels");
     same_size(given.width(), given.height(), "labels");
     Grid2d<std::uint16_t> ids(given.width(), given.height());
     for (int y = 0; y < given.height(); ++y)

@@ -16,7 +16,8 @@ namespace {
 /// Ids of labels or words. @throws py::value_error unless they are integers of 32 bits
 class Ids {
  public:
-  Ids(const py::array& given, const char* what) {
+  Ids(const py::object& object, const char* what) {
+    const py::array given = array_of_numbers(object, what);
     if (given.ndim() != 1) throw py::value_error(fmt::format("{}: expected (N,)", what));
     if (given.size() == 0) return;
     if (given.dtype().kind() != 'u' && given.dtype().kind() != 'i')
@@ -48,7 +49,7 @@ VoidPolicy policy(bool void_is_a_label) {
   return void_is_a_label ? VoidPolicy::kIsALabel : VoidPolicy::kUnknown;
 }
 
-AugmentedVector make_vector(const py::array& labels, const py::array& words, double gamma,
+AugmentedVector make_vector(const py::object& labels, const py::object& words, double gamma,
                             const std::optional<Array<double>>& eta, bool void_is_a_label) {
   if (!(gamma >= 0 && gamma <= 1e6))
     throw py::value_error(fmt::format("gamma={}: not in 0 to 1e6", gamma));
@@ -69,8 +70,8 @@ py::dict members(const std::vector<WeightedMember>& all) {
   return d;
 }
 
-py::array_t<float> distances(const Array<float>& distance, const py::array& labels_p,
-                             const py::array& labels_q, float xi, bool void_is_a_label) {
+py::array_t<float> distances(const Array<float>& distance, const py::object& labels_p,
+                             const py::object& labels_q, float xi, bool void_is_a_label) {
   const Ids p(labels_p, "labels_p"), q(labels_q, "labels_q");
   const auto count = static_cast<std::size_t>(distance.size());
   if (!(xi >= 1)) throw py::value_error(fmt::format("xi={}: must be at least 1", xi));
