@@ -40,7 +40,6 @@ await page.keyboard.up("q");
 await page.keyboard.down("w");
 await page.waitForTimeout(700);
 await page.keyboard.up("w");
-expect(await status() === "tracked", `after driving: ${await status()}`);
 for (const scheme of ["light", "dark"]) {
   await shoot(`wide_${scheme}`, 1440, 900, scheme);
   await shoot(`phone_${scheme}`, 390, 844, scheme);
