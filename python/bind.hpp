@@ -82,11 +82,7 @@ Array<double> to_python(const SE3& pose);
 py::object to_python(const std::optional<SE3>& pose);
 /// @throws py::value_error unless it is 4 x 4, finite and rigid
 SE3 to_pose(const Array<double>& matrix);
-/// @throws py::value_error unless it is (N, columns)
-void require_shape(const py::array& array, py::ssize_t columns, const char* what);
-
-template <class Number>
-Array<double> rows_of(const std::vector<std::vector<Number>>& rows, py::ssize_t columns) {
+inline Array<double> rows_of(const std::vector<std::vector<double>>& rows, py::ssize_t columns) {
   Array<double> all(std::vector<py::ssize_t>{static_cast<py::ssize_t>(rows.size()), columns});
   for (std::size_t i = 0; i < rows.size(); ++i)
     std::copy(rows[i].begin(), rows[i].end(), all.mutable_data(static_cast<py::ssize_t>(i), 0));

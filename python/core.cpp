@@ -62,11 +62,6 @@ SE3 to_pose(const Array<double>& matrix) {
   return {rotation, translation_m};
 }
 
-void require_shape(const py::array& array, py::ssize_t columns, const char* what) {
-  if (array.ndim() != 2 || array.shape(1) != columns)
-    throw py::value_error(fmt::format("{}: expected (N, {})", what, columns));
-}
-
 namespace {
 
 py::object stamps_of_poses(const Trajectory& poses) {
@@ -100,15 +95,13 @@ Trajectory make_trajectory(const Array<std::int64_t>& stamps_ns, const Array<dou
 Recording open_recording(const std::string& source, const std::string& settings, bool labels,
                          const std::string& topics) {
   Settings read;
-  RecordingConfig config{.calibration = settings.empty()
-                                            ? std::filesystem::path()
-                                            : find_shipped(settings, Shipped::kSettings),
-                         .classes = {},
-                         .labels = labels,
-                         .topics = topics};
-  config.read_camera = camera_reader(&read);
-  config.has_camera = settings_have_camera;
-  config.depth_per_meter = stated_depth_per_meter;
+  const RecordingConfig config =
+      with_settings({.calibration = settings.empty() ? std::filesystem::path()
+                                                     : find_shipped(settings, Shipped::kSettings),
+                     .classes = {},
+                     .labels = labels,
+                     .topics = topics},
+                    &read);
   OpenedRecording opened = open_sequence(source, config);
   require_undistortable(opened.sequence->camera());
   std::vector<std::string> notes = std::move(read.notes);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <mutex>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -11,10 +10,6 @@
 #include "bench/suite/labels.hpp"
 #include "bench/suite/shipped.hpp"
 #include "python/bind.hpp"
-#include "robots/navigation/grid.hpp"
-#include "scenes/load.hpp"
-#include "sim/motion/floor_grid.hpp"
-#include "sim/world/lit_scene.hpp"
 #include "sim/world/simulation.hpp"
 #include "slam/io/error.hpp"
 
@@ -53,15 +48,10 @@ class PythonSimulation {
     if (!robot_.equipment || robot_.wheels() == nullptr)
       throw InputError(fmt::format("robot '{}' has no wheels: it cannot drive", robot_.name));
     const py::gil_scoped_release others_run;
-    Scene loaded = load_scene(find_scene(scene));
-    if (!loaded.floor.is_level_zero())
-      throw InputError(fmt::format("{}: its floor is not at z = 0", loaded.name));
     const std::filesystem::path kept = cache == "none" ? std::filesystem::path()
                                        : cache.empty() ? Cache::default_folder()
                                                        : std::filesystem::absolute(cache);
-    light_from_cache(loaded, 2, Cache(kept));
-    scene_.scene = std::make_shared<const Scene>(std::move(loaded));
-    scene_.renderer = make_scene_renderer(*scene_.scene);
+    scene_ = load_simulated_scene(find_scene(scene), Cache(kept));
   }
 
   void reset(const std::optional<Place>& pose, const std::optional<std::uint64_t>& seed) {
@@ -87,8 +77,8 @@ class PythonSimulation {
   void carry_to(const Place& place) {
     const py::gil_scoped_release others_run;
     const std::lock_guard lock(mutex_);
-    const Place at = checked(place);
-    running().carry_to({at[0], at[1]}, at[2]);
+    const StandingPlace at = placed(place);
+    running().carry_to(at.place_m, at.heading_rad);
   }
   void switch_light(bool on) {
     const py::gil_scoped_release others_run;
@@ -180,40 +170,26 @@ class PythonSimulation {
   void begin(const std::optional<Place>& pose, const std::optional<std::uint64_t>& seed) {
     SimulationConfig config = config_;
     if (seed) config.seed = *seed;
-    const Place start = pose ? checked(*pose) : draw_place(config.seed);
-    config.start_m = {start[0], start[1]};
-    config.start_heading_rad = start[2];
+    const StandingPlace start =
+        pose ? placed(*pose)
+             : draw_place(*scene_.scene, robot_, RandomStream(config.seed).fork(0x706c616365));
+    config.start_m = start.place_m;
+    config.start_heading_rad = start.heading_rad;
     simulation_ = std::make_unique<Simulation>(scene_, robot_, level_, config);
     config_ = config;
   }
-  static Place checked(const Place& place) {
+  static StandingPlace placed(const Place& place) {
     for (const double number : place)
       if (!(std::abs(number) <= kFarthest_m))
         throw InputError(
             fmt::format("pose ({}, {}, {}): is no place", place[0], place[1], place[2]));
-    return place;
+    return {{place[0], place[1]}, place[2]};
   }
   /// The lock, taken without keeping other threads of Python from running meanwhile.
   std::unique_lock<std::mutex> locked() {
     const py::gil_scoped_release others_run;
     return std::unique_lock(mutex_);
   }
-  /// Anywhere on the floor that the robot can reach, turned anyhow, by the seed.
-  Place draw_place(std::uint64_t seed) const {
-    constexpr double kClear_m = 0.05;
-    const FloorGrid grid = make_floor_grid(*scene_.scene, {.top_m = robot_.height_m});
-    const auto region = largest_region(grid, robot_.footprint_radius_m + kClear_m);
-    std::vector<Eigen::Vector2d> places;
-    for (int y = 0; y < region.height(); ++y)
-      for (int x = 0; x < region.width(); ++x)
-        if (region(x, y) != 0) places.push_back(grid.center_of({x, y}));
-    if (places.empty())
-      throw InputError(fmt::format("{}: there is no floor for the robot", scene_.scene->name));
-    const RandomStream draw = RandomStream(seed).fork(0x706c616365);
-    const Eigen::Vector2d& at = places[draw.below(0, places.size())];
-    return {at.x(), at.y(), draw.uniform(1, -std::numbers::pi, std::numbers::pi)};
-  }
-
   Robot robot_;
   SensorConfig level_;
   SimulationConfig config_;

@@ -44,21 +44,26 @@ std::shared_ptr<const Vocabulary> vocabulary_of(const std::string& name) {
       Vocabulary::load(find_shipped(name, Shipped::kVocabulary)));
 }
 
+/// What the command draws from while nothing is lost.
+RandomStream draws_of(std::uint64_t seed) {
+  RunSpec spec;
+  spec.seed = seed;
+  const std::uint64_t no_restart = 0;
+  return mapping_stream(spec).fork(RunDraw::kSlam).fork(no_restart);
+}
+
 /// A SLAM system that maps frame by frame, with the random draws of `modelhouse slam`.
 struct PythonSlam {
   SlamState state;
   std::uint64_t seed = 0;
+  RandomStream draws = draws_of(seed);
   std::uint64_t frames = 0;
   /// Threads of Python may share one object.
   std::unique_ptr<std::mutex> mutex = std::make_unique<std::mutex>();
 
   StepReport step(const RgbdFrame& frame) {
     const std::lock_guard lock(*mutex);
-    RunSpec spec;
-    spec.seed = seed;
-    const std::uint64_t no_restart = 0;
-    return mh::step(state, frame,
-                    mapping_stream(spec).fork(RunDraw::kSlam).fork(no_restart).fork(frames++));
+    return mh::step(state, frame, draws.fork(frames++));
   }
   StepReport relocalize(const RgbdFrame& frame) const {
     const std::lock_guard lock(*mutex);

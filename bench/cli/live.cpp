@@ -16,9 +16,6 @@
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/shipped.hpp"
-#include "scenes/load.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "slam/io/error.hpp"
 
 namespace mh::cli {
 namespace {
@@ -44,15 +41,10 @@ void run(LiveArguments options) {
   const Robot robot = load_robot(options.robot, &warnings);
   const SensorConfig level = load_sensor_config(options.level);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
-  Scene loaded = load_scene(options.scene, &warnings);
+  SimulatedScene scene = load_simulated_scene(
+      options.scene, usual_cache(),
+      [](std::string_view line) { fmt::print(stderr, "live: {}\n", line); }, &warnings);
   print_warnings(warnings);
-  if (!loaded.floor.is_level_zero())
-    throw InputError(fmt::format("{}: its floor is not at z = 0", loaded.name));
-  light_from_cache(loaded, 2, usual_cache(),
-                   [](std::string_view line) { fmt::print(stderr, "live: {}\n", line); });
-  SimulatedScene scene;
-  scene.scene = std::make_shared<const Scene>(std::move(loaded));
-  scene.renderer = make_scene_renderer(*scene.scene);
   LiveDrive drive(std::move(scene), robot, level, vocabulary, options.seed);
   if (options.address.host != "127.0.0.1" && options.address.token.empty())
     options.address.token = new_token();
@@ -72,8 +64,8 @@ void run(LiveArguments options) {
       std::chrono::duration<double>(LiveDrive::kStep_s));
   auto due = Clock::now();
   while (watch.signal() == 0) {
-    LiveDrive::Shown shown = drive.step();
-    if (server.viewers() > 0 && !shown.state.empty()) {
+    LiveDrive::Shown shown = drive.step(server.viewers() > 0);
+    if (!shown.state.empty()) {
       server.send_text(std::move(shown.state));
       char kind = 0;
       for (std::string* image : {&shown.color, &shown.depth, &shown.labels})

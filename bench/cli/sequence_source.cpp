@@ -120,13 +120,11 @@ Source open_source(const SourceOptions& options) {
     return {settings_beside(options, *frames, notes), std::move(frames)};
   }
   Settings settings;
-  RecordingConfig config{.calibration = options.settings,
-                         .classes = options.classes,
-                         .labels = options.labels,
-                         .topics = options.topics};
-  config.read_camera = camera_reader(&settings);
-  config.has_camera = settings_have_camera;
-  config.depth_per_meter = stated_depth_per_meter;
+  const RecordingConfig config = with_settings({.calibration = options.settings,
+                                                .classes = options.classes,
+                                                .labels = options.labels,
+                                                .topics = options.topics},
+                                               &settings);
   OpenedRecording opened = open_sequence(source, config);
   try {
     require_undistortable(opened.sequence->camera());

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -11,10 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
+#include "bench/protocol/episodes/starts.hpp"
 #include "bench/report/drawing/false_colors.hpp"
-#include "robots/navigation/grid.hpp"
 #include "scenes/image_file.hpp"
-#include "sim/motion/floor_grid.hpp"
 #include "slam/core/labels.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/json_text.hpp"
@@ -41,22 +39,6 @@ Json from_above(const SE3& world_from_camera) {
   const Eigen::Vector3d& at = world_from_camera.translation();
   const Eigen::Vector3d ahead = world_from_camera.rotation().col(2);
   return {rounded(at.x()), rounded(at.y()), rounded(std::atan2(ahead.y(), ahead.x()))};
-}
-
-/// Anywhere that the robot can stand, turned anyhow.
-std::pair<Eigen::Vector2d, double> draw_place(const Scene& scene, const Robot& robot,
-                                              RandomStream draw) {
-  constexpr double kClear_m = 0.05;
-  const FloorGrid grid = make_floor_grid(scene, {.top_m = robot.height_m});
-  const auto region = largest_region(grid, robot.footprint_radius_m + kClear_m);
-  std::vector<Eigen::Vector2d> places;
-  for (int y = 0; y < region.height(); ++y)
-    for (int x = 0; x < region.width(); ++x)
-      if (region(x, y) != 0) places.push_back(grid.center_of({x, y}));
-  if (places.empty())
-    throw InputError(fmt::format("{}: there is no floor for the robot", scene.name));
-  return {places[draw.below(0, places.size())],
-          draw.uniform(1, -std::numbers::pi, std::numbers::pi)};
 }
 
 SimulationConfig config_of(const SimulatedScene& scene, const Robot& robot, std::uint64_t seed) {
@@ -211,7 +193,7 @@ void LiveDrive::obey(const Asked& asked) {
   if (dark_steps_ > 0) --dark_steps_;
 }
 
-LiveDrive::Shown LiveDrive::step() {
+LiveDrive::Shown LiveDrive::step(bool is_watched) {
   Asked asked;
   {
     const std::lock_guard lock(mutex_);
@@ -237,6 +219,7 @@ LiveDrive::Shown LiveDrive::step() {
   if (!world_from_map_ && report.world_from_camera)
     world_from_map_ =
         simulation_.truth_of_frame()->world_from_camera * report.world_from_camera->inverse();
+  if (!is_watched) return {};
   return {.state = state(seen, report),
           .color = encode_jpeg(frame.color, kJpegQuality),
           .depth = encode_jpeg(colors_of(frame.depth_m), kJpegQuality),
@@ -255,8 +238,7 @@ std::string LiveDrive::state(const RobotObservation& seen, const StepReport& rep
     for (std::size_t i = 0; i < seen.reading.lasers_m[k].size(); ++i) {
       const double range_m = seen.reading.lasers_m[k][i];
       if (range_m == 0) continue;
-      const double a =
-          laser.field_of_view_rad * (static_cast<double>(i) / std::max(1, laser.rays - 1) - 0.5);
+      const double a = laser.angle_rad(i);
       const Eigen::Vector3d end_m =
           world_from_laser * Eigen::Vector3d(range_m * std::cos(a), range_m * std::sin(a), 0);
       lasers.push_back({rounded(end_m.x()), rounded(end_m.y())});

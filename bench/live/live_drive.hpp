@@ -30,16 +30,13 @@ class LiveDrive {
   /// @returns why it is not understood; empty: it is
   std::string take(const std::string& message);
 
-  /// What is to be shown after a step.
+  /// What is to be shown after a step; empty if nobody watches.
   struct Shown {
     std::string state;                 ///< JSON
     std::string color, depth, labels;  ///< JPEG
   };
   /// Drives and maps for kStep_s of simulated time.
-  Shown step();
-
-  const Simulation& simulation() const { return simulation_; }
-  const SlamState& slam() const { return slam_; }
+  Shown step(bool is_watched = true);
 
  private:
   struct Asked {

@@ -31,16 +31,21 @@ std::optional<double> stated_depth_per_meter(const std::filesystem::path& file) 
   return settings.depth_per_meter;
 }
 
+RecordingConfig with_settings(RecordingConfig config, Settings* read) {
+  config.read_camera = camera_reader(read);
+  config.has_camera = settings_have_camera;
+  config.depth_per_meter = stated_depth_per_meter;
+  return config;
+}
+
 OpenedRecording open_recorded(const Environment& environment, const std::string& sequence,
                               bool labels, Settings* read) {
-  return open_sequence(sequence, {.calibration = environment.settings.value_or(""),
-                                  .classes = environment.classes.value_or(""),
-                                  .labels = labels,
-                                  .topics = environment.topics,
-                                  .whole = true,
-                                  .read_camera = camera_reader(read),
-                                  .has_camera = settings_have_camera,
-                                  .depth_per_meter = stated_depth_per_meter});
+  return open_sequence(sequence, with_settings({.calibration = environment.settings.value_or(""),
+                                                .classes = environment.classes.value_or(""),
+                                                .labels = labels,
+                                                .topics = environment.topics,
+                                                .whole = true},
+                                               read));
 }
 
 RecordedCamera load_recorded_camera(const std::filesystem::path& file) {

@@ -26,6 +26,10 @@ bool settings_have_camera(const std::filesystem::path& file);
 /// is not a settings file.
 std::optional<double> stated_depth_per_meter(const std::filesystem::path& file);
 
+/// The same configuration, with calibrations read from settings files.
+/// @param read  receives all settings in the one that has the camera; may be null
+RecordingConfig with_settings(RecordingConfig config, Settings* read);
+
 /// Opens one of an environment's recordings, by its name, and digests all of it.
 /// @param labels  whether its frames have labels
 /// @param read    receives the settings in its calibration; may be null

@@ -168,9 +168,10 @@ class LaserSlam(System):
 
 def scan_of(frame):
     """The ends of all rays, and first_laser_from_camera."""
-    if not frame.lasers:
+    lasers = frame.lasers
+    if not lasers:
         raise ValueError("no lasers: the suite must say `senses: [laser]`")
-    return ends_of(frame.lasers), np.linalg.inv(frame.lasers[0].camera_from_laser)
+    return ends_of(lasers), np.linalg.inv(lasers[0].camera_from_laser)
 
 
 if __name__ == "__main__":

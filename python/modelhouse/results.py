@@ -6,6 +6,7 @@ import html
 import os
 import pathlib
 import sqlite3
+import statistics
 from typing import Any, Dict, List, Sequence, Tuple, Union
 
 
@@ -69,7 +70,7 @@ class Results:
                 f"JOIN runs USING (key) WHERE point = 0 AND value IS NOT NULL AND metrics.name IN ({marks}) "
                 "ORDER BY environment, system, labels, trial", list(names)):
             cells.setdefault((environment, system, labels), {}).setdefault(name, []).append(value)
-        return [(*key, {name: _median(values) for name, values in found.items()})
+        return [(*key, {name: statistics.median(values) for name, values in found.items()})
                 for key, found in cells.items()]
 
     def _repr_html_(self) -> str:
@@ -83,9 +84,3 @@ class Results:
                      *(f"{found[name]:.3f}" if name in found else "-" for name in names)]
             lines.append("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>")
         return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
-
-
-def _median(values: List[float]) -> float:
-    values = sorted(values)
-    middle = len(values) // 2
-    return values[middle] if len(values) % 2 else 0.5 * (values[middle - 1] + values[middle])

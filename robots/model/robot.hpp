@@ -64,6 +64,12 @@ struct LaserScanner {
   double field_of_view_rad = 1.0472;
   double min_range_m = 0.1, max_range_m = 3.0;
   double sigma_m = 0, sigma_share = 0;  ///< noise: the larger of a length and a share of the range
+
+  /// Direction of a ray about z, from x.
+  double angle_rad(std::size_t ray) const {
+    return field_of_view_rad *
+           (static_cast<double>(ray) / static_cast<double>(rays > 1 ? rays - 1 : 1) - 0.5);
+  }
 };
 
 /// A cone; measures the nearest object in it.

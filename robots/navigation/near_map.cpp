@@ -73,9 +73,7 @@ void NearMap::add_lasers(const Equipment& equipment, std::span<const std::vector
     const LaserScanner& laser = equipment.lasers[l];
     const Pose2 odom_from_laser = odom_from_base * from_above(laser.base_from_laser);
     for (std::size_t k = 0; k < lasers_m[l].size(); ++k) {
-      const double angle =
-          laser.field_of_view_rad * (static_cast<double>(k) / std::max(1, laser.rays - 1) - 0.5);
-      const Vector2d direction = ahead_of(odom_from_laser.heading_rad + angle);
+      const Vector2d direction = ahead_of(odom_from_laser.heading_rad + laser.angle_rad(k));
       const double range_m = static_cast<double>(lasers_m[l][k]);
       const double free_m = range_m > 0 ? range_m - config_.resolution_m : laser.max_range_m;
       see_through(odom_from_laser.place_m, direction, 0, free_m, kLaser);

@@ -24,7 +24,7 @@ std::vector<float> scan(const PlanarWorld& world, const LaserScanner& laser,
   const SE3 world_from_laser = world_from_base * laser.base_from_laser;
   std::vector<float> ranges_m;
   for (int k = 0; k < laser.rays; ++k) {
-    const double a = laser.field_of_view_rad * (static_cast<double>(k) / (laser.rays - 1) - 0.5);
+    const double a = laser.angle_rad(static_cast<std::size_t>(k));
     const Vector3d direction =
         world_from_laser.rotation() * Vector3d(std::cos(a), std::sin(a), 0.0);
     const auto hit = world.cast(world_from_laser.translation(), direction, laser.max_range_m);
@@ -61,6 +61,13 @@ float ping(const PlanarWorld& world, const Sonar& sonar, const SE3& world_from_b
 }
 
 }  // namespace
+
+const Equipment& equipment_with_lasers(const Robot& robot) {
+  if (!robot.equipment || robot.equipment->lasers.empty())
+    throw InputError(
+        fmt::format("robot '{}' has no lasers (its file: equipment.lasers)", robot.name));
+  return *robot.equipment;
+}
 
 RandomStream laser_noise(std::uint64_t seed, std::size_t tick) {
   constexpr std::uint64_t kLasers = ~0ULL;  // a frame takes the number of its tick

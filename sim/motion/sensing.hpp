@@ -28,6 +28,8 @@ struct RobotReadings {
   std::vector<RobotReading> moments;
 };
 
+/// @throws InputError if the robot has no lasers
+const Equipment& equipment_with_lasers(const Robot& robot);
 /// The noise of a robot's lasers.
 /// @param tick  of the camera, since the drive began
 RandomStream laser_noise(std::uint64_t seed, std::size_t tick);

@@ -4,29 +4,16 @@
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "sim/motion/sensing.hpp"
-#include "slam/io/error.hpp"
 
 namespace mh {
-namespace {
-
-const Equipment& with_lasers(const Robot& robot) {
-  if (!robot.equipment || robot.equipment->lasers.empty())
-    throw InputError(
-        fmt::format("robot '{}' has no lasers (its file: equipment.lasers)", robot.name));
-  return *robot.equipment;
-}
-
-}  // namespace
 
 LasersAlong::LasersAlong(std::shared_ptr<const Scene> scene, const Robot& robot,
                          const DrivenPath& path, std::uint64_t seed,
                          const std::vector<MovingObstacle>& others)
     : scene_(std::move(scene)),
       level_(*scene_),
-      equipment_(with_lasers(robot)),
+      equipment_(equipment_with_lasers(robot)),
       base_(path.base),
       camera_(path.camera),
       seed_(seed),

@@ -61,7 +61,7 @@ void Simulation::tick() {
 }
 
 SensedMoment Simulation::frame() const {
-  const std::size_t at = recent_.size() < 2 ? 0 : recent_.size() - 2;
+  const std::size_t at = tick_before();
   const Stamp stamp_ns = recent_[at].stamp_ns;
   if (!light_)
     return {.frame = {.stamp_ns = stamp_ns,
@@ -96,7 +96,7 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
   }
   if (due) {
     SensedMoment moment = frame();
-    const TimedPose& then = recent_[recent_.size() < 2 ? 0 : recent_.size() - 2];
+    const TimedPose& then = recent_[tick_before()];
     frame_pose_ = {then.stamp_ns, then.world_from_camera * robot_.base_from_camera};
     seen.frame = std::move(moment.frame);
     seen.instances = std::move(moment.exact.instances);
@@ -105,7 +105,7 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
                              laser_noise(config_.seed, static_cast<std::size_t>(ticks_)));
   seen.stamp_ns = seen.reading.stamp_ns = recent_.back().stamp_ns;
   seen.reading.bumpers = std::move(pressed);
-  const std::size_t n = recent_.size(), here = n < 2 ? 0 : n - 2;
+  const std::size_t n = recent_.size(), here = tick_before();
   if (robot_.equipment->base_from_imu)
     feel(seen.reading, recent_[here == 0 ? 0 : here - 1], recent_[here], recent_[n - 1],
          *robot_.equipment->base_from_imu);

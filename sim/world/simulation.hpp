@@ -80,6 +80,8 @@ class Simulation {
  private:
   void tick();
   TimedPose pose_now() const;
+  /// Index of the last tick's pose but one in recent_: of what arrives now.
+  std::size_t tick_before() const { return recent_.size() < 2 ? 0 : recent_.size() - 2; }
   SensedMoment frame() const;
 
   SimulatedScene scene_;

@@ -42,6 +42,19 @@ Grid2d<float> ways_to(const EpisodeStart& goal, const FloorGrid& grid, double ar
   return way_lengths(grid, ends, clearance_m);
 }
 
+/// Centers of the cells that a robot can be put down in, all within reach of each other.
+std::vector<Vector2d> cells_to_stand_in(const FloorGrid& grid, const Scene& scene,
+                                        const Robot& robot) {
+  const Grid2d<std::uint8_t> region = largest_region(grid, robot.footprint_radius_m + kClear_m);
+  std::vector<Vector2d> cells;
+  for (int y = 0; y < region.height(); ++y)
+    for (int x = 0; x < region.width(); ++x)
+      if (region(x, y) != 0) cells.push_back(grid.center_of({x, y}));
+  if (cells.empty())
+    throw InputError(fmt::format("{}: there is no floor for the robot", scene.name));
+  return cells;
+}
+
 Vector2d nearest_in(const TrueBox& box, const Vector2d& place_m) {
   return place_m.cwiseMax(box.first).cwiseMin(box.second);
 }
@@ -62,17 +75,17 @@ bool is_arrival(const EpisodeStart& start, const Vector2d& place_m, double arriv
   });
 }
 
+StandingPlace draw_place(const Scene& scene, const Robot& robot, RandomStream draw) {
+  const FloorGrid grid = make_floor_grid(scene, {.top_m = robot.height_m});
+  const std::vector<Vector2d> cells = cells_to_stand_in(grid, scene, robot);
+  return {cells[draw.below(0, cells.size())], draw.uniform(1, -std::numbers::pi, std::numbers::pi)};
+}
+
 std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& scene,
                                       const Robot& robot) {
   const FloorGrid grid = make_floor_grid(scene, {.top_m = robot.height_m});
   const auto walls = std::make_shared<const TrueWalls>(scene, robot.height_m);
-  const Grid2d<std::uint8_t> region = largest_region(grid, robot.footprint_radius_m + kClear_m);
-  std::vector<Vector2d> cells;
-  for (int y = 0; y < region.height(); ++y)
-    for (int x = 0; x < region.width(); ++x)
-      if (region(x, y) != 0) cells.push_back(grid.center_of({x, y}));
-  if (cells.empty())
-    throw InputError(fmt::format("{}: there is no floor for the robot", scene.name));
+  const std::vector<Vector2d> cells = cells_to_stand_in(grid, scene, robot);
 
   struct Goal {
     EpisodeStart start;  ///< without its place

@@ -11,6 +11,7 @@
 #include "robots/model/robot.hpp"
 #include "robots/navigation/grid.hpp"
 #include "scenes/scene.hpp"
+#include "slam/core/random.hpp"
 
 namespace mh {
 
@@ -34,6 +35,14 @@ double distance_to(const std::vector<TrueBox>& boxes, const Eigen::Vector2d& pla
 /// Whether a place is that near to a box, with no wall between: who stands behind a wall has not
 /// arrived.
 bool is_arrival(const EpisodeStart& start, const Eigen::Vector2d& place_m, double arrival_m);
+
+struct StandingPlace {
+  Eigen::Vector2d place_m;
+  double heading_rad;
+};
+/// Anywhere on the true floor that the robot can reach, turned anyhow.
+/// @throws InputError if no floor is there.
+StandingPlace draw_place(const Scene& scene, const Robot& robot, RandomStream draw);
 
 /// Draws starts: anywhere on the true floor that the robot can reach, turned anyhow; the goal is
 /// one of the spec's that the scene has and that can be reached. Start i depends on i alone, not on

@@ -2,12 +2,16 @@
 #include "bench/protocol/world/cached_light.hpp"
 
 #include <cstring>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/fingerprint.hpp"
+#include "scenes/load.hpp"
+#include "sim/world/lit_scene.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"
 
@@ -31,6 +35,19 @@ void light_from_cache(Scene& scene, int threads, const Cache& cache, const Say& 
                                    cache.folder().string()));
   scene.light.resize(scene.positions_m.size());
   std::memcpy(static_cast<void*>(scene.light.data()), light.data(), light.size());
+}
+
+SimulatedScene load_simulated_scene(const std::filesystem::path& file, const Cache& cache,
+                                    const Say& say, std::vector<std::string>* warnings) {
+  constexpr int kThreads = 2;
+  Scene loaded = load_scene(file, warnings);
+  if (!loaded.floor.is_level_zero())
+    throw InputError(fmt::format("{}: its floor is not at z = 0", loaded.name));
+  light_from_cache(loaded, kThreads, cache, say);
+  SimulatedScene scene;
+  scene.scene = std::make_shared<const Scene>(std::move(loaded));
+  scene.renderer = make_scene_renderer(*scene.scene);
+  return scene;
 }
 
 }  // namespace mh

@@ -3,14 +3,11 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "bench/protocol/episodes/robot_map.hpp"
 #include "bench/run/maps/map_study.hpp"
 #include "scenes/floor.hpp"
 #include "sim/motion/sensing.hpp"
 #include "sim/physics/planar_world.hpp"
-#include "slam/io/error.hpp"
 
 namespace mh {
 
@@ -23,9 +20,7 @@ struct SceneLasers::Impl {
 };
 
 SceneLasers::SceneLasers(const Scene& scene, Robot robot) {
-  if (!robot.equipment || robot.equipment->lasers.empty())
-    throw InputError(
-        fmt::format("robot '{}' has no lasers (its file: equipment.lasers)", robot.name));
+  equipment_with_lasers(robot);
   impl_ = std::make_unique<Impl>(scene, std::move(robot));
 }
 SceneLasers::~SceneLasers() = default;

@@ -18,8 +18,6 @@
 #include "bench/live/live_server.hpp"
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/suite/cache.hpp"
-#include "scenes/load.hpp"
-#include "sim/world/lit_scene.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "source_dir.hpp"
@@ -35,14 +33,8 @@ using Json = nlohmann::json;
 using testing::HasSubstr;
 
 std::unique_ptr<LiveDrive> made_drive() {
-  static const SimulatedScene scene = [] {
-    Scene loaded = load_scene(MH_SOURCE_DIR "/bench/scenarios/room.yaml");
-    light_from_cache(loaded, 2, Cache(MH_TEST_CACHE));
-    SimulatedScene made;
-    made.scene = std::make_shared<const Scene>(std::move(loaded));
-    made.renderer = make_scene_renderer(*made.scene);
-    return made;
-  }();
+  static const SimulatedScene scene =
+      load_simulated_scene(MH_SOURCE_DIR "/bench/scenarios/room.yaml", Cache(MH_TEST_CACHE));
   static const auto vocabulary = std::make_shared<const Vocabulary>(
       Vocabulary::load(MH_SOURCE_DIR "/assets/vocabulary.mhvoc"));
   return std::make_unique<LiveDrive>(
