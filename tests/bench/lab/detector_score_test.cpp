@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace mh {
 namespace {
 
-constexpr ClassId kChair = 5, kTable = 7, kDesk = 14;
+constexpr ClassId kChair = 5, kTable = 7, kDesk = 14, kBed = 4;
 
 /// An image of 200 x 100 px: a chair of 40 x 40 px, a table of 60 x 30 px, a desk of 40 x 50 px.
 RenderedFrame room() {
@@ -83,6 +85,17 @@ TEST(DetectorJudge, ComparesLabelsWithExactClasses) {
   EXPECT_NEAR(score.foreground.right_share, 1600.0 / (1600 + 1800), 1e-9);
   EXPECT_NEAR(score.box.found_share, 1600.0 / 3400, 1e-9);
   EXPECT_NEAR(score.foreground.found_share, 1600.0 / 3400, 1e-9);
+}
+
+// A class without objects has no precision, and the mean is over those that have one.
+TEST(DetectorJudge, TheMeanIsOverClassesWithObjects) {
+  DetectorJudge judge(0.5);
+  judge.add(room(), {box(10, 10, 40, 40, kChair, 0.9F), box(60, 10, 60, 30, kTable, 0.8F),
+                     box(130, 60, 20, 20, kBed, 0.7F)});
+  const DetectorScore score = judge.score();
+  EXPECT_DOUBLE_EQ(score.mean.ap, 1);
+  EXPECT_DOUBLE_EQ(score.mean.ap50, 1);
+  EXPECT_TRUE(std::isnan(score.mean.small)) << "nothing is small";
 }
 
 }  // namespace

@@ -180,6 +180,19 @@ TEST(Decode, ValuesThatAreNotFiniteMakeNoBox) {
   EXPECT_EQ(decode(Head::kYolox, {&tensor, 1}, kInput, 0.3).size(), 1U);
 }
 
+TEST(Decode, BoxesMayBeNarrowerThanAPixelButHaveASize) {
+  Made made({1, 126, 7});
+  const auto put = [&](std::ptrdiff_t i, float width, float height) {
+    const std::vector<float> values = {10, 12, width, height, 0.5F, 0.25F, 0.75F};
+    std::copy(values.begin(), values.end(), made.values.begin() + 7 * i);
+  };
+  put(0, 0.5F, 0.75F), put(1, 0, 4), put(2, 4, 0);
+  const Tensor tensor = made.tensor();
+  const auto found = decode(Head::kYolov5, {&tensor, 1}, kInput, 0.3);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_FLOAT_EQ(static_cast<float>(found[0].width), 0.5F);
+}
+
 Candidate candidate(double left, double right, int best, float score) {
   Candidate c{.x = (left + right) / 2,
               .y = 10,

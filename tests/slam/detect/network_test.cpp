@@ -11,6 +11,7 @@
 
 #include "slam/detect/detected_sequence.hpp"
 #include "slam/detect/detector.hpp"
+#include "slam/detect/onnx_input.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/read_record.hpp"
@@ -284,6 +285,17 @@ TEST_F(Networks, WithFewerWeightsThanTheirShapeStatesAreRefused) {
   less[shape + 1] = '\x40';  // 64 x 3 x 1 x 1, with the weights of 2 x 3
   EXPECT_SAYS(refusal(two_classes("less.onnx", less)),
               "hold 6 values where their shape states 192");
+}
+
+TEST(OnnxWeights, AreCountedByTheSizeOfTheirType) {
+  const auto fault = [](const std::string& weights) {
+    return onnx_weights_fault(test::model(weights, 17));
+  };
+  EXPECT_EQ(fault(test::halves("w", {2}, {0x3c00, 0x3c00})), "");
+  EXPECT_EQ(fault(test::floats("w", {2}, {1, 2})), "");
+  EXPECT_EQ(fault(test::integers("w", {1, 2})), "");
+  EXPECT_SAYS(fault(test::halves("w", {4}, {0x3c00, 0x3c00})),
+              "hold 2 values where their shape states 4");
 }
 
 TEST_F(Networks, WhoseValuesAreNoNumbersAreRefused) {

@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "slam/detect/onnx_call.hpp"
 #include "slam/detect/protobuf.hpp"
 #include "tests/slam/detect/made_networks.hpp"
 
@@ -203,6 +204,22 @@ TEST(RewriteOnnx, KnowsTheShapeOfWhatIsPooled) {
         const double factors[] = {2, 3, 5};
         return v + (8 * channel + 4.5) * factors[channel];
       }));
+}
+
+// What cannot be joined has no shape, whichever axis differs.
+TEST(OnnxShapes, JoinWhatDiffersAlongOneAxisAlone) {
+  const auto joined = [](const OnnxShape& b) {
+    const OnnxShape a = {1, 3, 4};
+    OnnxNode concat;
+    concat.op = "Concat";
+    concat.inputs = {"a", "b"}, concat.outputs = {"c"};
+    concat.set("axis", std::int64_t{1});
+    return output_shapes({concat, 17, {&a, &b}, {nullptr, nullptr}}).at(0);
+  };
+  EXPECT_EQ(joined({1, 2, 4}), (OnnxShape{1, 5, 4}));
+  EXPECT_FALSE(joined({2, 2, 4}));
+  EXPECT_FALSE(joined({1, 2, 5}));
+  EXPECT_FALSE(joined({1, 2}));
 }
 
 // Fields of 8 and of 4 bytes, as newer exporters may add them, are passed over whole.

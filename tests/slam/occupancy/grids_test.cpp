@@ -10,6 +10,7 @@
 #include "slam/occupancy/cost_map.hpp"
 #include "slam/occupancy/map_image.hpp"
 #include "slam/occupancy/obstacle_grid.hpp"
+#include "slam/occupancy/voxel_view.hpp"
 #include "tests/slam/occupancy/box_room.hpp"
 #include "tests/slam/occupancy/made_map.hpp"
 
@@ -137,6 +138,18 @@ TEST(ScanGrid, HitsAndMissesThatSumToZeroAreAnObstacle) {
   EXPECT_EQ(at_half_a_meter(7, 17), kFreeCell);
 }
 
+TEST(SmoothedDepth, TakesNeighborsWithinTheNoiseOrTwoCentimeters) {
+  Grid2d<float> depth_m(3, 1, 0.5F);
+  const auto middle = [&](float left, float right) {
+    depth_m(0, 0) = left, depth_m(2, 0) = right;
+    return smoothed_depth(depth_m, 0)(1, 0);
+  };
+  EXPECT_FLOAT_EQ(middle(0.509F, 0.509F), (0.5F + 2 * 0.509F) / 3);
+  EXPECT_FLOAT_EQ(middle(0.519F, 0.482F), (0.5F + 0.519F + 0.482F) / 3) << "a slant";
+  EXPECT_FLOAT_EQ(middle(0.511F, 0.511F), 0.5F) << "both before it: an edge";
+  EXPECT_EQ(middle(0.521F, 0.479F), 0) << "nothing near it: not kept";
+}
+
 // nav2_costmap_2d: inflation_layer.hpp, computeCost().
 TEST(CostMap, CostsDecayAsNav2PublishesIt) {
   const CostMapConfig config{
@@ -204,8 +217,10 @@ TEST(CostMap, RefusesSettingsOutOfRange) {
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(3, 3, kFreeCell)};
   EXPECT_THROW(cost_map(grid, {.inscribed_radius_m = 0.6, .inflation_radius_m = 0.5}), InputError);
   EXPECT_THROW(cost_map(grid, {.cost_scaling_factor = -1}), InputError);
-  grid.resolution_m = 0;
-  EXPECT_THROW(cost_map(grid), InputError);
+  for (const double resolution_m : {0.0, 0.9e-4, 101.0}) {
+    grid.resolution_m = resolution_m;
+    EXPECT_THROW(cost_map(grid), InputError) << resolution_m;
+  }
 }
 
 TEST(CostMap, FilesKeepNav2sNumbers) {
