@@ -76,8 +76,9 @@ float depth_at(const Grid2d<float>& depth_m, int x, int y, double max_depth_m) {
 
 void append(const PyramidLevel& level, int octave, const Corner& corner, const RgbdFrame& frame,
             double max_depth_m, Features& features) {
+  const cv::Point2f peak = peak_of(level.image, corner);
   const cv::Point2d raw = level.to_full(
-      {static_cast<double>(corner.x) + corner.dx, static_cast<double>(corner.y) + corner.dy});
+      {static_cast<double>(corner.x) + peak.x, static_cast<double>(corner.y) + peak.y});
   const int x = cvRound(raw.x), y = cvRound(raw.y);  // inside: corners keep a distance from the
                                                      // border
 
