@@ -21,7 +21,7 @@ std::vector<Corner> random_corners(int count, int width, int height, std::uint64
     const RandomStream r = random.fork(static_cast<std::uint64_t>(i));
     corners.push_back({static_cast<std::int16_t>(r.below(0, static_cast<std::uint64_t>(width))),
                        static_cast<std::int16_t>(r.below(1, static_cast<std::uint64_t>(height))),
-                       static_cast<std::int16_t>(7 + r.below(2, 100)), 0, 0});
+                       static_cast<std::int16_t>(7 + r.below(2, 100))});
   }
   std::sort(corners.begin(), corners.end(), stronger);
   corners.erase(std::unique(corners.begin(), corners.end(),
