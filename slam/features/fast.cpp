@@ -60,13 +60,6 @@ T filled(Byte value) {
   std::memset(&all, value, sizeof all);
   return all;
 }
-bool any(Byte value) {
-  return value != 0;
-}
-bool any(Bytes value) {
-  return _mm256_testz_si256(value.v, value.v) == 0;
-}
-
 // Calls work.operator()<T>(x) so that it covers [0, count): T = Bytes covers kChunk, the last chunk
 // overlapping the one before; if there are fewer, T = Byte covers one.
 template <class Work>
@@ -139,25 +132,13 @@ Circle circle_around(const Byte* center, std::ptrdiff_t step) {
 }
 
 // Contrast: how much the best arc around each pixel is brighter or darker than the pixel; 0 = no
-// such arc. Arcs of one kind are skipped where none exceeds the threshold: 0 instead of up to that.
+// such arc. Without branches, so that one pass serves every threshold.
 template <class T>
-T contrast(const Byte* center, const Circle& circle, int x, Byte threshold) {
+T contrast(const Byte* center, const Circle& circle, int x) {
   std::array<T, 16> p;
-  const auto load_circle = [&](std::size_t first, std::size_t step) {
-    for (std::size_t i = first; i < 16; i += step) p[i] = load<T>(circle[i] + x);
-  };
-  const T c = load<T>(center + x), limit = filled<T>(threshold);
-  // Of two opposite pixels, an arc of 9 holds at least one.
-  load_circle(0, 4);
-  const T at_most = low(high(p[0], p[8]), high(p[4], p[12]));
-  const T at_least = high(low(p[0], p[8]), low(p[4], p[12]));
-  const bool may_be_brighter = any(excess(excess(at_most, c), limit));
-  const bool may_be_darker = any(excess(excess(c, at_least), limit));
-  if (!may_be_brighter && !may_be_darker) return T{};
-  for (std::size_t first = 1; first < 4; ++first) load_circle(first, 4);
-  const T brighter = may_be_brighter ? excess(best_arc<Low, High>(p), c) : T{};
-  const T darker = may_be_darker ? excess(c, best_arc<High, Low>(p)) : T{};
-  return high(brighter, darker);
+  for (std::size_t i = 0; i < 16; ++i) p[i] = load<T>(circle[i] + x);
+  const T c = load<T>(center + x);
+  return high(excess(best_arc<Low, High>(p), c), excess(c, best_arc<High, Low>(p)));
 }
 
 // Three rows of contrast around the row being searched.
@@ -220,9 +201,7 @@ std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshol
     const Byte* center = image.ptr<Byte>(y) + edge_px - 1;
     const Circle circle = circle_around(center, static_cast<std::ptrdiff_t>(image.step));
     Byte* to = contrasts[static_cast<std::size_t>(y) % 3].data();
-    for_all(width + 2, [&]<class T>(int x) {
-      store(to + x, contrast<T>(center, circle, x, static_cast<Byte>(threshold)));
-    });
+    for_all(width + 2, [&]<class T>(int x) { store(to + x, contrast<T>(center, circle, x)); });
   };
   const auto row = [&](int y) { return contrasts[static_cast<std::size_t>(y) % 3].data() + 1; };
 
@@ -248,7 +227,7 @@ cv::Point2f peak_of(const cv::Mat& image, const Corner& corner) {
   for (int v = 0; v < 3; ++v) {
     const Byte* center = image.ptr<Byte>(corner.y + v - 1) + corner.x - 1;
     const Circle circle = circle_around(center, static_cast<std::ptrdiff_t>(image.step));
-    store(near[static_cast<std::size_t>(v)].data(), contrast<Bytes>(center, circle, 0, 0));
+    store(near[static_cast<std::size_t>(v)].data(), contrast<Bytes>(center, circle, 0));
   }
   // The parabola is fitted to sums across, weighted 1 2 1: they are less noisy than a single line.
   const auto column = [&](std::size_t u) { return near[0][u] + 2 * near[1][u] + near[2][u]; };
