@@ -6,11 +6,20 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "slam/features/blur.hpp"
 #include "slam/features/resize.hpp"
 
 namespace mh {
 namespace {
+
+constexpr int kBlurRadius_px = 3;  // of the 7x7 kernel
+constexpr double kBlurSigma_px = 2.0;
+
+// An image that is a window of a larger one, whose margin mirrors its border. cv::GaussianBlur uses
+// different arithmetic for windows and whole images; cv::ORB blurs windows, so this code does too.
+cv::Mat windowed(cv::Size size) {
+  cv::Mat whole(size.height + 2 * kBlurRadius_px, size.width + 2 * kBlurRadius_px, CV_8U);
+  return whole(cv::Rect(kBlurRadius_px, kBlurRadius_px, size.width, size.height));
+}
 
 void mirror_margin(cv::Mat& window) {
   cv::Mat whole = window;
@@ -38,13 +47,14 @@ std::vector<PyramidLevel> make_pyramid(const Grid2d<Rgb8>& color, const FeatureC
     PyramidLevel level;
     level.scale_x = static_cast<double>(color.width()) / size.width;
     level.scale_y = static_cast<double>(color.height()) / size.height;
-    level.image = image_to_blur(size);
+    level.image = windowed(size);
     if (l == 0)
       cv::cvtColor(view(color), level.image, cv::COLOR_RGB2GRAY);
     else
       resize_exactly(levels.back().image, level.image);
     mirror_margin(level.image);
-    level.blurred = blur_7x7(level.image);
+    cv::GaussianBlur(level.image, level.blurred, {2 * kBlurRadius_px + 1, 2 * kBlurRadius_px + 1},
+                     kBlurSigma_px, kBlurSigma_px, cv::BORDER_REFLECT_101);
     levels.push_back(std::move(level));
   }
   return levels;
