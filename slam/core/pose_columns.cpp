@@ -35,7 +35,7 @@ std::vector<Name> names_in(std::string_view line, char separator) {
     const std::size_t bracket = std::min(word.find_first_of("[("), word.size());
     const std::string unit = lower_case(std::string(trimmed(word.substr(bracket), "[]() ")));
     const std::string_view text = trimmed(word.substr(0, bracket), kBlanks);
-    if (bracket == 0 && !word.empty()) {  // "tx [m]" between blanks
+    if (bracket == 0 && !word.empty()) {  // "tx [m]" between spaces
       if (!names.empty()) names.back().unit = unit;
       continue;
     }
@@ -66,7 +66,8 @@ bool begin_alike(const std::string& a, const std::string& b) {
 std::optional<std::array<std::size_t, 7>> pose_in(std::span<const Name> names) {
   for (std::size_t w = 0; w < names.size(); ++w) {
     if (!names[w].text.ends_with('w')) continue;
-    // "x y z w x y z": if position and rotation have the same names, the vector of w follows it.
+    // "x y z w x y z": if position and rotation have the same names, the vector that belongs to w
+    // follows it.
     for (const bool behind : {true, false}) {
       if (!behind && w < 3) continue;
       const std::size_t q = behind ? w + 1 : w - 3;
@@ -93,7 +94,7 @@ std::optional<int> unit_of(const Name& name) {
   return std::nullopt;
 }
 
-/// Finds the columns of time among those that are not the pose's.
+/// Finds the time columns among those that are not the pose's.
 /// @throws InputError if there are several, none of them named as a time
 void find_stamp(std::span<const Name> names, PoseColumns& columns) {
   std::vector<std::size_t> others;

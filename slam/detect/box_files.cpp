@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A box as a file states it.
+/// A box as given in a file.
 struct FiledBox {
   double left = 0, top = 0, width = 0, height = 0;
   double score = 1;
@@ -74,7 +74,7 @@ std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
   return named(all.by_stamp[std::llround(seconds * 1e6) * 1000]);
 }
 
-/// If one whole number in a file is beyond every index, all are stamps in ns.
+/// If one whole number in a file is too large for an index, all are stamps in ns.
 void move_stamps(FiledBoxes& all) {
   if (all.by_index.empty() || all.by_index.rbegin()->first < kMostFrames) return;
   for (auto& [number, filed] : all.by_index) {
@@ -105,7 +105,7 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
                     box.network_class + first_class, names.size(), first_class));
 }
 
-/// Numbers of a line, separated by blanks or commas. @throws InputError at any other word.
+/// Numbers of a line, separated by whitespace or commas. @throws InputError at any other word.
 /// @param columns what a line should hold, for the message
 std::vector<double> numbers(std::string line, const std::string& place, const char* columns) {
   std::ranges::replace(line, ',', ' ');

@@ -10,7 +10,7 @@ namespace mh {
 
 /// The size of images that section [net] of a Darknet configuration states; 0 where it states none.
 /// @throws InputError naming file and line if a size or a layer's anchors are invalid: OpenCV's
-/// importer would read beyond them.
+/// importer would read out of bounds.
 InputSize darknet_input(const std::string& config, const std::filesystem::path& file);
 
 }  // namespace mh

@@ -21,11 +21,11 @@ struct Placement {
   double image_y(double y) const { return (y - top) / scale_y; }
 };
 
-/// @param letterbox  not kAuto
+/// @param letterbox  must not be kAuto
 Placement place_image(int width, int height, const InputSize& input, Letterbox letterbox);
 
 /// Returns the input of a network: 1 x 3 x height x width, float.
-/// @param settings  without any kAuto
+/// @param settings  must not contain kAuto
 cv::Mat network_input(const Grid2d<Rgb8>& color, const InputSize& input, const Placement& at,
                       const DetectorSettings& settings);
 

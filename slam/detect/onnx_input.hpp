@@ -26,8 +26,8 @@ struct OnnxInput {
 std::optional<OnnxInput> onnx_input(std::string_view model);
 
 /// Names weights of an ONNX model that do not fill the shape that they state, or that are stored in
-/// another file: OpenCV's importer would read past their end. "" = none, or the bytes are not such
-/// a model.
+/// another file: OpenCV's importer would read past their end. Empty if there are none, or if the
+/// bytes are not an ONNX model.
 std::string onnx_weights_fault(std::string_view model);
 
 /// Metadata that exporters write into ONNX models: Ultralytics states `names`, `task`, `imgsz`.

@@ -11,8 +11,8 @@
 namespace mh {
 namespace {
 
-constexpr int kSteps = 4;        // of certainty, for one class
-constexpr std::size_t kTop = 3;  // classes of an entry
+constexpr int kSteps = 4;        // of certainty, per class
+constexpr std::size_t kTop = 3;  // classes per palette entry
 
 /// Probabilities of our classes at each cell of an output.
 struct Cells {

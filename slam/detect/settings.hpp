@@ -118,7 +118,7 @@ DetectorSpec detector_from_file(const std::filesystem::path& file);
 /// `boxes`, relative to `folder`. Does not finish() the mapping.
 void read_detector(YamlReader& mapping, const std::filesystem::path& folder, DetectorSpec& spec);
 
-/// Reads a file of such keys. @throws InputError naming file, line and value.
+/// Reads a file with the same keys. @throws InputError naming file, line and value.
 void load_detector_settings(const std::filesystem::path& file, DetectorSpec& spec);
 
 /// Every setting with its meaning, as a file.

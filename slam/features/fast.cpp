@@ -161,7 +161,8 @@ float peak(int before, int at, int after) {
                     -0.49F, 0.49F);
 }
 
-// The parabola is fitted to sums across, weighted 1 2 1: they are less noisy than a single line.
+// The parabola is fitted to sums over three pixels perpendicular to it, weighted 1 2 1: they are
+// less noisy than a single line.
 Corner corner_at(const Rows& c, std::size_t i, int x, int y) {
   const auto column = [&](std::size_t k) { return c.above[k] + 2 * c.row[k] + c.below[k]; };
   const auto line = [&](const Byte* r) { return r[i - 1] + 2 * r[i] + r[i + 1]; };

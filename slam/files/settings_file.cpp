@@ -104,7 +104,7 @@ const OrbSlamKeys kOrbSlam2{"ORB-SLAM2", "Camera.", "Camera.bf", "ThDepth", "Dep
 const OrbSlamKeys kOrbSlam3{"ORB-SLAM3", "Camera1.", "Stereo.b", "Stereo.ThDepth",
                             "RGBD.DepthMapFactor"};
 
-/// What we add to them, in the files that we write.
+/// The key that we add to the ORB-SLAM files that we write.
 constexpr const char* kOurSigma = "Modelhouse.disparity_sigma_px";
 
 /// Other keys of such files: the camera type, sizes that its images are shrunk to (ours are not),
@@ -139,8 +139,8 @@ void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   }
 }
 
-/// "Somebody.Else, ...": keys that are not read, except those that do not matter here, such as the
-/// position of a window (Viewer.*) or the version of the format (File.version).
+/// A list such as "Other.Key, ...": keys that are not read, except those that do not matter here,
+/// such as the position of a window (Viewer.*) or the version of the format (File.version).
 std::string unread_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   const std::vector<std::string> known = keys.all();
   std::vector<std::string> unread;
@@ -258,8 +258,8 @@ SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
 
 Settings parse_settings(std::string text, const std::string& name, const SlamConfig& base) {
   // OpenCV's dialect starts with "%YAML:1.0", which is not valid YAML; its line is kept, so that
-  // line numbers stay correct. ORB-SLAM2's TUM1.yaml has "key:value" without the blank, TUM3.yaml a
-  // key twice.
+  // line numbers stay correct. ORB-SLAM2's TUM1.yaml has "key:value" without the space; TUM3.yaml
+  // contains a key twice.
   if (text.starts_with("%YAML:")) {
     text[0] = '#';
     text = without_dialect(text);

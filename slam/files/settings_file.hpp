@@ -40,7 +40,7 @@ std::string format_settings(const Settings& settings);
 /// notes, each line ends in a comment stating the meaning and the allowed values.
 std::string format_slam_config(const SlamConfig& config, bool notes = false);
 /// Reads sections of SLAM settings; absent keys keep their values from `config`. `base: orb_slam2`
-/// sets that acceptance. Leaves keys that are not SLAM sections to the caller, who calls
+/// sets Acceptance::kOrbSlam2. Leaves keys that are not SLAM sections to the caller, who calls
 /// yaml.finish(). @throws InputError.
 SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config = {});
 

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// The file by which a folder names the commands that wrote there.
+/// The file in which an output folder lists the commands that wrote there.
 inline constexpr const char* kOutputMark = ".modelhouse";
 
 /// Creates a folder (and its parents) and verifies that files can be written to it.
@@ -31,7 +31,7 @@ void write_atomically(const std::filesystem::path& file, std::string_view conten
 /// Returns the whole content of a file. @throws InputError naming it.
 std::string read_file(const std::filesystem::path& file);
 
-/// Whether the path names a file (or a link to one), a folder, anything at all.
+/// Whether the path names a file (or a link to one), a folder, or anything at all.
 bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 bool is_there(const std::filesystem::path& path);

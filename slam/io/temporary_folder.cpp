@@ -25,11 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Written once the lock is held: whoever reads it and gets the lock knows that the folder is not in
-// use.
+// Written once the lock is held: a process that reads it and gets the lock knows that the folder is
+// not in use.
 constexpr std::string_view kMarkerText = "modelhouse works here; it removes this folder\n";
 
-/// What the names of this host's folders begin with: another host's lock may not be visible here.
+/// Prefix of the names of this host's folders: another host's lock may not be visible here.
 std::string name_of_host() {
   char host[256] = {};
   gethostname(host, sizeof host - 1);

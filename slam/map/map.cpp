@@ -205,7 +205,7 @@ void Map::refresh(LandmarkId id, const FeatureConfig& config) {
                                              : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 
   // A corner seen at octave o from distance d is visible at octave 0 from scale^o times as far away
-  // (max), and at the coarsest octave from that over scale^(levels - 1) (min).
+  // (max), and at the coarsest octave from that distance divided by scale^(levels - 1) (min).
   const Observation& reference = l.observations.front();
   const Keyframe& k = at(reference.keyframe);
   const double distance = (k.camera_from_world * l.position_in_world).norm();

@@ -115,7 +115,7 @@ class Map {
     return inverted_index_.query(view);
   }
   /// Live keyframes whose cameras may be within a distance of a position (a superset), by id;
-  /// those of other pieces, too, whose worlds are others.
+  /// including those of other pieces, whose positions are in other worlds.
   std::vector<KeyframeId> keyframes_near(const Eigen::Vector3d& place_in_world,
                                          double distance_m) const {
     return position_index_.near(place_in_world, distance_m);

@@ -44,7 +44,7 @@ class DetectedObjects {
  private:
   std::vector<Entry> entries_;
   std::set<std::pair<Id, Id>> apart_;
-  std::unordered_map<std::uint64_t, Id> at_;  // only looked up, never walked
+  std::unordered_map<std::uint64_t, Id> at_;  // only looked up, never iterated over
 };
 
 /// Associates detections across views: a detection belongs to an object that already had at least a
@@ -73,12 +73,13 @@ class DetectionAssociation {
   /// Assigns each detection its object: largest overlaps first, and no object twice, since an
   /// object has one detection per view.
   void recognize(std::vector<Detection>& detections);
-  /// Counts which objects of one class the detections show as one and which as two.
+  /// Counts, for pairs of objects of one class, whether the detections show them as one or as two.
   void compare(const std::vector<Detection>& detections);
 
-  std::vector<ClassId> classes_;                                 ///< of each object
-  std::unordered_map<std::uint64_t, std::vector<Votes>> votes_;  // only looked up, never walked
-  std::map<std::pair<Object, Object>, Pair> pairs_;              ///< the smaller first
+  std::vector<ClassId> classes_;  ///< of each object
+  std::unordered_map<std::uint64_t, std::vector<Votes>>
+      votes_;                                        // only looked up, never iterated over
+  std::map<std::pair<Object, Object>, Pair> pairs_;  ///< the smaller first
 };
 
 }  // namespace mh

@@ -19,13 +19,14 @@ constexpr double kLeastHeight_m = 0.15;   // of a camera over the floor
 constexpr double kMostBelow = 0.05;       // share of all points well below the floor
 constexpr double kBelow_m = 0.15;         // well below
 constexpr std::size_t kLeastPoints = 20;  // that make a floor
-// Share of a floor's points in a layer of twice the thickness: half where a plane only cuts walls.
+// Least share of the points within twice kOnPlane_m that must be on a floor. It is about a half
+// where a plane only cuts through walls.
 constexpr double kLeastFlat = 0.65;
 constexpr ClassId kFloorClass = 2, kMatClass = 20;
 
 struct Plane {
   Vector3d up = Vector3d::UnitZ();
-  double offset_m = 0;  ///< up . point of its points
+  double offset_m = 0;  ///< up . p for its points p
   double height(const Vector3d& point) const { return up.dot(point) - offset_m; }
 };
 
@@ -48,7 +49,7 @@ bool is_surface(const Plane& plane, std::size_t on, const std::vector<Vector3d>&
          kLeastFlat * static_cast<double>(count_on(plane, points, 2 * kOnPlane_m));
 }
 
-/// Whether cameras can stand on a plane, and next to nothing is below it.
+/// Whether all cameras are above a plane and almost no points are below it.
 bool can_be_floor(const Plane& plane, const Surroundings& around) {
   if (plane.up.dot(around.up) < kSteepest) return false;
   for (const SE3& camera : around.cameras)

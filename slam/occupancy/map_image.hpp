@@ -17,7 +17,7 @@
 
 namespace mh {
 
-/// Gray levels of a map, row 0 the southernmost.
+/// Gray levels of a map; row 0 is the southernmost.
 struct MapImage {
   Grid2d<std::uint8_t> levels;
   double resolution_m = 0.05;

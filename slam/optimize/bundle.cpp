@@ -58,7 +58,7 @@ double chi2_of(const BundleObservation& o, const State& state, const Camera& cam
   return reprojection_residual(p, measurement(o), camera).squaredNorm();
 }
 
-/// Beyond this chi-square (6 degrees of freedom, 1 %) a motion counts less and less.
+/// Beyond this chi-square (6 degrees of freedom, 1 %), a motion counts less and less.
 constexpr double kMotionChi2 = 16.8;
 
 /// Whitened residual of a motion.
@@ -156,8 +156,9 @@ double cost_of(const Phase& phase, const Workspace& w, const State& state) {
   return cost;
 }
 
-/// Adds a motion to the blocks of its free poses. With left perturbations the residual changes by
-/// that of b minus the adjoint of b_from_a times that of a; the derivative of log is taken as 1.
+/// Adds a motion to the blocks of its free poses. With left perturbations, the residual changes by
+/// the perturbation of b minus the adjoint of b_from_a times that of a; the derivative of log is
+/// taken as 1.
 void linearize_motion(const BundleMotion& m, const BundleProblem& problem, Workspace& w,
                       const State& state) {
   const Vector6d r = motion_residual(m, state);

@@ -42,8 +42,9 @@ struct BundleResult {
   std::vector<Eigen::Vector3d> points_in_world;
   std::vector<std::uint8_t> outlier;  ///< per observation: beyond its gate or behind the camera
   double initial_cost = 0;  ///< sum of Huber's rho over all observations; without the motions
-  double final_cost = 0;    ///< sum of squared whitened residuals over the inliers; the same
-  int iterations = 0;       ///< trial steps of both phases
+  double final_cost =
+      0;  ///< sum of squared whitened residuals over the inliers; also without the motions
+  int iterations = 0;  ///< trial steps of both phases
 };
 
 /// Bundle adjustment by Levenberg-Marquardt with the Schur complement over points, analytic

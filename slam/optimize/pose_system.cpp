@@ -10,8 +10,9 @@
 namespace mh {
 namespace {
 
-/// Eigen multiplies large matrices in blocks that it fits to the processor's caches, and sums in
-/// their order. The same sizes everywhere (those of a small server) mean the same bits everywhere.
+/// Eigen multiplies large matrices in blocks that it fits to the processor's caches, and the blocks
+/// determine the order of its sums. The same sizes everywhere (those of a small server) mean the
+/// same bits everywhere.
 [[maybe_unused]] const bool kBlocksAreTheSameEverywhere = [] {
   Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 16 << 20);
   return true;

@@ -6,7 +6,7 @@
 
 namespace mh {
 
-/// What relocalizations left with the keyframes of a map: ORB-SLAM2's mRelocScore
+/// Scores that earlier relocalizations stored with the keyframes of a map: ORB-SLAM2's mRelocScore
 /// (NeighborScores::kAsReleased).
 struct StaleScores {
   struct Score {

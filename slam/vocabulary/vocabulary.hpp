@@ -34,7 +34,7 @@ class Vocabulary {
     std::uint32_t node = 0;
   };
 
-  /// branching^2 nodes, typically 100: with 1,000 features in an image some 10 share a node.
+  /// branching^2 nodes, typically 100: with 1,000 features in an image, about 10 share a node.
   static constexpr int kDirectIndexLevel = 2;
   static constexpr std::uint32_t kFileVersion = 2;
 
