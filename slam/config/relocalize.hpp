@@ -25,7 +25,7 @@ constexpr std::array<std::pair<std::string_view, Acceptance>, 2> words(Acceptanc
 enum class NeighborScores {
   kFresh,      ///< computed with this query
   kCleared,    ///< 0: ORB-SLAM2's mRelocScore if it were cleared before each query
-  kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Answers
+  kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Replies
                ///< then depend on the order of the queries.
 };
 constexpr std::array<std::pair<std::string_view, NeighborScores>, 3> words(NeighborScores) {

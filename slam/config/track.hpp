@@ -6,10 +6,10 @@
 namespace mh {
 
 struct TrackConfig {
-  int min_inliers = 20;  ///< after tracking the local map, for a frame to count as tracked
+  int min_inliers = 20;  ///< inliers in the local map that make a frame count as tracked
   int min_inliers_sparse =
       10;                     ///< lower limit if a sixth of the keypoints is fewer than min_inliers
-  int min_inliers_frame = 8;  ///< after tracking by the motion model
+  int min_inliers_frame = 8;  ///< inliers needed before the local map is searched
   double search_radius_px = 15;  ///< around the predicted position, at octave 0
   double local_radius_px = 5;  ///< around the position predicted from the tracked pose, at octave 0
   int local_keyframes = 60;    ///< at most, in the local map

@@ -35,7 +35,7 @@ std::vector<Name> names_in(std::string_view line, char separator) {
     const std::size_t bracket = std::min(word.find_first_of("[("), word.size());
     const std::string unit = lower_case(std::string(trimmed(word.substr(bracket), "[]() ")));
     const std::string_view text = trimmed(word.substr(0, bracket), kBlanks);
-    if (bracket == 0 && !word.empty()) {  // "tx [m]" between spaces
+    if (bracket == 0 && !word.empty()) {  // a unit after a space: "tx [m]"
       if (!names.empty()) names.back().unit = unit;
       continue;
     }
@@ -156,7 +156,7 @@ std::optional<PoseColumns> columns_named_by(std::string_view line, char separato
   const bool is_comment = trimmed(line, kBlanks).starts_with('#');
   auto pose = pose_in(names);
   if (const std::size_t words = names.size() - std::min(names.size(), values);
-      pose && words > 0 && words < std::ranges::min(*pose)) {  // "# format: timestamp tx ..."
+      pose && words > 0 && words < std::ranges::min(*pose)) {  // as in "# format: timestamp tx ..."
     names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(words));
     for (std::size_t& place : *pose) place -= words;
   }

@@ -15,7 +15,7 @@ namespace mh {
 struct TimedPose {
   Stamp stamp_ns = 0;
   SE3 world_from_camera;
-  std::uint32_t map = 0;  ///< in whose world the pose is, for a system with several maps
+  std::uint32_t map = 0;  ///< the map in whose world the pose is, for a system with several maps
 };
 
 /// Poses ordered by strictly increasing stamp.

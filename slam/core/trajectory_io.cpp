@@ -77,7 +77,7 @@ struct Layout {
   char separator = ' ';
   PoseColumns columns;
   int first_line = std::numeric_limits<int>::max();  ///< of data
-  bool is_table = false;                             ///< between commas or semicolons
+  bool is_table = false;  ///< values are separated by commas or semicolons
 };
 
 /// Data begin at the first line that is neither a comment nor names. The columns are those that an
@@ -102,7 +102,7 @@ Layout layout_of(const std::string& text, const std::string& name) {
     return false;
   });
   layout.is_table = layout.separator != ' ';
-  if (layout.is_table) {  // EuRoC's
+  if (layout.is_table) {  // as in EuRoC's files
     layout.columns.pose = {1, 2, 3, 5, 6, 7, 4};
     layout.columns.most = std::numeric_limits<std::size_t>::max();
   }

@@ -51,8 +51,8 @@ struct FiledBoxes {
 };
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
-constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: a larger number is pixels
-constexpr std::size_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
+constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: larger numbers are pixels
+constexpr std::size_t kMostFrames = 100'000'000;  // larger numbers are stamps in nanoseconds
 
 /// The boxes of a frame that a file calls "17" or "1305031229.528748" (a stamp, s).
 std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
@@ -131,7 +131,8 @@ int whole(double value, const char* what, const std::string& place) {
 template <class Visit>
 void for_each_line(const fs::path& file, const char* columns, const Visit& visit) {
   std::string lines = read_text(file);
-  if (lines.find('\n') == lines.npos) std::ranges::replace(lines, '\r', '\n');  // old Macs'
+  if (lines.find('\n') == lines.npos)
+    std::ranges::replace(lines, '\r', '\n');  // line ends of old Macs
   std::istringstream text(lines);
   int number = 0;
   for (std::string line; std::getline(text, line);) {
@@ -182,7 +183,7 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
       throw InputError(fmt::format("{}: {}, not {}", place, counted(v.size(), "number"), kColumns));
     const int frame = whole(v[0], "frame", place);
     if (frame < 1) throw InputError(fmt::format("{}: frame {}: they count from 1", place, frame));
-    FiledBox box{.left = v[2] - 1,  // the upper left pixel is (1, 1)
+    FiledBox box{.left = v[2] - 1,  // in MOT, the upper left pixel is (1, 1)
                  .top = v[3] - 1,
                  .width = v[4],
                  .height = v[5],
@@ -291,7 +292,7 @@ class BoxesFromFiles : public Detector {
       kind_ = kMot;
       read_mot(spec.boxes, names_, filed_);
     } else {
-      if (!is_there(spec.boxes)) read_file(spec.boxes);  // for its message
+      if (!is_there(spec.boxes)) read_file(spec.boxes);  // fails with a message
       throw InputError(
           fmt::format("{}: boxes are .json (COCO), .csv or .txt (MOT), or a folder of "
                       ".txt (YOLO)",

@@ -15,7 +15,7 @@ namespace mh {
 /// with (0, 0) the upper left corner of the upper left pixel.
 struct Placement {
   double scale_x = 1, scale_y = 1;
-  int left = 0, top = 0, width = 0, height = 0;  ///< of the scaled image in the input
+  int left = 0, top = 0, width = 0, height = 0;  ///< where the scaled image is in the input
 
   double image_x(double x) const { return (x - left) / scale_x; }
   double image_y(double y) const { return (y - top) / scale_y; }

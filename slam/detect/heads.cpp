@@ -228,7 +228,7 @@ int class_count(Head head, std::span<const Tensor> outputs, const InputSize& inp
 std::vector<Candidate> decode(Head head, std::span<const Tensor> outputs, const InputSize& input,
                               double confidence) {
   std::vector<Candidate> found;
-  if (head == Head::kDarknet) {  // an output per scale
+  if (head == Head::kDarknet) {  // one output per scale
     for (const Tensor& tensor : outputs)
       if (const auto m = as_matrix(tensor); m && m->columns > 5)
         decode_rows(head, *m, input, confidence, found);

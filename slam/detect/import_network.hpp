@@ -27,7 +27,7 @@ struct ImportedNetwork {
   cv::dnn::Net net;
   std::vector<cv::String> outputs;
   InputSize input;
-  DetectorSettings settings;  ///< without any kAuto
+  DetectorSettings settings;  ///< contains no kAuto
   ClassNames names;
 };
 

@@ -16,7 +16,7 @@ struct InputSize {
 
 /// The first input of four dimensions that an ONNX model declares.
 struct OnnxInput {
-  std::uint64_t images = 0;             ///< at once; 0: the network leaves it open
+  std::uint64_t images = 0;             ///< per run; 0: the network leaves it open
   std::uint64_t width = 0, height = 0;  ///< of each; 0: likewise
   friend bool operator==(const OnnxInput&, const OnnxInput&) = default;
 };

@@ -220,7 +220,8 @@ class Rewriter {
     }
     const std::string repeated = add_constant(expanded(*given, out));
     node.inputs = first ? std::vector{repeated, input} : std::vector{input, repeated};
-    if (node.op == "Mul" || node.op == "Div") node.set("axis", std::int64_t{0});  // for Scale
+    if (node.op == "Mul" || node.op == "Div")
+      node.set("axis", std::int64_t{0});  // for OpenCV's Scale layer
     add(std::move(node));
   }
 

@@ -99,7 +99,7 @@ void blend_rows(const std::int32_t* upper, const std::int32_t* lower, int next, 
   const __m256i weight = _mm256_set1_epi32(next);
   const __m256i half = _mm256_set1_epi32(kOne * kOne / 2);
   const __m256i lowest_bytes =
-      _mm256_set1_epi32(0x0c080400);  // byte 0 of each of four numbers, as one number
+      _mm256_set1_epi32(0x0c080400);  // gathers byte 0 of each of four numbers
   for (int x = 0;; x += kGroup) {
     x = std::min(x, columns - kGroup);
     const __m256i a = load32(upper + x), b = load32(lower + x);

@@ -84,7 +84,7 @@ Settings read_own(YamlReader yaml, Settings settings) {
 /// are for its viewer, or for other sensors.
 struct OrbSlamKeys {
   const char* program;
-  std::string lens;  ///< what the names of focal lengths, center and distortion begin with
+  std::string lens;  ///< prefix of the names of focal lengths, center and distortion
   std::string baseline, close_depth, depth_scale;
 
   std::vector<std::string> all() const {

@@ -18,7 +18,7 @@ struct Settings {
   bool has_camera = false;           ///< a file without one serves sources that provide their own
                                      ///< camera
   double depth_per_meter = 5000;     ///< value of a depth pixel at one meter
-  bool has_depth_per_meter = false;  ///< the file states it
+  bool has_depth_per_meter = false;  ///< whether the file sets it
   bool exchange_red_blue = false;
   SlamConfig slam;
   std::vector<std::string> notes;  ///< what was ignored or needs mentioning, one line each

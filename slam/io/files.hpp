@@ -36,7 +36,7 @@ bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 bool is_there(const std::filesystem::path& path);
 
-/// "room/" as "room", so that it has a last component.
+/// Turns "room/" into "room", so that the path has a last component.
 std::filesystem::path without_trailing_slash(std::filesystem::path path);
 
 /// Returns the names in a folder that match a pattern (* ? [...], as in a shell), sorted; empty if

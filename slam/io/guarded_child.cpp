@@ -291,7 +291,7 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw MachineError(fmt::format("{}: no pipe: {}", file.string(), std::strerror(errno)));
-  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches; works as well if refused
+  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // for fewer context switches; harmless if refused
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {

@@ -99,7 +99,7 @@ class ReadScope {
   const bool tells_outer_;
 };
 
-/// Reports to the scopes of this thread that a file was read; free if there are none.
+/// Reports to the scopes of this thread that a file was read; costs nothing if there are none.
 /// @param before  state of the file before it was read
 void report_read(const std::filesystem::path& file, std::string_view content,
                  const FileState& before);

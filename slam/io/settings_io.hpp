@@ -17,7 +17,7 @@
 namespace mh {
 
 // Visitors of settings' field lists. A setting is an int, a double, a bool, a text, an enumeration
-// E, whose Names words(E) returns, or an optional or a vector of one of these.
+// E whose names words(E) returns, or an optional or a vector of one of these.
 
 /// "[0, 1)"
 inline std::string interval(const SettingRange& range) {

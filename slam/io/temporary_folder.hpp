@@ -53,7 +53,7 @@ class FolderHold {
   void join(const std::function<void()>& begin, const std::function<bool()>& is_same);
 
  private:
-  bool lock(int how);  ///< as flock(); false if another process has it
+  bool lock(int how);  ///< like flock(); false if another process holds it
 
   std::filesystem::path folder_;
   int descriptor_ = -1;

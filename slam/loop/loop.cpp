@@ -141,7 +141,8 @@ Graph essential_graph(const Map& map, const Loop& loop) {
     bool has_parent = false;
     for (const Keyframe::Neighbor& n : k.covisible) {
       if (!(n.id < k.id)) continue;
-      if (has_parent && n.shared < kStrongEdge) break;  // most shared first
+      if (has_parent && n.shared < kStrongEdge)
+        break;  // neighbors are ordered by shared landmarks, most first
       has_parent = true;
       connect(k.id, n.id, k.camera_from_world * map.at(n.id).camera_from_world.inverse(), n.shared);
     }

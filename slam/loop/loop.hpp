@@ -12,7 +12,7 @@ namespace mh {
 
 /// Where a piece of the map may be in another one, and what supports it.
 struct PiecePlace {
-  KeyframeId origin, other;  ///< Keyframe::origin of the two
+  KeyframeId origin, other;  ///< Keyframe::origin of the two pieces
   SE3 other_from_own;        ///< between their worlds, from the last keyframe that agreed
   KeyframeId keyframe;       ///< the last keyframe that agreed
   int agreeing = 0;          ///< keyframes that agreed so far

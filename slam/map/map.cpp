@@ -154,7 +154,7 @@ void Map::erase(KeyframeId keyframe) {
   k.erased = true;
   inverted_index_.erase(keyframe, k.words.vector);
   position_index_.remove(keyframe, k.camera_from_world.inverse().translation());
-  k.features = {};  // not needed any more: a long run must not grow
+  k.features = {};  // no longer needed: a long run must not fill the memory
   k.grid = {};
   k.words = {};
   k.landmarks = {};

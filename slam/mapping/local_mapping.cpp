@@ -155,7 +155,7 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext
     const Keyframe& b = map.at(other);
     const SE3 b_from_a = b.camera_from_world * a.camera_from_world.inverse();
     if (b_from_a.translation().norm() < context.camera.baseline_m)
-      continue;  // depth is more accurate
+      continue;  // too close for parallax: depth is more accurate
     const Eigen::Matrix3d essential = hat(b_from_a.translation()) * b_from_a.rotation();
 
     const auto unmapped = [](const Keyframe& k) {
@@ -399,7 +399,7 @@ void adjust_piece(Map& map, KeyframeId origin, const SlamContext& context) {
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context) {
   for (const KeyframeId id : best_neighbors(map, newest, map.keyframes().size())) {
     const Keyframe& k = map.at(id);
-    // Tracking depends on the latest few.
+    // The latest few stay, since tracking depends on them.
     if (id == k.origin || newest.value - id.value < 3) continue;
     int total = 0, redundant = 0;
     for (std::size_t i = 0; i < k.landmarks.size(); ++i) {

@@ -64,7 +64,7 @@ class DetectionAssociation {
     std::uint32_t views = 0;
   };
   struct Pair {
-    std::uint32_t together = 0, apart = 0;  ///< views
+    std::uint32_t together = 0, apart = 0;  ///< numbers of views
   };
   struct Detection;
 
@@ -79,7 +79,7 @@ class DetectionAssociation {
   std::vector<ClassId> classes_;  ///< of each object
   std::unordered_map<std::uint64_t, std::vector<Votes>>
       votes_;                                        // only looked up, never iterated over
-  std::map<std::pair<Object, Object>, Pair> pairs_;  ///< the smaller first
+  std::map<std::pair<Object, Object>, Pair> pairs_;  ///< keys have the smaller object first
 };
 
 }  // namespace mh

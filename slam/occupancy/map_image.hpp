@@ -26,7 +26,7 @@ struct MapImage {
   std::vector<bool> clear;  ///< pixels that are not opaque, in the order of levels; empty: none
 };
 
-/// stem.pgm and stem.yaml.
+/// The paths stem.pgm and stem.yaml.
 std::array<std::filesystem::path, 2> map_image_files(const std::filesystem::path& stem);
 
 /// @throws InputError if one of the two exists but was not written by write_map_image(), or if the

@@ -153,8 +153,8 @@ bool is_fragment(const Cluster& small, const Cluster& large, const DetectedObjec
                  int gap, int stacked_gap) {
   if (4 * small.voxels.size() > large.voxels.size()) return false;
   if (are_apart(small.detected, large.detected, detected)) return false;
-  const Vector3i apart =
-      (small.low - large.high).cwiseMax(large.low - small.high).array() - 1;  // empty voxels
+  const Vector3i apart = (small.low - large.high).cwiseMax(large.low - small.high).array() -
+                         1;  // empty voxels between the two boxes
   if (apart.maxCoeff() <= gap) return true;
   return apart.z() <= stacked_gap && shared_above(small, large) >= 0.5;
 }

@@ -19,7 +19,8 @@ struct MapObject {
   std::string name;  ///< class and number, e.g. "chair 2"; unique in a map
   ClassId class_id = kVoid;
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  ///< of its box, map frame
-  Eigen::Vector3d min_m = Eigen::Vector3d::Zero(), max_m = Eigen::Vector3d::Zero();  ///< box
+  Eigen::Vector3d min_m = Eigen::Vector3d::Zero(),
+                  max_m = Eigen::Vector3d::Zero();  ///< corners of its box
   /// Share of the votes in its voxels that are for its class, times min(1, voxels / (4 x
   /// min_voxels)): 0 to 1.
   double score = 0;

@@ -70,7 +70,7 @@ class OccupancyMapper {
   int width_px_, height_px_;  ///< of frames
   Camera camera_;             ///< of thinned frames: a pinhole without distortion
   std::vector<std::size_t>
-      pixel_;  ///< of a frame, from which each thinned pixel is taken; or kNoPixel
+      pixel_;  ///< pixel of a frame from which each thinned pixel is taken, or kNoPixel
   VoxelMap map_;
   std::map<Stamp, Kept> kept_;
 };

@@ -85,7 +85,7 @@ class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
   VoxelNode& block(const Eigen::Vector3i& index);
   /// The voxel at a place of a block (bit x + 8 y + 64 z), made if it does not exist.
   VoxelNode& voxel(VoxelNode& block, unsigned place);
-  /// Deletes the nodes of a block that no view observes any more, and the block if none is left.
+  /// Deletes the nodes of a block that no view observes any longer, and the block if none is left.
   void drop_untold(const Eigen::Vector3i& index);
 
  private:

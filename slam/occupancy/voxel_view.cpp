@@ -266,7 +266,7 @@ class Clearing {
       high = high.cwiseMax(view_.camera().project(p));
     }
     if (farthest < kNearest_m) return AtOnce::kNothing;
-    if (nearest < kNearest_m) return AtOnce::kUnclear;  // its image is unbounded
+    if (nearest < kNearest_m) return AtOnce::kUnclear;  // the image of the block is unbounded
     const int w = depth_m_.width(), h = depth_m_.height();
     if (high.x() < -1 || high.y() < -1 || low.x() > w || low.y() > h) return AtOnce::kNothing;
     const PixelBox box{.x0 = std::max(0, static_cast<int>(std::floor(low.x()))),

@@ -41,7 +41,7 @@ using VoxelView = std::vector<VoxelBlock>;
 /// or by an edge is not free.
 struct DepthModel {
   double resolution_m = 0.05;  ///< side of a voxel
-  double min_range_m = 0.4;    ///< nearer returns are ignored: below the range of an Xtion
+  double min_range_m = 0.4;    ///< nearer returns are ignored; they are below the range of an Xtion
   /// A farther return only clears the space up to this range. 4 m: depth noise there (3 cm, Nguyen
   /// et al., 3DIMPVT 2012) is about a voxel. At most 250 resolutions.
   double max_range_m = 4.0;
@@ -62,8 +62,9 @@ Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m = 
 
 /// Labels of the pixels of a depth image; both grids have its size or are empty.
 struct PixelLabels {
-  Grid2d<ClassId> classes;          ///< kVoid = none
-  Grid2d<std::uint8_t> detections;  ///< see VoxelVote; empty: all pixels of a class are one
+  Grid2d<ClassId> classes;  ///< kVoid = none
+  Grid2d<std::uint8_t>
+      detections;  ///< see VoxelVote; empty: all pixels of a class are one detection
 };
 
 /// What a depth image with its labels shows, in the frame of `map_from_camera`.

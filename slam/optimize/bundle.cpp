@@ -34,7 +34,7 @@ struct Workspace {
   std::vector<std::uint8_t> adjusted;            ///< points that are optimized
 
   std::vector<Matrix63d> pose_point;           ///< per observation: W = J_pose^T J_point
-  std::vector<std::uint8_t> coupled;           ///< per observation: W is in use
+  std::vector<std::uint8_t> coupled;           ///< per observation: whether W is in use
   std::vector<Eigen::Matrix3d> point_inverse;  ///< per point: V^-1, damped
   std::vector<Eigen::Vector3d> point_gradient;
   PoseSystem reduced;             ///< U - W V^-1 W^T

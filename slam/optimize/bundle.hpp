@@ -48,7 +48,7 @@ struct BundleResult {
 };
 
 /// Bundle adjustment by Levenberg-Marquardt with the Schur complement over points, analytic
-/// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999); the residuals of
+/// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999); residuals as in
 /// PoseObservation. Single-threaded; sums in input order.
 ///
 /// Observations of points behind their camera are ignored (a step that moves a point there is

@@ -16,7 +16,7 @@ namespace mh {
 class PoseSystem {
  public:
   using Block = Eigen::Matrix<double, 6, 6>;
-  /// Up to this size a dense matrix is small (8 MB) and factoring it is fastest.
+  /// Up to this size, a dense matrix is small (8 MB) and factoring it is fastest.
   static constexpr std::uint32_t kDirectPoses = 160;
   /// Residual, relative to the right-hand side, at which conjugate gradients stop: far below the
   /// error of a Levenberg-Marquardt step.

@@ -34,7 +34,7 @@ SE3 moved_on(const SlamState& state, TrackedFrames::const_iterator frame, Stamp 
 
 /// An interval in which the camera saw nothing.
 struct Gap {
-  Eigen::Vector3d place_m;  ///< of the camera after it, in the world of the first piece
+  Eigen::Vector3d place_m;  ///< of the camera at its end, in the world of the first piece
   double elapsed_s;
 };
 

@@ -29,7 +29,7 @@ struct TrackedFrame {
 /// The complete state of one SLAM run. It has value semantics: copying it copies the map.
 struct SlamState {
   Camera camera;         // including what was learned about its depth
-  int depth_frames = 0;  ///< from which this was learned
+  int depth_frames = 0;  ///< number of frames from which this was learned
   SlamConfig config;
   std::shared_ptr<const Vocabulary> vocabulary;  // shared: large, immutable
   Map map;

@@ -14,7 +14,7 @@ namespace mh {
 template <class Key>
 struct Candidate {
   Key keyframe{};
-  double score = 0;  ///< a of equation 5: summed similarity of the keyframe's neighborhood
+  double score = 0;  ///< `a` of equation 5: summed similarity of the keyframe's neighborhood
 };
 
 /// Result of Algorithm 1, with the number of keyframes left after each step.

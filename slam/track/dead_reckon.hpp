@@ -13,7 +13,7 @@ namespace mh {
 /// A frame's place in the map.
 struct Located {
   TrackedPose tracked;
-  KeyframeId reference;                         ///< keyframe that shares most landmarks
+  KeyframeId reference;                         ///< keyframe that shares the most landmarks
   std::vector<LandmarkId> expected;             ///< landmarks that should have been visible
   std::optional<Motion> motion = {};            ///< updated with this frame
   Reckoning reckoning = {};                     ///< 0 if the image determines the pose
