@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// Brown-Conrady ("plumb bob") lens distortion, or with k4 to k6 OpenCV's rational one;
+/// Brown-Conrady ("plumb bob") lens distortion or, with k4 to k6, OpenCV's rational model;
 /// coefficients in the order of OpenCV and ROS.
 struct Distortion {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
@@ -53,7 +53,7 @@ struct Camera {
   double baseline_m = 0.075;
   /// Standard deviation of the disparity at a keypoint of octave 0; at higher octaves it grows like
   /// that of the keypoint's position, since a misplaced keypoint reads its depth at the wrong
-  /// pixel. If none is given, SLAM begins with this one and learns it
+  /// pixel. If none is given, SLAM begins with this value and learns it
   /// (slam/optimize/depth_trust.hpp).
   double disparity_sigma_px = 0.3;
   bool disparity_sigma_is_given = false;

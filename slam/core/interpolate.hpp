@@ -12,7 +12,7 @@ namespace mh {
 inline constexpr Stamp kMaxNeighborGap_ns = 500'000'000;
 
 /// The same for ground truth, which a recording may give at times different from those of its
-/// frames. Over this gap g a hand that accelerates by 5 m/s2 and 10 rad/s2 deviates from the
+/// frames. Over this gap g, a hand that accelerates by 5 m/s2 and 10 rad/s2 deviates from the
 /// interpolation by a g^2/8: 1.6 mm and 0.2 degrees. The gap is shorter than two frames at 30 Hz,
 /// so that a frame whose own pose is invalid does not get one from its neighbors.
 inline constexpr Stamp kMaxTruthGap_ns = 50'000'000;

@@ -184,7 +184,7 @@ std::optional<PoseColumns> columns_named_by(std::string_view line, char separato
           listed(names)));
     return std::nullopt;
   }
-  // Seven in a row, after words that do not name columns.
+  // Seven names in a row, after words that do not name columns.
   const auto [first, last] = std::ranges::minmax(*pose);
   if (last - first != 6 || first == 0) return std::nullopt;
   for (std::size_t k = 0; k < 7; ++k) columns.pose[k] = (*pose)[k] - first + 1;

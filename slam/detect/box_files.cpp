@@ -105,7 +105,8 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
                     box.network_class + first_class, names.size(), first_class));
 }
 
-/// Numbers of a line, separated by whitespace or commas. @throws InputError at any other word.
+/// Numbers of a line, separated by whitespace or commas. @throws InputError if there is any other
+/// word.
 /// @param columns what a line should hold, for the message
 std::vector<double> numbers(std::string line, const std::string& place, const char* columns) {
   std::ranges::replace(line, ',', ' ');
@@ -259,7 +260,8 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
 
 constexpr std::string_view kMot = "MOT";
 
-/// @throws InputError at a setting that only a network takes, since it would have no effect
+/// @throws InputError if a setting is given that only a network takes, since it would have no
+/// effect
 void require_no_network_settings(const DetectorSpec& spec) {
   const DetectorSettings &asked = spec.settings, usual;
   const char* which = !spec.config.empty()                 ? "config"

@@ -66,8 +66,8 @@ std::optional<Matrix> as_matrix(const Tensor& tensor) {
   return Matrix{shape[shape.size() - 2], shape.back(), tensor.values};
 }
 
-/// Whether a tensor has a channel per class, in the proportions of the input up to a cell: other
-/// networks, such as Yolo-FastestV2, have height, width and channels in this order.
+/// Whether a tensor has a channel per class, and the proportions of the input to within a cell:
+/// other networks, such as Yolo-FastestV2, have height, width and channels in this order.
 bool is_segmentation(const Tensor& tensor, const InputSize& input) {
   const auto& s = tensor.shape;
   return s.size() == 4 && s[0] == 1 && s[1] >= 2 && s[1] <= 4096 && s[2] > 1 && s[3] > 1 &&

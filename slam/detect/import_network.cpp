@@ -109,7 +109,7 @@ NetworkOutputs forward(ImportedNetwork& imported, const cv::Mat& input) {
   return out;
 }
 
-/// @throws InputError if an output holds NaN or nothing finite: the weights are damaged.
+/// @throws InputError if an output holds NaN or no finite value: the weights are damaged.
 void check_numbers(const fs::path& file, const NetworkOutputs& out) {
   for (const Tensor& tensor : out.tensors) {
     const auto bad = std::ranges::find_if(tensor.values, [](float v) { return std::isnan(v); });
@@ -218,7 +218,7 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNet
     refuse_class_count(spec, files, imported, classes, seen);
 }
 
-/// The input size that the network's own file states; 0 if it is dynamic.
+/// The input size given in the network's own file; 0 if it is dynamic.
 InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
   const fs::path& file = spec.network;
   if (files.is_darknet) return darknet_input(files.config, spec.config);
@@ -232,7 +232,7 @@ InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
   return {static_cast<int>(input.width), static_cast<int>(input.height)};
 }
 
-/// The size of images that Ultralytics' metadata states ("[height, width]"), else 640.
+/// The image size in Ultralytics' metadata ("[height, width]"), else 640.
 InputSize trained_size(const NetworkFiles& files) {
   constexpr int kUsual_px = 640;
   const auto metadata = onnx_metadata(files.network);
@@ -247,7 +247,7 @@ InputSize trained_size(const NetworkFiles& files) {
   return {kUsual_px, kUsual_px};
 }
 
-/// @throws InputError if the metadata of Ultralytics states a task whose output is not boxes.
+/// @throws InputError if Ultralytics' metadata names a task whose output is not boxes.
 void require_detection(const DetectorSpec& spec, const NetworkFiles& files) {
   if (files.is_darknet) return;
   const auto metadata = onnx_metadata(files.network);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Imports and runs the network once where a crash does no harm.
+/// Imports and runs the network once in a child process, where a crash does no harm.
 void try_in_child(const DetectorSpec& spec, const NetworkFiles& files) {
   if (reads_here()) return;
   constexpr std::uint64_t kMemoryPerByte = 20;

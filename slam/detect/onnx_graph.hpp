@@ -59,7 +59,7 @@ struct OnnxGraph {
   std::string_view model;  ///< the bytes from which the graph was read
 };
 
-/// nullopt if the bytes are not a whole model.
+/// nullopt if the bytes are not a complete model.
 std::optional<OnnxGraph> read_onnx_graph(std::string_view model);
 /// The same model with this graph.
 std::string write_onnx_graph(const OnnxGraph& graph);

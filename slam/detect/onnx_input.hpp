@@ -21,8 +21,8 @@ struct OnnxInput {
   friend bool operator==(const OnnxInput&, const OnnxInput&) = default;
 };
 
-/// nullopt if the bytes are not a model with such an input. (OpenCV's importer knows it but does
-/// not expose it.)
+/// nullopt if the bytes are not a model with such an input. (OpenCV's importer knows this input but
+/// does not expose it.)
 std::optional<OnnxInput> onnx_input(std::string_view model);
 
 /// Names weights of an ONNX model that do not fill the shape that they state, or that are stored in

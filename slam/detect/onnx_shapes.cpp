@@ -11,7 +11,7 @@ namespace {
 
 using MaybeShape = std::optional<OnnxShape>;
 
-// By operator: https://onnx.ai/onnx/operators
+// Rules for each operator: https://onnx.ai/onnx/operators
 
 bool is_one_of(const std::string& op, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, op) != names.end();

@@ -89,8 +89,8 @@ void fields(C& c, Visit& v) {
     "pixels that get a box's label: box (all), foreground (those of its surface, by depth)");
 }
 
-/// A real detector, as suites and the command line name it: a network with its settings, or boxes
-/// that another program found.
+/// A real detector, as suites and the command line specify it: a network with its settings, or
+/// boxes that another program found.
 struct DetectorSpec {
   std::filesystem::path network;  ///< ONNX, or Darknet's weights; empty: boxes
   std::filesystem::path config;   ///< Darknet's .cfg

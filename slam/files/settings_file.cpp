@@ -121,8 +121,8 @@ std::string section_of(const std::string& key) {
   return lower_case(key.substr(0, key.find('.')));
 }
 
-/// Unknown keys are errors, at the top and in every section that is read: a typo would silently
-/// drop the camera's distortion. Other sections belong to other programs.
+/// Unknown keys are errors, at the top level and in every section that is read: a typo would
+/// silently drop the camera's distortion. Other sections belong to other programs.
 void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   const std::vector<std::string> known = keys.all();
   std::set<std::string> read_sections{"camera"};
@@ -173,7 +173,7 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   // Zero means the original's own default.
   const double rate_hz = yaml.number_or("Camera.fps", 0, 0, kMost);
   if (rate_hz != 0) c.rate_hz = rate_hz;
-  // ORB-SLAM2 states the baseline in m times fx.
+  // ORB-SLAM2 gives the baseline in m, times fx.
   const double unit = &keys == &kOrbSlam2 ? c.fx_px : 1;
   c.baseline_m = yaml.number_or(keys.baseline, c.baseline_m * unit, 1e-6, kMost) / unit;
   read_disparity_sigma(yaml, kOurSigma, c);

@@ -24,7 +24,7 @@ void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path&)>& write);
 void write_atomically(const std::filesystem::path& file, std::string_view content);
 
-// Readers of scenes, robots, levels and the like access the file system only through these four
+// Readers of scenes, robots, levels and the like access the file system only through these
 // functions (and map_file, YamlReader): a ReadScope (slam/io/read_record.hpp) records what they
 // saw, and result keys depend on that record.
 

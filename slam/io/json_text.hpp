@@ -21,7 +21,7 @@ bool is_nested_too_deep(std::string_view json);
 /// What is wrong, in our own words: "3:7: is not JSON", "has no 'id'".
 std::string json_fault(const nlohmann::json::exception& error);
 
-/// Parses what a program or a person wrote.
+/// Parses JSON that a program or a person wrote.
 /// @throws InputError without a file's name if it is not JSON, or nested too deeply.
 template <class Json>
 Json parse_json(std::string_view text) {

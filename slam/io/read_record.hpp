@@ -40,7 +40,7 @@ struct FileObservation {
   }
 };
 
-/// Everything that a load observed of the file system, in the order of its requests. A loader
+/// Everything that a load observed in the file system, in the order of its requests. A loader
 /// chooses its next request based on the answers so far, so equal answers in the same order imply
 /// the same load, and file locations need not be part of the record.
 struct ReadRecord {

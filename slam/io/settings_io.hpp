@@ -84,7 +84,7 @@ class SettingsReader {
   }
   /// The last section; nullopt if the file lacks it.
   const std::optional<YamlReader>& place() const { return section_; }
-  /// @throws InputError at a key of the last section that is not one of its fields.
+  /// @throws InputError if the last section has a key that is not one of its fields.
   void finish() const {
     if (section_) section_->finish();
   }

@@ -62,8 +62,8 @@ std::optional<OwnedFolder> OwnedFolder::make(const fs::path& folder) {
   OwnedFolder made;
   made.path_ = folder;
   made.marker_ = open((folder / kMarker).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  // On a file system without locks the marker stays empty, so that the folder is never mistaken for
-  // an abandoned one.
+  // On a file system without locks, the marker stays empty, so that the folder is never mistaken
+  // for an abandoned one.
   const bool good =
       made.marker_ >= 0 && (flock(made.marker_, LOCK_EX | LOCK_NB) != 0 ||
                             write(made.marker_, kMarkerText.data(), kMarkerText.size()) > 0);

@@ -20,7 +20,7 @@ class OwnedFolder {
   /// Creates the folder, whose parent must exist; nullopt if the name is already taken.
   /// @throws as throw_unwritable()
   static std::optional<OwnedFolder> make(const std::filesystem::path& folder);
-  /// Takes over one that is not in use; nullopt if there is no folder of ours by that name.
+  /// Takes over a folder of ours that is not in use; nullopt if there is none with this path.
   static std::optional<OwnedFolder> take(const std::filesystem::path& folder);
 
   const std::filesystem::path& path() const { return path_; }

@@ -80,7 +80,7 @@ class Map {
                           std::uint32_t feature);
   /// No effect if the keyframe sees the landmark already or the feature has one.
   bool add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_t feature);
-  /// Erases the landmark too if no observation is left.
+  /// Erases the landmark, too, if no observation is left.
   void erase_observation(LandmarkId landmark, KeyframeId keyframe);
   void erase(LandmarkId landmark);
   /// Moves the observations of `from` to `into` (if a keyframe sees both, that of `into` stays),

@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// Two views that a matcher took for the same point, as the matcher returned them: before any pose
-/// estimate rejected outliers.
+/// Two features that a matcher took for the same point, as the matcher returned them: before any
+/// pose estimate rejected outliers.
 struct MatchedPair {
   static constexpr std::uint32_t kNone = UINT32_MAX;
 

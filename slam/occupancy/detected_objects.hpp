@@ -16,7 +16,7 @@ namespace mh {
 
 class VoxelMap;
 
-/// The index of a voxel as one number, unique within 2^20 voxels each way.
+/// The index of a voxel as one number, unique within 2^20 voxels in each direction.
 std::uint64_t key_of(const Eigen::Vector3i& voxel);
 
 /// Which detected object each voxel of a map belongs to, and which objects are known to be

@@ -21,7 +21,7 @@ constexpr double kLeastHeight_m = 0.15;  // least height of a camera above the f
 constexpr double kMostBelow = 0.05;  // largest share of all points that may be well below the floor
 constexpr double kBelow_m = 0.15;    // what "well below" means
 constexpr std::size_t kLeastPoints = 20;  // needed for a floor
-// Least share of the points within twice kOnPlane_m that must be on a floor. It is about a half
+// Least share of the points within twice kOnPlane_m that must be on a floor. It is about one half
 // where a plane only cuts through walls.
 constexpr double kLeastFlat = 0.65;
 constexpr ClassId kFloorClass = 2, kMatClass = 20;

@@ -109,7 +109,7 @@ std::vector<int> binary_pixels(const std::string& content, const PgmHeader& head
       static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   const std::size_t width = header.brightest > 255 ? 2 : 1;
   if (bytes.size() < width * size) throw InputError(file + ": is truncated");
-  // One whitespace character separates header and pixels; CR LF are two.
+  // One whitespace character separates header and pixels; CR LF counts as two.
   if (bytes.size() == width * size + 1 && bytes[0] == '\n' && content[header.end - 1] == '\r')
     bytes.remove_prefix(1);
   const std::size_t left = bytes.size() - width * size;

@@ -24,7 +24,7 @@ struct ObstacleGridConfig {
   /// something low may be hidden.
   double seen_below_m = 0.50;
 
-  /// Height (m) that the center of a voxel of that size must reach to be part of the band.
+  /// Height (m) that the center of a voxel of that size must reach to be above the ground.
   double lowest_m(double resolution_m) const {
     // A large voxel that begins lower than half of ground_m contains the floor.
     return floor_z_m + std::max(ground_m, 0.5 * (ground_m + resolution_m));
@@ -50,7 +50,7 @@ struct RangeScan {
   std::vector<float> ranges_m;
 };
 
-/// What lasers saw of a floor, as counts per cell: a second source for a grid besides depth. Counts
+/// What lasers saw on a floor, as counts per cell: a second source for a grid besides depth. Counts
 /// depend on the set of scans alone, not on their order.
 class ScanGrid {
  public:

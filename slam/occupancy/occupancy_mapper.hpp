@@ -28,7 +28,7 @@ struct OccupancyUpdate {
 };
 
 /// A voxel map that follows the poses of its keyframes: when a loop closure or an adjustment moves
-/// them, their contributions are removed and added again. After each update the map equals, to the
+/// them, their contributions are removed and added again. After each update, the map equals, to the
 /// bit, a map built at once from the same keyframes at the same poses.
 class OccupancyMapper {
  public:
@@ -49,8 +49,8 @@ class OccupancyMapper {
 
   const VoxelMap& map() const { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
-  /// Depth of a keyframe thinned to stride_px and smoothed, and the camera that fits it; nullptr if
-  /// unknown.
+  /// Depth of a keyframe, thinned to stride_px and smoothed; nullptr if unknown. thin_camera() fits
+  /// it.
   const Grid2d<float>* depth_of(Stamp stamp_ns) const;
   const PixelLabels* labels_of(Stamp stamp_ns) const;
   /// Stamps of all kept keyframes, in order.

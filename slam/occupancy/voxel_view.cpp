@@ -337,7 +337,7 @@ Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m) {
           const int px = x + side * u, py = y + side * v;
           if (!depth_m.contains(px, py)) continue;
           const auto other = static_cast<double>(depth_m(px, py));
-          // Along a slant the two differ from the middle in opposite directions.
+          // Along a slant, the two differ from the middle in opposite directions.
           if (!(other > 0) || std::abs(other - z) > kMostSlant * most) continue;
           pair += other;
           ++on;

@@ -46,7 +46,7 @@ struct DepthModel {
   /// et al., 3DIMPVT 2012) is about a voxel. At most 250 resolutions.
   double max_range_m = 4.0;
   /// How far around the pixel of a voxel's center the image must show nothing in the voxel or in
-  /// front of it: half the side of the seen square, in voxels.
+  /// front of it: half the side of the square that is checked, in voxels.
   double around_voxels = 0.5;
   /// How far behind a voxel's center all returns around it must be, in voxels along the optical
   /// axis.

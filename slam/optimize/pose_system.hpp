@@ -29,7 +29,7 @@ class PoseSystem {
 
   std::uint32_t poses() const { return poses_; }
   void set_zero();
-  /// Block of the lower triangle; of diagonal blocks only the lower triangle is read.
+  /// Block of the lower triangle; only the lower triangle of a diagonal block is read.
   /// @pre row >= column; the same pose or a coupled pair
   Block& at(std::uint32_t row, std::uint32_t column) { return blocks_[index(row, column)]; }
   /// Solves in place. @returns false if the system is not positive definite.

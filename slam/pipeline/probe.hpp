@@ -15,7 +15,7 @@ struct Probe {
 };
 
 /// Tries one keyframe for a lost frame, and refines its pose in the local map.
-/// @param frame   has its words
+/// @param frame  its words must have been computed
 /// @param stream  that of localize(): with the same draws, the winner among localize()'s candidates
 ///                gives a bit-identical answer when tried alone
 /// @param givens affect the trial, not the refinement

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMinInitialPoints = 100;  // with depth, for a frame to define the origin
 
-/// Begins a piece of the map with a frame of enough depth, which defines the piece's world.
+/// Begins a piece of the map with a frame that has enough depth, which defines the piece's world.
 /// @param place  camera_from_world; absent: it is the origin
 StepReport begin_piece(SlamState& state, PreparedFrame frame, const std::optional<SE3>& place,
                        const StepObservers& observers, StepReport report) {

@@ -46,7 +46,7 @@ struct TrialGivens {
 
 /// Tries one candidate keyframe as RelocalizeConfig::acceptance says.
 ///
-/// `ours`: matches by words, PnP in RANSAC with depth, refinement; below min_inliers two searches
+/// `ours`: matches by words, PnP in RANSAC with depth, refinement; below min_inliers, two searches
 /// guided by the pose, however few inliers it has.
 ///
 /// `orb_slam2`, as in R. Mur-Artal and J. D. Tardos, ORB-SLAM2 (IEEE T-RO 33(5), 2017), and its

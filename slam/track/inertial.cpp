@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr int kPlace = 0, kTurn = 3, kVelocity = 6, kGravity = 9, kTurnBias = 12, kForceBias = 15;
 
-// Twice to ten times what data sheets of cheap sensors state, as is usual: neither the sensor's
+// Two to ten times the values in data sheets of cheap sensors, as is usual: neither the sensor's
 // errors nor those of the poses are white noise.
 constexpr double kGyroNoise = 1e-3, kGyroWalk = 1e-4;    // rad/s/sqrt(Hz), rad/s^2/sqrt(Hz)
 constexpr double kAccelNoise = 1e-2, kAccelWalk = 3e-3;  // m/s^2/sqrt(Hz), m/s^3/sqrt(Hz)

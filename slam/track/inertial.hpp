@@ -21,7 +21,7 @@ struct InertialMotion {
   Eigen::Vector3d velocity_m_per_s;
   Eigen::Vector3d gravity_m_per_s2;  ///< downward
   Eigen::Vector3d turn_bias_rad_per_s, force_bias_m_per_s2;
-  /// Of position, rotation, velocity, gravity, and both biases, in this order.
+  /// Covariance of position, rotation, velocity, gravity, and both biases, in this order.
   Matrix18d covariance;
   ImuReading before;  ///< the last reading
   SE3 own_from_tracked =
