@@ -76,7 +76,7 @@ ClassNames with_ids(std::vector<std::string> names) {
   return all;
 }
 
-/// A quoted text at the start of `rest`, which is moved past it; nullopt if there is none.
+/// A quoted string at the start of `rest`, which is moved past it; nullopt if there is none.
 std::optional<std::string> take_quoted(std::string_view& rest) {
   const char quote = rest.empty() ? '\0' : rest.front();
   if (quote != '\'' && quote != '"') return std::nullopt;

@@ -76,7 +76,7 @@ std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& worl
   return 0.5 * (world_from_a.translation() + sa * da + world_from_b.translation() + sb * db);
 }
 
-/// The point that two matched features see: from parallax if there is enough, otherwise from
+/// The point that two matched features show: from parallax if there is enough, otherwise from
 /// whichever depth is available; nullopt if it does not reproject into both.
 std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka, const Keyframe& b,
                                            const Keypoint& kb, const SlamContext& context) {

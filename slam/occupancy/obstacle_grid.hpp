@@ -33,8 +33,8 @@ struct ObstacleGridConfig {
 
 /// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
 /// occupied if any voxel there is, so a table top is an obstacle and a lintel is not; free if none
-/// is, the lower part was seen free, and the free voxels have no gap (a table top without a return
-/// has free space below and above it); else unknown. Empty if nothing was seen there.
+/// is, the lower part was seen to be free, and the free voxels have no gap (a table top without a
+/// return has free space below and above it); else unknown. Empty if nothing was seen there.
 /// @throws InputError if the heights leave nothing between them.
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
 
@@ -55,7 +55,7 @@ struct RangeScan {
 class ScanGrid {
  public:
   explicit ScanGrid(double resolution_m = 0.05) : resolution_m_(resolution_m) {}
-  /// Adds a scan taken at a pose. @param map_from_sensor only x, y and heading are used
+  /// Adds a scan taken at a pose. @param map_from_sensor  only x, y and heading are used
   void add_scan(const SE3& map_from_sensor, const RangeScan& scan);
   /// Adds the scans to a grid, which grows as needed: cells become occupied where the log-odds of
   /// hits and misses (VoxelMap's increments) are not negative, and free where rays passed through

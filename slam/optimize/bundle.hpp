@@ -21,7 +21,7 @@ struct BundleObservation {
 };
 
 /// A motion between two poses that another sensor measured. Residual: log(b_from_a measured^-1),
-/// divided by its standard deviations; Huber's rho, since wheels slip.
+/// divided by its standard deviations; weighted by Huber's rho, since wheels slip.
 struct BundleMotion {
   std::uint32_t a = 0, b = 0;  ///< indices into BundleProblem::camera_from_world
   SE3 b_from_a;

@@ -113,7 +113,7 @@ bool PoseSystem::iterate(Eigen::VectorXd& x) const {
   double energy = residual.dot(z);
   const double enough = kTolerance * kTolerance * energy;
   // Exact after as many steps as unknowns; a system that needs a tenth of them is hopelessly
-  // conditioned, and the step found so far is still a descent direction.
+  // ill-conditioned, and the step found so far is still a descent direction.
   const int limit = 100 + static_cast<int>(poses_) / 2;
   for (int i = 0; i < limit && energy > enough; ++i) {
     const Eigen::VectorXd image = times(direction);

@@ -18,7 +18,7 @@ struct Probe {
 /// @param frame  its words must have been computed
 /// @param stream  that of localize(): with the same draws, the winner among localize()'s candidates
 ///                gives a bit-identical answer when tried alone
-/// @param givens affect the trial, not the refinement
+/// @param givens affects the trial, not the refinement
 Probe probe(KeyframeId candidate, const SlamState& frozen, const PreparedFrame& frame,
             RandomStream stream, const TrialGivens& givens = {});
 

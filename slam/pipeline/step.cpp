@@ -68,7 +68,7 @@ void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Featu
 }
 
 /// Whether a camera can have moved from one pose to the other, at TrackConfig::max_speed_m_s at
-/// most and turning no faster than a hand does. @param elapsed_ns of either sign
+/// most and turning no faster than a hand does. @param elapsed_ns  of either sign
 bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_world,
                   Stamp elapsed_ns, double max_speed_m_s) {
   if (max_speed_m_s == 0) return true;
