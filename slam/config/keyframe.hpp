@@ -11,8 +11,9 @@ struct KeyframeConfig {
   double min_tracked_share = 0.5;  ///< of the reference keyframe's landmarks
   int min_close_tracked = 100;     ///< fewer tracked close points than this, and
   int min_close_new = 70;          ///< more untracked close points than this: a keyframe is needed
-  double close_depth_m = 3.5;      ///< up to here, landmarks are created from depth at once
-  double redundant_share = 0.9;    ///< of a keyframe's landmarks seen by 3 others: culled
+  double close_depth_m = 3.5;      ///< up to this depth, landmarks are created at once
+  double redundant_share =
+      0.9;  ///< a keyframe is culled if 3 others see this share of its landmarks
   friend bool operator==(const KeyframeConfig&, const KeyframeConfig&) = default;
 };
 

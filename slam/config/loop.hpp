@@ -9,8 +9,8 @@ struct LoopConfig {
   bool enabled = true;
   bool augmented = false;  ///< candidates by equation 1 with labels; otherwise by words alone
   int min_gap = 10;        ///< keyframes between the two ends, at least
-  /// Below this number of shared landmarks, chance matches across a drift of a few centimeters tie
-  /// the ends too loosely to correct it.
+  /// The ends of a loop share fewer landmarks than this: chance matches across a drift of a few
+  /// centimeters tie them too loosely to correct it.
   int loosely_shared = 60;
   /// Minimum similarity of a candidate, as a share of the similarity of the least similar strong
   /// neighbor.
@@ -25,11 +25,12 @@ struct LoopConfig {
   double max_drift_rad = 0.35;
   double negligible_m = 0.01;  ///< below this, landmarks are merged but poses stay
   double negligible_rad = 0.003;
-  /// Pieces of a map are joined where this many keyframes agree on it, over this way of the camera.
+  /// Pieces of a map are joined once this many keyframes agree on their relative pose, over this
+  /// length of the camera's path.
   int joining = 5;
   double joining_m = 1.5;
-  /// If not 0, only where the camera's motion from one to the other is known this well (two
-  /// standard deviations), so that no copy of the place is within reach.
+  /// If not 0, pieces are joined only if the camera's motion between them is known this accurately
+  /// (two standard deviations), so that no look-alike place is within reach.
   double joining_within_m = 0;
   friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };

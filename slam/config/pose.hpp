@@ -6,7 +6,7 @@
 namespace mh {
 
 struct PoseConfig {
-  int rounds = 4;              ///< inlier sets are recomputed after each
+  int rounds = 4;              ///< after each round, the inlier set is recomputed
   int iterations = 10;         ///< Gauss-Newton steps per round
   double chi2_mono = 5.991;    ///< 95 % of chi-square, 2 degrees of freedom
   double chi2_stereo = 7.815;  ///< 95 % of chi-square, 3 degrees of freedom

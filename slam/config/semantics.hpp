@@ -32,7 +32,7 @@ constexpr std::array<std::pair<std::string_view, CandidateLists>, 2> words(Candi
   return {{{"one", CandidateLists::kOne}, {"side_by_side", CandidateLists::kSideBySide}}};
 }
 
-/// Where relocalization also looks for matches if a candidate has too few by words.
+/// Where relocalization also looks for matches if matching by words gives a candidate too few.
 enum class WiderSearch {
   kNone,
   kSameLabel,  ///< among all keypoints with the landmark's label

@@ -6,28 +6,30 @@
 namespace mh {
 
 struct TrackConfig {
-  int min_inliers = 20;          ///< after the local map, for a frame to count as tracked
-  int min_inliers_sparse = 10;   ///< lower limit where a sixth of the keypoints is fewer than
-                                 ///< min_inliers
-  int min_inliers_frame = 8;     ///< after the motion model
+  int min_inliers = 20;  ///< inliers in the local map that make a frame count as tracked
+  int min_inliers_sparse =
+      10;                     ///< lower limit if a sixth of the keypoints is fewer than min_inliers
+  int min_inliers_frame = 8;  ///< inliers needed before the local map is searched
   double search_radius_px = 15;  ///< around the predicted position, at octave 0
-  double local_radius_px = 5;    ///< around the position by the tracked pose, at octave 0
-  int local_keyframes = 60;      ///< at most, in the local map
+  double local_radius_px = 5;  ///< around the position predicted from the tracked pose, at octave 0
+  int local_keyframes = 60;    ///< at most, in the local map
   double near_distance_m = 2.5;  ///< keyframes this near join the local map,
-  double near_angle_rad = 0.9;   ///< if they face within this angle, even without shared landmarks
-  double sure_position_m = 0.015;  ///< a pose with a larger standard deviation than this, or
-  double sure_angle_rad = 0.01;    ///< than this, from its image alone, is fused with the motion
-  /// Wheel odometry or an inertial sensor, where frames bring them, place a frame whose image does
-  /// not, up to this drift (one standard deviation).
+  double near_angle_rad =
+      0.9;  ///< if they face the same way to within this angle, even without shared landmarks
+  double sure_position_m =
+      0.015;  ///< if the image alone leaves a pose a standard deviation above this
+  double sure_angle_rad = 0.01;  ///< or this, the pose is fused with the predicted motion
+  /// A frame whose image gives no pose is placed by wheel odometry or an inertial sensor, if
+  /// available, up to this drift (one standard deviation).
   double reckon_position_m = 0.3;
   double reckon_angle_rad = 0.2;
-  /// While mapping, a pose counts only if the camera can have come there, at this speed, from where
-  /// it was before; 0: any does.
+  /// While mapping, a pose is accepted only if the camera can have reached it from its previous
+  /// pose at this speed; 0: no limit.
   double max_speed_m_s = 0;
-  /// After a rewind, a frame that was tracked before is looked for where it was.
+  /// After a rewind, a frame that was tracked before is searched for at its earlier pose.
   bool earlier_poses = false;
   /// While mapping, a camera that has been lost for this long begins a new piece of the map; 0:
-  /// never. Pieces are joined as LoopConfig::joining says.
+  /// never. LoopConfig::joining states when pieces are joined.
   double new_piece_after_s = 0;
   double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
   /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.

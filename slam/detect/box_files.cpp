@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A box as a file states it.
+/// A box as given in a file.
 struct FiledBox {
   double left = 0, top = 0, width = 0, height = 0;
   double score = 1;
@@ -51,8 +51,8 @@ struct FiledBoxes {
 };
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
-constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: a larger number is pixels
-constexpr std::size_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
+constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: larger numbers are pixels
+constexpr std::size_t kMostFrames = 100'000'000;  // larger numbers are stamps in nanoseconds
 
 /// The boxes of a frame that a file calls "17" or "1305031229.528748" (a stamp, s).
 std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
@@ -74,7 +74,7 @@ std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
   return named(all.by_stamp[std::llround(seconds * 1e6) * 1000]);
 }
 
-/// If one whole number in a file is beyond every index, all are stamps in ns.
+/// If one whole number in a file is too large for an index, all are stamps in ns.
 void move_stamps(FiledBoxes& all) {
   if (all.by_index.empty() || all.by_index.rbegin()->first < kMostFrames) return;
   for (auto& [number, filed] : all.by_index) {
@@ -105,7 +105,8 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
                     box.network_class + first_class, names.size(), first_class));
 }
 
-/// Numbers of a line, separated by blanks or commas. @throws InputError at any other word.
+/// Numbers of a line, separated by whitespace or commas. @throws InputError if there is any other
+/// word.
 /// @param columns what a line should hold, for the message
 std::vector<double> numbers(std::string line, const std::string& place, const char* columns) {
   std::ranges::replace(line, ',', ' ');
@@ -131,7 +132,8 @@ int whole(double value, const char* what, const std::string& place) {
 template <class Visit>
 void for_each_line(const fs::path& file, const char* columns, const Visit& visit) {
   std::string lines = read_text(file);
-  if (lines.find('\n') == lines.npos) std::ranges::replace(lines, '\r', '\n');  // old Macs'
+  if (lines.find('\n') == lines.npos)
+    std::ranges::replace(lines, '\r', '\n');  // line ends of old Macs
   std::istringstream text(lines);
   int number = 0;
   for (std::string line; std::getline(text, line);) {
@@ -182,7 +184,7 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
       throw InputError(fmt::format("{}: {}, not {}", place, counted(v.size(), "number"), kColumns));
     const int frame = whole(v[0], "frame", place);
     if (frame < 1) throw InputError(fmt::format("{}: frame {}: they count from 1", place, frame));
-    FiledBox box{.left = v[2] - 1,  // the upper left pixel is (1, 1)
+    FiledBox box{.left = v[2] - 1,  // in MOT, the upper left pixel is (1, 1)
                  .top = v[3] - 1,
                  .width = v[4],
                  .height = v[5],
@@ -258,7 +260,8 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
 
 constexpr std::string_view kMot = "MOT";
 
-/// @throws InputError at a setting that only a network takes, since it would have no effect
+/// @throws InputError if a setting is given that only a network takes, since it would have no
+/// effect
 void require_no_network_settings(const DetectorSpec& spec) {
   const DetectorSettings &asked = spec.settings, usual;
   const char* which = !spec.config.empty()                 ? "config"
@@ -291,7 +294,7 @@ class BoxesFromFiles : public Detector {
       kind_ = kMot;
       read_mot(spec.boxes, names_, filed_);
     } else {
-      if (!is_there(spec.boxes)) read_file(spec.boxes);  // for its message
+      if (!is_there(spec.boxes)) read_file(spec.boxes);  // fails with a message
       throw InputError(
           fmt::format("{}: boxes are .json (COCO), .csv or .txt (MOT), or a folder of "
                       ".txt (YOLO)",

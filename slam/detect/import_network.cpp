@@ -50,7 +50,7 @@ std::string reason(const cv::Exception& error) {
   return text;
 }
 
-/// What OpenCV does not import or run.
+/// OpenCV cannot import or run the network.
 struct NotRun : InputError {
   using InputError::InputError;
 };
@@ -109,7 +109,7 @@ NetworkOutputs forward(ImportedNetwork& imported, const cv::Mat& input) {
   return out;
 }
 
-/// @throws InputError if an output holds NaN or nothing finite: the weights are damaged.
+/// @throws InputError if an output holds NaN or no finite value: the weights are damaged.
 void check_numbers(const fs::path& file, const NetworkOutputs& out) {
   for (const Tensor& tensor : out.tensors) {
     const auto bad = std::ranges::find_if(tensor.values, [](float v) { return std::isnan(v); });
@@ -133,7 +133,7 @@ void resolve_auto(DetectorSettings& s, Head head) {
   if (s.channels == Channels::kAuto) s.channels = yolox ? Channels::kBgr : Channels::kRgb;
 }
 
-/// Whether a head that the user names can be that of a network that looks like `seen`.
+/// Whether a network whose output looks like `seen` may have the head that the user named.
 bool may_be(Head named, Head seen, bool darknet) {
   if ((named == Head::kDarknet) != darknet) return false;
   const bool one_per_cell = seen == Head::kYolox || seen == Head::kYoloxDecoded;
@@ -155,7 +155,7 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
   return *std::move(names);
 }
 
-/// @param classes  of its output
+/// @param classes  number of classes in its output
 [[noreturn]] void refuse_class_count(const DetectorSpec& spec, const NetworkFiles& files,
                                      const ImportedNetwork& imported, int classes, Head seen) {
   const std::string named = counted(imported.names.size(), "class", "classes");
@@ -179,7 +179,7 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
                         classes, other));
 }
 
-/// Sets the head, by its stated name or by the output for a gray image, and checks the number of
+/// Sets the head, from the settings or from the output for a gray image, and checks the number of
 /// classes.
 void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNetwork& imported) {
   const std::vector<int> shape = {1, 3, imported.input.height, imported.input.width};
@@ -218,7 +218,7 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNet
     refuse_class_count(spec, files, imported, classes, seen);
 }
 
-/// The input size that the network's own file states; 0 if it is dynamic.
+/// The input size given in the network's own file; 0 if it is dynamic.
 InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
   const fs::path& file = spec.network;
   if (files.is_darknet) return darknet_input(files.config, spec.config);
@@ -232,7 +232,7 @@ InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
   return {static_cast<int>(input.width), static_cast<int>(input.height)};
 }
 
-/// The size of images that Ultralytics' metadata states ("[height, width]"), else 640.
+/// The image size in Ultralytics' metadata ("[height, width]"), else 640.
 InputSize trained_size(const NetworkFiles& files) {
   constexpr int kUsual_px = 640;
   const auto metadata = onnx_metadata(files.network);
@@ -247,7 +247,7 @@ InputSize trained_size(const NetworkFiles& files) {
   return {kUsual_px, kUsual_px};
 }
 
-/// @throws InputError if the metadata of Ultralytics states a task whose output is not boxes.
+/// @throws InputError if Ultralytics' metadata names a task whose output is not boxes.
 void require_detection(const DetectorSpec& spec, const NetworkFiles& files) {
   if (files.is_darknet) return;
   const auto metadata = onnx_metadata(files.network);
@@ -271,7 +271,7 @@ std::string export_advice(const NetworkFiles& files) {
   return "; a YOLO of Ultralytics runs by `yolo export format=onnx opset=12 simplify=True`";
 }
 
-/// The sides of the input: by settings, by the file, or the usual ones.
+/// The size of the input: from the settings or the file, otherwise the usual one.
 InputSize input_size(const DetectorSpec& spec, const NetworkFiles& files) {
   const InputSize declared = stated_input(spec, files);
   const InputSize usual = files.is_darknet ? InputSize{} : trained_size(files);

@@ -70,7 +70,7 @@ std::size_t value_size(std::uint64_t type) {
   }
 }
 
-/// What is wrong with a TensorProto; "" = nothing.
+/// What is wrong with a TensorProto; empty if nothing is.
 std::string fault_of(std::string_view tensor) {
   std::string name = "a constant";
   for (const ProtoField& field : proto_fields(tensor, kName))

@@ -56,7 +56,7 @@ void load_detector_settings(const fs::path& file, DetectorSpec& spec) {
 std::string format_detector_settings(const DetectorSettings& settings, bool notes) {
   SettingsWriter writer(notes);
   fields(settings, writer);
-  // Such a file has no sections, so nothing is indented.
+  // A detector's settings file has no sections, so nothing is indented.
   std::string text;
   bool begins = true;
   for (std::size_t i = 0; i < writer.text().size(); ++i) {

@@ -89,8 +89,8 @@ void fields(C& c, Visit& v) {
     "pixels that get a box's label: box (all), foreground (those of its surface, by depth)");
 }
 
-/// A real detector, as suites and the command line name it: a network with its settings, or boxes
-/// that another program found.
+/// A real detector, as suites and the command line specify it: a network with its settings, or
+/// boxes that another program found.
 struct DetectorSpec {
   std::filesystem::path network;  ///< ONNX, or Darknet's weights; empty: boxes
   std::filesystem::path config;   ///< Darknet's .cfg
@@ -118,7 +118,7 @@ DetectorSpec detector_from_file(const std::filesystem::path& file);
 /// `boxes`, relative to `folder`. Does not finish() the mapping.
 void read_detector(YamlReader& mapping, const std::filesystem::path& folder, DetectorSpec& spec);
 
-/// Reads a file of such keys. @throws InputError naming file, line and value.
+/// Reads a file with the same keys. @throws InputError naming file, line and value.
 void load_detector_settings(const std::filesystem::path& file, DetectorSpec& spec);
 
 /// Every setting with its meaning, as a file.

@@ -94,7 +94,7 @@ class SpacedPicker {
   struct Place {
     std::int16_t x, y;
   };
-  static constexpr Place kNone{-20000, -20000};  // farther from any corner than any spacing
+  static constexpr Place kNone{-20000, -20000};  // farther from any corner than the largest spacing
 
   // 1 + i / spacing for all coordinates i: one division per coordinate instead of per corner.
   std::vector<int> cells_of_coordinates(int spacing) const {

@@ -229,7 +229,8 @@ cv::Point2f peak_of(const cv::Mat& image, const Corner& corner) {
     const Circle circle = circle_around(center, static_cast<std::ptrdiff_t>(image.step));
     store(near[static_cast<std::size_t>(v)].data(), contrast<Bytes>(center, circle, 0));
   }
-  // The parabola is fitted to sums across, weighted 1 2 1: they are less noisy than a single line.
+  // The parabola is fitted to sums over three pixels perpendicular to it, weighted 1 2 1: they are
+  // less noisy than a single line.
   const auto column = [&](std::size_t u) { return near[0][u] + 2 * near[1][u] + near[2][u]; };
   const auto line = [&](std::size_t v) { return near[v][0] + 2 * near[v][1] + near[v][2]; };
   return {peak(column(0), column(1), column(2)), peak(line(0), line(1), line(2))};

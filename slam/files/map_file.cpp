@@ -150,8 +150,8 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
   if (version != kMapFileVersion)
     throw InputError(fmt::format("{}: is a map of version {}, but this program reads {}", name,
                                  version, kMapFileVersion));
-  const std::uint64_t all = bytes.size() - kHeaderSize;  // no sum with sizes from the file: they
-                                                         // may be wrong
+  const std::uint64_t all =
+      bytes.size() - kHeaderSize;  // nothing is added to `size`, which may be wrong and overflow
   if (all < sizeof stored || size != all - sizeof stored)
     cut_short(size > (UINT64_MAX >> 1) ? size : kHeaderSize + size + sizeof stored);
   const std::string_view before = bytes.substr(0, bytes.size() - sizeof stored);

@@ -63,7 +63,7 @@ FileObservation::Kind look_at(const fs::path& path) {
 }
 
 /// Creates a new empty file in a folder under an unused name.
-/// @param name  of (process, number)
+/// @param name  returns a file name for (process, number)
 /// @returns nullopt, and sets errno, if it cannot be created
 template <class Name>
 std::optional<fs::path> new_file(const fs::path& folder, const Name& name) {

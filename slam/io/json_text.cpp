@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-/// The part of a text between two others; empty if they are not there.
+/// The part of a text between two others; empty if they are not found.
 std::string between(std::string_view text, std::string_view before, std::string_view after) {
   const std::size_t begin = text.find(before);
   if (begin == text.npos) return {};

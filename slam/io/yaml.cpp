@@ -97,7 +97,7 @@ std::string replaced(const std::string& text,
   return result + text.substr(from);
 }
 
-/// Replaces in every word below a node, in place.
+/// Replaces each ${name} in every word below a node, in place.
 void replace_words(YAML::Node node, const std::string& file,
                    const std::function<std::string(const std::string&)>& value_of) {
   if (node.IsScalar() && node.Scalar().find("${") != std::string::npos) {

@@ -136,7 +136,7 @@ template <class A, MaybeConst<Eigen::Vector3d> T>
 void fields(A& a, T& v) {
   a(v.x(), v.y(), v.z());
 }
-/// The elements of a matrix by rows.
+/// The elements of a matrix, row by row.
 template <class A, class M>
 void elements(A& a, M& m) {
   for (Eigen::Index i = 0; i < m.size(); ++i) a(m(i / m.cols(), i % m.cols()));
@@ -238,7 +238,7 @@ void fields(A& a, T& camera) {
 void write_map(Writer& writer, const Map& map);
 /// Reads a map.
 /// @param levels  pyramid levels of its keypoints.
-/// @param words  in the vocabulary.
+/// @param words  number of words in the vocabulary.
 /// @throws InputError if the bytes are not a consistent map.
 Map read_map(Reader& reader, const Camera& camera, int levels, std::size_t words);
 

@@ -28,7 +28,8 @@ struct Landmark {
   ClassId label = kVoid;    ///< of the observation that supplies the descriptor
   Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< mean over observations, from
                                                               ///< camera to landmark
-  double min_distance_m = 0, max_distance_m = 0;  ///< range in which the pyramid can match it
+  double min_distance_m = 0,
+         max_distance_m = 0;  ///< range in which the pyramid's levels can match it
 
   KeyframeId first_keyframe;
   int visible = 1;  ///< frames in which it was expected to be seen

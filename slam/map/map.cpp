@@ -154,7 +154,7 @@ void Map::erase(KeyframeId keyframe) {
   k.erased = true;
   inverted_index_.erase(keyframe, k.words.vector);
   position_index_.remove(keyframe, k.camera_from_world.inverse().translation());
-  k.features = {};  // not needed any more: a long run must not grow
+  k.features = {};  // no longer needed: a long run must not fill the memory
   k.grid = {};
   k.words = {};
   k.landmarks = {};
@@ -205,7 +205,7 @@ void Map::refresh(LandmarkId id, const FeatureConfig& config) {
                                              : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 
   // A corner seen at octave o from distance d is visible at octave 0 from scale^o times as far away
-  // (max), and at the coarsest octave from that over scale^(levels - 1) (min).
+  // (max), and at the coarsest octave from that distance divided by scale^(levels - 1) (min).
   const Observation& reference = l.observations.front();
   const Keyframe& k = at(reference.keyframe);
   const double distance = (k.camera_from_world * l.position_in_world).norm();

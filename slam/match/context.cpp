@@ -91,7 +91,7 @@ std::vector<LandmarkId> match_under(const Nodes& nodes, const Keyframe& keyframe
   return landmarks;
 }
 
-/// All features under one node, or each under its label.
+/// Puts all features under one node, or each under its label.
 WordIndex nodes_of(const Features& features, WiderSearch where) {
   WordIndex index;
   for (std::uint32_t i = 0; i < features.size(); ++i) {

@@ -31,9 +31,9 @@ constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 constexpr std::uint8_t kUnknownRaw = 255;
 
 constexpr std::string_view kOurs = "# Written by modelhouse";
-constexpr double kFurthest_m = 1e8;  // of an origin: UTM's coordinates are within
+constexpr double kFurthest_m = 1e8;  // farthest origin; UTM coordinates are nearer
 
-/// A word as YAML writes it: in quotes if it could be read as anything but itself.
+/// A word as YAML writes it: in quotes if it could be read as anything else.
 std::string yaml_word(const std::string& word) {
   YAML::Emitter yaml;
   yaml << word;
@@ -49,7 +49,7 @@ std::uint8_t gray(std::int8_t cell, GridMode mode) {
 constexpr std::array kKeys = {"image",           "mode",       "resolution", "origin", "negate",
                               "occupied_thresh", "free_thresh"};
 
-/// A PGM's numbers before its pixels, and where these begin.
+/// The numbers in a PGM's header, and where its pixels begin.
 struct PgmHeader {
   bool is_text = false;
   int width = 0, height = 0, brightest = 0;
@@ -109,7 +109,7 @@ std::vector<int> binary_pixels(const std::string& content, const PgmHeader& head
       static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   const std::size_t width = header.brightest > 255 ? 2 : 1;
   if (bytes.size() < width * size) throw InputError(file + ": is truncated");
-  // One blank separates header and pixels; a line that ends in CR LF has two.
+  // One whitespace character separates header and pixels; CR LF counts as two.
   if (bytes.size() == width * size + 1 && bytes[0] == '\n' && content[header.end - 1] == '\r')
     bytes.remove_prefix(1);
   const std::size_t left = bytes.size() - width * size;
@@ -120,7 +120,7 @@ std::vector<int> binary_pixels(const std::string& content, const PgmHeader& head
   std::vector<int> pixels(size);
   for (std::size_t i = 0; i < size; ++i) {
     const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
-    pixels[i] = width == 1 ? byte(i) : byte(2 * i) << 8 | byte(2 * i + 1);  // the high one first
+    pixels[i] = width == 1 ? byte(i) : byte(2 * i) << 8 | byte(2 * i + 1);  // high byte first
   }
   return pixels;
 }
@@ -177,7 +177,7 @@ std::vector<double> read_origin(const YamlReader& node, const std::filesystem::p
 }
 
 std::filesystem::path image_named(YamlReader& yaml, const std::filesystem::path& yaml_file) {
-  return yaml_file.parent_path() / yaml.string("image");  // an absolute path stays one
+  return yaml_file.parent_path() / yaml.string("image");  // an absolute path stays absolute
 }
 
 }  // namespace
@@ -272,12 +272,12 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
       warnings->push_back(fmt::format("{}:{}: key '{}' is none of map_server's and is ignored{}",
                                       yaml_file.string(), value.line(), key,
                                       did_you_mean(key, words_of(kKeys))));
-  const std::string mode = lower_case(yaml.string("mode", "trinary"));  // as nav2_map_server
+  const std::string mode = lower_case(yaml.string("mode", "trinary"));  // as in nav2_map_server
   if (mode != "trinary" && mode != "raw" && mode != "scale")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary, scale and raw are");
   const MapImage map = read_map_image(yaml, yaml_file, warnings, decode);
   const std::string negated = lower_case(yaml.string("negate"));
-  const bool negate = negated == "1" || negated == "true";  // map_server takes both
+  const bool negate = negated == "1" || negated == "true";  // map_server accepts both
   if (!negate && negated != "0" && negated != "false")
     yaml.at("negate").fail("'" + negated + "' is not 0, 1, true or false");
   const double occupied = yaml.number("occupied_thresh", 0, 1);
@@ -292,7 +292,7 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
   for (int y = 0; y < grid.cells.height(); ++y)
     for (int x = 0; x < grid.cells.width(); ++x, ++pixel) {
       const std::uint8_t level = map.levels(x, y);
-      if (mode == "raw") {  // as nav2_map_server: what is not 0 to 100 is unknown
+      if (mode == "raw") {  // as in nav2_map_server: values outside 0 to 100 are unknown
         out_of_range += level > kOccupiedCell && level != kUnknownRaw ? 1 : 0;
         grid.cells(x, y) = level <= kOccupiedCell ? static_cast<std::int8_t>(level) : kUnknownCell;
         continue;

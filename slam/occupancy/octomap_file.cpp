@@ -26,7 +26,8 @@ class NodeReader {
              const std::function<void(const OctomapLeaf&)>& visit)
       : in_(in), has_color_(header.type == "ColorOcTree"), visit_(visit) {}
 
-  /// A node of an .ot file and everything below it: log-odds, maybe color, which children follow.
+  /// A node of an .ot file and everything below it: log-odds, color in a ColorOcTree, one bit for
+  /// each child that follows.
   std::size_t full(OctomapLeaf cube) {
     const auto log_odds = in_.get<float>();
     if (has_color_) in_.take(3);

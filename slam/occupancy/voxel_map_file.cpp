@@ -1,12 +1,18 @@
-// SPDX-License-Identifier: Apache-2.0 The counts that follow the tree in an .ot file,
-// little-endian: the line "modelhouse voxel counts 3", or "... 4" if the map's frame has no floor
-// u64  size of the content content: f64 resolution (m) u32       voxels of detected objects; for
-// each, by place: 3 x i16 voxel, u16 object u32       pairs of objects that are apart; for each,
-// ascending: 2 x u16 (version 1 has neither of the two) for each block of 8 x 8 x 8 voxels with any
-// known voxel: 3 x i16   index of the block 8 x u64   known voxels, bit x + 8 y of word z for each
-// of them, by place: hits, misses, number of votes; then class and views of each vote (numbers in
-// groups of 7 bits, the lowest first; the top bit says that another group follows) u64  xxh3-64 of
-// all bytes before it, from the beginning of the file (versions 1 and 2: of the content alone)
+// SPDX-License-Identifier: Apache-2.0
+// The counts that follow the tree in an .ot file, little-endian:
+//   the line "modelhouse voxel counts 3", or "... 4" if the map's frame has no floor
+//   u64  size of the content
+//   content: f64 resolution (m)
+//     u32       voxels of detected objects; for each, by place: 3 x i16 voxel, u16 object
+//     u32       pairs of objects that are apart; for each, ascending: 2 x u16
+//     (version 1 has neither of the two)
+//   for each block of 8 x 8 x 8 voxels with any known voxel:
+//     3 x i16   index of the block
+//     8 x u64   known voxels, bit x + 8 y of word z
+//     for each of them, by place: hits, misses, number of votes; then class and views of each vote
+//     (numbers in groups of 7 bits, the lowest first; the top bit says that another group follows)
+//   u64  xxh3-64 of all bytes before it, from the beginning of the file (versions 1 and 2: of the
+//        content alone)
 #include <bit>
 #include <cmath>
 #include <iostream>
@@ -26,8 +32,8 @@
 namespace mh {
 namespace {
 
-/// While in scope, nothing is printed to std::cerr: OctoMap says " done." there, which a run's log
-/// would end with.
+/// While in scope, nothing is printed to std::cerr: OctoMap prints " done." there, which would
+/// become the last line of a run's log.
 class QuietErrors {
  public:
   QuietErrors() : printed_to_(std::cerr.rdbuf(nullptr)) {}
@@ -63,7 +69,7 @@ void put_number(std::string& bytes, unsigned number) {
   bytes.push_back(static_cast<char>(number));
 }
 
-/// The place of a voxel in its block, and the block.
+/// The block of a voxel, and the voxel's place in it.
 std::pair<Eigen::Vector3i, unsigned> block_and_place(const octomap::OcTreeKey& key) {
   Eigen::Vector3i block;
   unsigned place = 0;
@@ -75,7 +81,7 @@ std::pair<Eigen::Vector3i, unsigned> block_and_place(const octomap::OcTreeKey& k
   return {block, place};
 }
 
-/// Collects a block's voxels, which the octree visits in another order than that of places.
+/// Collects a block's voxels, which the octree does not visit in the order of their places.
 class BlockWriter {
  public:
   explicit BlockWriter(std::string& bytes) : bytes_(bytes) {}

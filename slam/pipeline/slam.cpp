@@ -27,14 +27,14 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
   SlamState state;
   state.camera = camera;
   state.config = config;
-  state.config.semantics.label_mass = 0;  // of queries; a map is made with gamma
+  state.config.semantics.label_mass = 0;  // applies to queries only; a map is made with gamma
   state.vocabulary = std::move(vocabulary);
   return state;
 }
 
 void rewind(SlamState& state) {
   Tracker& tracker = state.tracker;
-  if (tracker.last && tracker.last->odom_from_camera) {  // which tells earlier frames' places, too
+  if (tracker.last && tracker.last->odom_from_camera) {  // gives earlier frames' poses, too
     tracker.velocity_per_s.reset();
     tracker.motion.reset();
     tracker.coasting = true;
