@@ -11,7 +11,7 @@ namespace mh {
 struct Agreement {
   std::int64_t pixels = 0;
   std::int64_t same_class = 0, same_instance = 0;
-  /// Pixels that show different instances at the same depth (to within a factor of 1e-5): two
+  /// Pixels that show different instances at the same depth (relative difference up to 1e-5): two
   /// coplanar objects, where either answer is right.
   std::int64_t ties = 0;
   std::int64_t same_color = 0;   ///< every channel within two gray levels

@@ -35,8 +35,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kMaxAlbedo = 0.95F;
 // A vertex is inside something if more than this share of its rays hit back faces.
 constexpr float kInsideShare = 0.5F;
-// A side with less than this share of the scene's mean light, and of the other side's, is dark, as
-// is the inside of a closed box that is turned inside out.
+// A side with less than this share of the scene's mean light, and of the other side's, is dark,
+// like the inside of a closed box that is turned inside out.
 constexpr float kDarkShare = 0.02F;
 /// Evenly spread points of the unit disc (Vogel's sunflower), rotated by a random angle and shifted
 /// by a random share of a step: the same low-discrepancy pattern at each vertex, but no two

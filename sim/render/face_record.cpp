@@ -88,8 +88,7 @@ FaceTexture make_texture(const Scene& scene, const Surface& surface, std::size_t
   if (surface.texture == TextureTable::kWhite) return record;
   const auto& corners = scene.triangles[face];
   const Eigen::Vector2f& first = scene.uvs[corners[0]];
-  const Eigen::Vector2f at =
-      first - first.array().floor().matrix();  // textures repeat: keep it small
+  const Eigen::Vector2f at = first - first.array().floor().matrix();  // periodic: keep it small
   const Eigen::Vector2f step1 = scene.uvs[corners[1]] - first;
   const Eigen::Vector2f step2 = scene.uvs[corners[2]] - first;
   record.u = at.x(), record.v = at.y();

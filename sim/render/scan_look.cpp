@@ -171,8 +171,7 @@ class Volume {
       q[k] = vertex_of[index(cells[k])];
       if (q[k] == kNone) return;
     }
-    if (a.distance_m > 0)
-      std::swap(q[1], q[3]);  // faces point to the side from which they were seen
+    if (a.distance_m > 0) std::swap(q[1], q[3]);  // faces face where they were seen from
     for (const auto& t : {std::array{q[0], q[2], q[1]}, std::array{q[0], q[3], q[2]}}) {
       out.triangles.push_back(t);
       out.instance_of.push_back(owner[t[0]]);
