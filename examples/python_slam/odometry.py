@@ -30,7 +30,7 @@ def find_keypoints(orb, image, depth_m, k, distortion):
     pixels = np.array([keypoint.pt for keypoint in keypoints])
     columns, rows = np.rint(pixels).astype(int).T
     z = depth_m[rows, columns]
-    near = (z > 0.3) & (z < 5.0)  # beyond that a structured-light sensor's depth is noise
+    near = (z > 0.3) & (z < 5.0)  # beyond that, a structured-light sensor's depth is noise
     rays = cv2.undistortPoints(pixels[:, None], k, distortion)[:, 0]
     points = np.column_stack([rays * z[:, None], z])
     return pixels[near], descriptors[near], points[near]

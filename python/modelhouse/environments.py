@@ -76,7 +76,7 @@ class KidnapEnv:
 
     def reset(self, *, seed: Optional[int] = None,
               options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
-        """Carries the robot to a place drawn from the seed, or to `options` {"pose": (x, y, heading)}.
+        """Carries the robot to a place drawn from the seed, or to options["pose"], (x, y, heading), if given.
         Returns what it senses when the light is on again."""
         self._episodes += 1
         self.simulation.reset((options or {}).get("pose"), self._episodes if seed is None else seed)

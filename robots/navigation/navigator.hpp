@@ -149,7 +149,7 @@ class Navigator {
   double since_s_ = 0;                   ///< when the state was entered
   double turned_rad_ = 0;
   std::optional<double> heading_before_;
-  Eigen::Vector2d away_ = Eigen::Vector2d::Zero();  ///< from what it touched; base frame
+  Eigen::Vector2d away_ = Eigen::Vector2d::Zero();  ///< direction from what it touched; base frame
   double planned_s_ = 0, progress_s_ = 0, least_left_m_ = 0;
   int recoveries_ = 0, bumps_ = 0;
   bool was_known_ = false;

@@ -36,7 +36,7 @@ struct alignas(32) FaceTexture {
 };
 static_assert(sizeof(FaceTexture) == 32);
 
-/// Both, in one cache line.
+/// A face's record and texture, in one cache line.
 struct alignas(64) TexturedFace {
   FaceRecord record;
   FaceTexture texture;

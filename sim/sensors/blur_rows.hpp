@@ -27,8 +27,8 @@ struct FloatImage {
   std::size_t channels = 1;
 };
 
-/// Blurs an image by a Gaussian, horizontally and then vertically, keeping only the rows that the
-/// kernel spans in memory; beyond its borders, the image is extended by its outermost pixels.
+/// Blurs an image with a Gaussian, horizontally and then vertically, keeping in memory only the
+/// rows that the kernel spans; beyond its borders, the image is extended by its outermost pixels.
 /// @param kernel  see gaussian_kernel()
 /// @param fill    fill(y, row) writes row y; called for rows in order, for each before it is used
 /// @param use     use(y, row) receives the blurred row y; called for rows in order

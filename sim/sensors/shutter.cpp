@@ -203,7 +203,7 @@ RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after
   return scene->render(pinhole, pose);
 }
 
-/// How many images are to be blended into a frame.
+/// Number of images to blend into a frame.
 int Shutter::images_within(std::size_t i) const {
   const MotionSampling& sampling = config_.motion_sampling;
   const double duration_s = Rows::duration_s(config_);

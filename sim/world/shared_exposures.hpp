@@ -40,7 +40,7 @@ class SharedExposures {
   using Make = std::function<Shutter::Exposed(std::size_t)>;
 
   /// @param name    names the file, which may be in subfolders; identifies scene, camera, path,
-  ///                sensors and, if exposures are given with it, noise
+  ///                sensors and, if the exposures include it, noise
   /// @param camera  of the exposures
   /// @param frames  number of frames of the path
   SharedExposures(SharedImages where, const std::string& name, const Camera& camera,

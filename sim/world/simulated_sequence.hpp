@@ -37,8 +37,8 @@ class SimulatedSequence : public Sequence {
                     LabelMode labels,
                     std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
-  /// From now on, exposures are shared with the processes that give the same folder and name, and
-  /// frames with one of images.noises with those that also give the same noises.
+  /// From now on, exposures are shared with the processes that pass the same folder and name;
+  /// frames with one of images.noises, with those that also pass the same noises.
   /// @param name identifies everything that the constructor received, except labels
   void share(const SharedImages& images, const std::string& name);
 
@@ -70,7 +70,7 @@ class SimulatedSequence : public Sequence {
   std::vector<SE3> odom_from_camera_;        // or empty
   std::vector<ImuReading> imu_;              // or empty
   LasersAt lasers_;                          // or empty
-  SharedImages images_;                      // shared
+  SharedImages images_;                      // where exposures are shared
   std::string name_;                         // of their file
   std::unique_ptr<SharedExposures> shared_;  // or null
   mutable std::mutex opening_;
