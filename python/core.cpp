@@ -118,7 +118,7 @@ RgbdFrame frame_at(const Recording& recording, py::ssize_t i) {
 }
 
 /// @throws py::value_error unless numbers are of one of these kinds ("u", "i", "f"), since others
-/// would be converted to something else than was meant
+/// would be converted to something that was not meant
 void require_kind(const py::array& image, const std::string& kinds, const char* what,
                   const char* expected) {
   if (kinds.find(image.dtype().kind()) == std::string::npos)

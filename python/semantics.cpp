@@ -13,7 +13,8 @@
 namespace mh::python {
 namespace {
 
-/// Ids of labels or words. @throws py::value_error unless they are integers of 32 bits
+/// Ids of labels or words. @throws py::value_error unless they are integers that fit in 32 bits,
+/// unsigned
 class Ids {
  public:
   Ids(const py::object& object, const char* what) {

@@ -24,7 +24,7 @@ LabelMode label_mode(const std::string& word) {
       fmt::format("labels='{}' is not one of none, exact, annotated, boxes, detector", word));
 }
 
-/// What a step delivers, with names for what the robot's sensors are called.
+/// What a step delivers, with the robot's equipment for the sensors' names.
 struct Observed {
   RobotObservation seen;
   std::shared_ptr<RgbdFrame> frame;  ///< or null
@@ -34,7 +34,7 @@ struct Observed {
 /// x, y (m) and heading (rad).
 using Place = std::array<double, 3>;
 
-/// A scene, a robot and a level, loaded once; reset() begins again.
+/// A scene, a robot and a level, loaded once; reset() starts over.
 class PythonSimulation {
  public:
   PythonSimulation(const std::string& scene, const std::string& robot, const std::string& level,
@@ -162,7 +162,7 @@ class PythonSimulation {
   }
 
  private:
-  // Of what follows, the callers hold the lock.
+  // Callers of the following functions hold the lock.
   Simulation& running() {
     if (!simulation_) begin({}, {});
     return *simulation_;
@@ -185,7 +185,7 @@ class PythonSimulation {
             fmt::format("pose ({}, {}, {}): is no place", place[0], place[1], place[2]));
     return {{place[0], place[1]}, place[2]};
   }
-  /// The lock, taken without keeping other threads of Python from running meanwhile.
+  /// Takes the lock; other Python threads can run while this one waits for it.
   std::unique_lock<std::mutex> locked() {
     const py::gil_scoped_release others_run;
     return std::unique_lock(mutex_);
@@ -195,7 +195,7 @@ class PythonSimulation {
   SimulationConfig config_;
   SimulatedScene scene_;
   std::unique_ptr<Simulation> simulation_;
-  std::mutex mutex_;  ///< of simulation_ and config_: threads of Python may share one object
+  std::mutex mutex_;  ///< guards simulation_ and config_: Python threads may share an object
 };
 
 template <class Sensors, class Value>

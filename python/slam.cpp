@@ -17,7 +17,7 @@ namespace mh::python {
 namespace {
 
 /// The settings that {"features.count": 1000, ...} names, or those of a file.
-/// @param base  where they say nothing
+/// @param base  values of all other settings
 SlamConfig config_of(const py::object& settings, const SlamConfig& base) {
   if (settings.is_none()) return base;
   if (py::isinstance<py::str>(settings))
@@ -44,7 +44,7 @@ std::shared_ptr<const Vocabulary> vocabulary_of(const std::string& name) {
       Vocabulary::load(find_shipped(name, Shipped::kVocabulary)));
 }
 
-/// What the command draws from while nothing is lost.
+/// The random stream that `modelhouse slam` uses until the system is first restarted.
 RandomStream draws_of(std::uint64_t seed) {
   RunSpec spec;
   spec.seed = seed;
@@ -58,7 +58,7 @@ struct PythonSlam {
   std::uint64_t seed = 0;
   RandomStream draws = draws_of(seed);
   std::uint64_t frames = 0;
-  /// Threads of Python may share one object.
+  /// Python threads may share one object.
   std::unique_ptr<std::mutex> mutex = std::make_unique<std::mutex>();
 
   StepReport step(const RgbdFrame& frame) {
@@ -72,7 +72,7 @@ struct PythonSlam {
   }
 };
 
-/// The lock, taken without keeping other threads of Python from running meanwhile.
+/// Takes the lock; other Python threads can run while this one waits for it.
 std::unique_lock<std::mutex> locked(const PythonSlam& slam) {
   const py::gil_scoped_release others_run;
   return std::unique_lock(*slam.mutex);

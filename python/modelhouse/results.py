@@ -11,10 +11,10 @@ from typing import Any, Dict, List, Sequence, Tuple, Union
 
 
 class Results:
-    """What `modelhouse bench` wrote into a folder. Tables are pandas.DataFrame if pandas is there, else
-    a dict of lists by column.
+    """What `modelhouse bench` wrote into a folder. Tables are pandas.DataFrame if pandas is installed,
+    else a dict of lists by column.
 
-    Raises FileNotFoundError if the folder holds no results.sqlite, ValueError if that is something else."""
+    Raises FileNotFoundError if the folder has no results.sqlite, ValueError if that file is something else."""
 
     def __init__(self, folder: Union[str, "os.PathLike[str]"]) -> None:
         self.folder = pathlib.Path(folder)
@@ -40,22 +40,22 @@ class Results:
         return pandas.DataFrame(rows, columns=columns)
 
     def runs(self) -> Any:
-        """A line per run: name, environment, system, labels, level, trial, status and more."""
+        """One row per run: name, environment, system, labels, level, trial, status and more."""
         return self.sql("SELECT * FROM runs ORDER BY name")
 
     def metrics(self) -> Any:
-        """A line per run, parameter point and metric: run, point, name, value."""
+        """One row per run, parameter point and metric: run, point, name, value."""
         return self.sql("SELECT runs.name AS run, environment, system, labels, level, trial, point, "
                         "metrics.name AS name, value FROM metrics JOIN runs USING (key) "
                         "ORDER BY runs.name, point, metrics.name")
 
     def queries(self) -> Any:
-        """A line per query: what was asked, answered and true."""
+        """One row per query: what was asked, the answer and the truth."""
         return self.sql("SELECT runs.name AS run, queries.* FROM queries JOIN runs USING (key) "
                         "ORDER BY runs.name, point, query_set, frame")
 
     def frames(self) -> Any:
-        """A line per frame of the mapping tours: true and estimated poses."""
+        """One row per frame of the mapping tours: true and estimated poses."""
         return self.sql("SELECT runs.name AS run, frames.* FROM frames JOIN runs USING (key) "
                         "ORDER BY runs.name, frame")
 

@@ -50,8 +50,8 @@ Camera read_lens(YamlReader& yaml) {
   camera.cy_px = 0.5 * (camera.height_px - 1);
   camera.rate_hz = lens.rate_hz;
   camera.baseline_m = lens.baseline_m;
-  // That of the levels: a Kinect's 0.0019 z^2 m (Nguyen et al., 3DIMPVT 2012) is 0.08 px at
-  // fx = 577 px, rounded up.
+  // As in the sensor levels: a Kinect's 0.0019 z^2 m (Nguyen et al., 3DIMPVT 2012) is 0.08 px at fx
+  // = 577 px, rounded up.
   camera.disparity_sigma_px = 0.1;
   camera.disparity_sigma_is_given = true;
   return camera;

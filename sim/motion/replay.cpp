@@ -35,8 +35,8 @@ Trajectory at_rate(const Trajectory& recorded, double rate_hz) {
   }
 }
 
-/// Moves the recording's frame so that its first camera is at x, y and everything is rotated by
-/// `turn` about the vertical axis through it.
+/// Returns world_from_recording, which puts the first camera at (at.x, at.y) and rotates everything
+/// by at.z about the vertical axis through it.
 SE3 placing(const Vector3d& first_m, const Vector3d& at) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(at.z(), Vector3d::UnitZ()).toRotationMatrix();
   const Vector3d pivot(first_m.x(), first_m.y(), 0);

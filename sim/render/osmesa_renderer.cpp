@@ -62,7 +62,7 @@ class OsmesaRenderer final : public Renderer {
   }
 
  private:
-  /// Light brighter than white may not be white behind a pane.
+  /// Where light is cut off: behind a pane, light brighter than white may end up darker than white.
   float white() const { return has_panes_ ? std::numeric_limits<float>::max() : 1.0F; }
 
   void check(const char* what) const {

@@ -22,11 +22,11 @@ inline constexpr double kSecondsPerMs = 1e-3;
 /// and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012. Range: ASUS Xtion
 /// data sheet.
 struct DepthNoiseConfig {
-  bool enabled = true;        ///< off: the exact depth at any range
-  bool axial = true;          ///< sigma_z(z, incidence)
-  bool lateral = true;        ///< ragged edges: normal offsets of lookups, sigma_L(incidence) px
-  bool quantization = true;   ///< 1/8 px disparity steps
-  bool grazing_holes = true;  ///< no return beyond kMaxIncidenceRad
+  bool enabled = true;            ///< off: the exact depth at any range
+  bool axial = true;              ///< sigma_z(z, incidence)
+  bool lateral = true;            ///< ragged edges: normal lookup offsets, sigma_L(incidence) px
+  bool quantization = true;       ///< 1/8 px disparity steps
+  bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
   bool projector_shadow = false;  ///< no return where the projector's light is blocked
   double min_range_m = 0.4;
   double max_range_m = 8.0;  ///< above min_range_m
@@ -73,11 +73,11 @@ void fields(C& c, Visit& v) {
 }
 
 /// Light is counted in electrons: shot noise has variance L * well (L = linear light, 1 at white),
-/// read noise the standard deviation read_noise_e; the noisy count is divided by the well, the
-/// electron count of a white pixel (well_e / gain). Defaults: OV5640,
-/// from Aldebaran's documentation of Pepper's 2D camera. Signal-to-noise ratio at most 36 dB: well
-/// of 10^3.6 = 3981 electrons. Dynamic range 68 dB: read noise of 3981 / 10^3.4 = 1.6 electrons.
-/// Model: Healey and Kondepudy, PAMI 1994.
+/// read noise has standard deviation read_noise_e; the noisy count is divided by the well, the
+/// electron count of a white pixel (well_e / gain). Defaults: OV5640, from Aldebaran's
+/// documentation of Pepper's 2D camera. Signal-to-noise ratio at most 36 dB: well of 10^3.6 = 3981
+/// electrons. Dynamic range 68 dB: read noise of 3981 / 10^3.4 = 1.6 electrons. Model: Healey and
+/// Kondepudy, PAMI 1994.
 struct ShotNoiseConfig {
   bool enabled = false;
   double well_e = 3981.0;
@@ -243,7 +243,7 @@ struct DepthBiasConfig {
   /// TUM's Kinects before their authors corrected them: 1.035 (freiburg1), 1.031 (freiburg2).
   double scale = 1.0;
   /// TUM fr1 after that correction: 0.01 (docs/measurements/tracking.md). Teichman, Miller and
-  /// Thrun (CLAMS, RSS 2013) learn such multipliers over image and distance.
+  /// Thrun (CLAMS, RSS 2013) learn multipliers of this kind, which vary over image and distance.
   double bend = 0.0;
   std::uint64_t camera = 0;
   double shift_x_px = 0.0, shift_y_px = 0.0;
@@ -306,8 +306,8 @@ struct MotionSampling {
 
 /// An inertial sensor in the camera's housing. Defaults: noise of the Bosch BMI055 (data sheet:
 /// 0.014 deg/s/sqrt(Hz), 150 ug/sqrt(Hz), zero-rate offset 1 deg/s), as in Intel's D435i; the walks
-/// of the ADIS16448 in EuRoC's sensor.yaml (Burri et al., IJRR 2016), and an accelerometer's offset
-/// as that data set's ground truth has it.
+/// of the ADIS16448 in EuRoC's sensor.yaml (Burri et al., IJRR 2016), and an accelerometer offset
+/// as in that data set's ground truth.
 struct ImuConfig {
   double rate_hz = 200;
   double gyro_noise = 2.44e-4;   ///< rad/s/sqrt(Hz)

@@ -36,21 +36,22 @@ inline constexpr int kMediumPixels = 32 * 32, kLargePixels = 96 * 96;
 /// arXiv 1804.02767, table 3 (608 px, COCO test-dev): AP 33.0, AP50 57.9, AP75 34.4, and by size
 /// 18.3, 35.4, 41.9. [B] AlexeyAB/darknet issue 6670, the original weights at confidence 0.25 on
 /// COCO val2017: 9571 true and 4112 false detections of its first four classes, so a precision of
-/// 0.70. [C] Redmon et al., "You only look once", CVPR 2016, figure 4: of a YOLO's false detections
-/// 55 % are badly placed, 31 % of the wrong class, 14 % on background.
+/// 0.70. [C] Redmon et al., "You only look once", CVPR 2016, figure 4: of a YOLO's false
+/// detections, 55 % are badly placed, 31 % of the wrong class, 14 % on background.
 struct DetectorConfig {
   // Recall at IoU 0.5 by size: [A] AP by size times AP50 / AP. AP50 approximates the recall at the
-  // operating point; that of all guesses is higher (0.41, 0.75, 0.97 by the AR of
+  // operating point; the recall of all guesses is higher (0.41, 0.75, 0.97 from the AR in
   // ultralytics/yolov3 issue 9).
   double recall_small = 0.321, recall_medium = 0.621, recall_large = 0.735;
   /// Share of an object's detections with the wrong class: 31 % of the 30 % that are false [B, C],
   /// relative to all detections of objects.
   double confusion = 0.097;
   /// Expected detections of nothing per image: 14 % of the 30 % that are false, relative to the 4.3
-  /// right ones per image of 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
+  /// correct ones per image, from 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
   double false_alarms = 0.26;
   /// Standard deviation of the error of each side of a box, as a share of the box's width or
-  /// height: chosen so that of boxes with an IoU above 0.5, 34.4 / 57.9 have one above 0.75 [A].
+  /// height: chosen so that 34.4 / 57.9 of the boxes with an IoU above 0.5 have an IoU above 0.75
+  /// [A].
   double box_sigma = 0.087;
   friend bool operator==(const DetectorConfig&, const DetectorConfig&) = default;
 };
@@ -71,7 +72,7 @@ void fields(C& c, Visit& v) {
 struct LabelNoiseConfig {
   bool enabled = false;
   double confusion = 0.0;  ///< share of instances that carry a wrong class
-  double swap = 0.0;       ///< share of instances that begin an exchange of classes with their
+  double swap = 0.0;       ///< share of instances that start an exchange of classes with their
                            ///< nearest neighbor in the image
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within this many px of a border between labels become void
@@ -106,7 +107,7 @@ struct LabelConfig {
   DetectorConfig detector = {};
   double persistent_share = 0.4;  ///< of the variance, 0 to 1
   double frame_share = 0.1;       ///< as above; the two sum to at most 1, the rest is the view's
-  std::uint64_t seed = 0;         ///< another seed acts as another network
+  std::uint64_t seed = 0;         ///< a different seed acts as a different network
   friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
 };
 
@@ -134,7 +135,7 @@ SemanticImage label_image(const RenderedFrame& truth, LabelMode mode);
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const LabelConfig& config,
                           const SE3& world_from_camera, RandomStream stream);
 
-/// One box of a detector, all bounds included.
+/// One box of a detector; its bounds are inclusive.
 struct Detection {
   int left = 0, top = 0, right = 0, bottom = 0;
   ClassDistribution classes;

@@ -77,7 +77,7 @@ Motion parse(const std::string& motion) {
   return result;
 }
 
-/// What parts of a recorded path cannot be replayed. @throws InputError if nothing can
+/// Notes on the parts of a recorded path that cannot be replayed. @throws InputError if none can be
 std::vector<std::string> notes_on_replay(const std::filesystem::path& file) {
   std::vector<std::string> notes;
   read_trajectory(file, &notes);
