@@ -23,7 +23,7 @@ Vector2f on_circle(int k, int n) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Two unit vectors across a unit direction; (first, second, way) is right-handed.
+/// Two unit vectors perpendicular to a unit direction; (first, second, way) is right-handed.
 std::pair<Vector3f, Vector3f> across(const Vector3f& way) {
   const Vector3f helper = std::abs(way.z()) < 0.9F ? Vector3f::UnitZ() : Vector3f::UnitX();
   const Vector3f first = helper.cross(way).normalized();

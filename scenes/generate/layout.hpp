@@ -58,7 +58,7 @@ struct LayoutItem {
   Footprint footprint() const { return footprint_of(at_m, turn_deg, size_m.x(), size_m.y()); }
 };
 
-/// A room being furnished: knows what is where, and keeps the floor passable.
+/// A room being furnished: tracks what is where, and keeps the floor passable.
 class Layout {
  public:
   static constexpr double kRobotRadius_m = 0.26;  ///< half of 0.52 m
