@@ -27,7 +27,7 @@ struct MaterialsIn {
 void warn_of_edges(const Scene& scene, const std::vector<std::array<const char*, 2>>& edges,
                    const std::filesystem::path& file, std::vector<std::string>& warnings);
 
-/// Converts the materials of a file that assimp has read, one by one.
+/// Converts the materials of a file that assimp has read, in the same order.
 /// @param file           its folder is searched for textures; warnings name it.
 /// @param linear_colors  whether the file's colors are linear (glTF) or sRGB.
 /// @param images       decodes and caches the textures

@@ -11,11 +11,11 @@
 
 namespace mh {
 
-/// A whole number without sign, of digits alone.
+/// Parses an unsigned whole number; nullopt if the text has anything but digits.
 std::optional<int> whole_number_of(std::string_view digits);
 
-/// The files of a folder named by a number between two words, "frame-" and ".color.png", by
-/// number; of two files with one number the first by name.
+/// The files of a folder named by a number between two words, "frame-" and ".color.png", by number.
+/// @throws InputError if two files have the same number.
 std::map<int, std::filesystem::path> numbered_images(const std::filesystem::path& folder,
                                                      std::string_view before,
                                                      std::string_view after);
