@@ -198,7 +198,7 @@ class McapFile : public MessageFile {
   std::map<std::uint16_t, std::string> schemas_;  ///< types by id
   std::map<std::uint16_t, std::size_t> channels_by_id_;
   bool channels_are_read_ = false;  ///< by read_channels_from()
-  bool ended_ = false;              ///< whether the data section did
+  bool ended_ = false;              ///< the data section has ended
   bool footer_ = false;             ///< found without a DataEnd record before it
 };
 
