@@ -22,14 +22,14 @@ using Eigen::Vector3f;
 
 constexpr double kCell_m = 0.05;
 constexpr double kMostCells = 1000;  // along x and along y
-constexpr float kLevel = 0.7F;       // cosine of a face's slope: scans are rough, see below
+constexpr float kLevel = 0.7F;       // least cosine of a level face's slope: scans are rough
 constexpr float kUpright = 0.05F;    // less: a vertical face, which covers no area seen from above
 constexpr float kHeadroom_m = 1.0F;  // with less headroom, nobody can stand on a surface
 constexpr float kLayer_m = 0.1F;     // surfaces closer than this count as one
 constexpr double kBin_m = 0.05;      // of the histogram of heights
 constexpr double kLeast_m2 = 1.0;    // of a floor
 constexpr double kLarge = 0.25;      // of the largest level surface
-constexpr double kMostBelow = 0.25;  // of the scene's surface below it: a seat is not a floor
+constexpr double kMostBelow = 0.25;  // share of the surface below a floor: excludes seats
 constexpr double kSteepest_rad = 2.0 * std::numbers::pi / 180;
 constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // less is measurement error
 constexpr double kLevelFloor_m = 1e-3;
@@ -115,7 +115,7 @@ class Columns {
 
   Eigen::AlignedBox2d things_m() const { return things_.cast<double>(); }
 
-  std::vector<Sample> samples;  ///< by cell, then upward
+  std::vector<Sample> samples;  ///< sorted by cell, then by height
 
  private:
   static std::vector<Sample> with_headroom(const std::vector<Sample>& all) {

@@ -41,8 +41,8 @@ void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& 
 std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> floor_z_m = {},
                                      std::vector<std::string>* warnings = nullptr);
 
-/// Whether a scene looks as if its file had y up: its floor is vertical, or it has a large level
-/// surface at the bottom only when turned.
+/// Whether a scene looks as if its file had y up: its labeled floor is vertical or, without one,
+/// the scene is shaped like a room that lies on its side.
 bool looks_y_up(const Scene& scene);
 
 /// Turns a scene from y up to z up, as for glTF: (x, y, z) becomes (x, -z, y). `back` reverses it.

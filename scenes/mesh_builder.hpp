@@ -70,7 +70,7 @@ class MeshBuilder {
             float depth_m, const Eigen::Vector3f& side = {1, 0, 0});
   /// A flat parallelogram, seen from the side where u runs right and v runs down; texture
   /// coordinates go from uv0 at `corner` (upper left) to uv0 + uv_size, in meters on the image;
-  /// without uv_size, it is the parallelogram's own size, so that images appear once.
+  /// uv_size defaults to the parallelogram's own size, so that images appear once.
   void image(MaterialId material, const Eigen::Vector3f& corner, const Eigen::Vector3f& right,
              const Eigen::Vector3f& down, const Eigen::Vector2f& uv0 = {0, 0},
              std::optional<Eigen::Vector2f> uv_size = std::nullopt);

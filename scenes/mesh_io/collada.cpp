@@ -6,8 +6,8 @@
 namespace mh {
 namespace {
 
-/// Length of the comment, hole, or tag of a polygon with holes at the start of a text; 0 for
-/// anything else.
+/// Length of the comment, the hole, or the tag of a polygon with holes with which a text begins; 0
+/// if it begins with something else.
 std::size_t size_of_unread(std::string_view text) {
   const auto up_to = [&](std::string_view end) {
     const std::size_t found = text.find(end);

@@ -65,8 +65,8 @@ Rgb8 convert_color(const aiColor4D& c, bool linear) {
   return {level(c.r), level(c.g), level(c.b)};
 }
 
-/// Whether a material's alpha is used: glTF states whether it is, in other formats an alpha is used
-/// if present.
+/// Whether a material's alpha is used. glTF states this explicitly; in other formats, alpha is used
+/// wherever it is present.
 bool has_holes(const aiMaterial& record) {
   aiString mode;
   return record.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS ||

@@ -40,8 +40,8 @@ struct PlyParts {
 /// with its header. PLYs with texture coordinates or triangle strips are left to assimp.
 bool is_plain_ply(std::string_view bytes);
 
-/// Reads a PLY, text or binary of either byte order. Little-endian ones are read in one pass over
-/// their bytes, some 15 times as fast as a general reader; the others are converted to that form
+/// Reads a PLY, text or binary of either byte order. Little-endian PLYs are read in one pass over
+/// their bytes, some 15 times as fast as by a general reader; the others are converted to that form
 /// first. Labels, which assimp drops, are kept. Properties may have any type and order; unknown
 /// properties and elements are skipped.
 /// @param name  names the file in messages

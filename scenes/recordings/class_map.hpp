@@ -40,7 +40,7 @@ std::string no_labels_note(const std::filesystem::path& table);
 
 /// A label image as class distributions, each with all probability on one class.
 /// @param map  meaning of the ids; null: they are our classes
-/// @throws InputError "class N is unknown" on an id beyond ours.
+/// @throws InputError "class N is unknown" on an id beyond our classes.
 SemanticImage one_hot(const Grid2d<std::uint16_t>& ids, const ClassMap* map);
 
 }  // namespace mh

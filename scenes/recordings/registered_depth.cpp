@@ -9,8 +9,8 @@
 namespace mh {
 namespace {
 
-/// The distance from the axis, at unit depth, up to which a lens shows points that are farther from
-/// the axis farther out in the image. Beyond that, its polynomials fold the image.
+/// The largest distance from the axis, at unit depth, up to which a lens's distortion is monotonic.
+/// Beyond that, its polynomials fold the image.
 double farthest_radius(const Distortion& distortion) {
   if (distortion.none()) return std::numeric_limits<double>::infinity();
   constexpr double kStep = 0.01, kMost = 10;  // 84 degrees off the axis

@@ -116,7 +116,8 @@ cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
   return image;
 }
 
-/// Converts to three channels: gray cameras have one, and simulators that write opacity four.
+/// Converts to three channels: images of gray cameras have one, and those of simulators that write
+/// opacity have four.
 cv::Mat as_three_channels(const cv::Mat& image) {
   if (image.channels() == 3) return image;
   cv::Mat color;

@@ -41,7 +41,7 @@ class McapFile : public MessageFile {
   }
 
  private:
-  /// Records one after the other: of the file, or of a chunk.
+  /// A sequence of records: those of the file, or of a chunk.
   struct Records {
     std::string_view bytes;
     std::size_t begin = 0;
