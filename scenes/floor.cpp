@@ -280,8 +280,8 @@ bool too_much_below(const Scene& scene, const FloorPlane& plane, const Columns& 
   return below > kMostBelow * all || below > above;
 }
 
-/// Five standard deviations of the height of the floor's corners above the plane: noise moves none
-/// of a scan's many thousands of corners farther than that.
+/// Five standard deviations of the floor vertices' height above the plane: far enough that noise
+/// puts none of a scan's many thousands of vertices beyond it.
 double roughness_m(const Scene& scene, const FloorPlane& plane) {
   std::vector<double> away;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {

@@ -18,7 +18,7 @@ namespace mh {
 /// @param file      named in error messages; the innermost file if readers are nested
 /// @param warnings  where to append what `load` appended; may be null.
 /// @param load      reads the scene; its argument is where to append warnings.
-/// @throws InputError, MachineError as `load` does, and see in_child().
+/// @throws InputError or MachineError as `load` does; see also in_child().
 Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* warnings,
                    const std::function<Scene(std::vector<std::string>*)>& load,
                    const GuardLimits& limits = {});

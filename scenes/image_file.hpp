@@ -49,7 +49,7 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form = ImageForm::kStored
 /// Reads an image file. @throws InputError naming the file.
 cv::Mat read_image(const std::filesystem::path& file, ImageForm form = ImageForm::kStored);
 
-/// OpenCV's blue-green-red image, 8 bits, as color.
+/// Converts OpenCV's blue-green-red image of 8 bits to color.
 Grid2d<Rgb8> color_of(const cv::Mat& bgr);
 
 /// Decodes an image of three 8-bit channels; nullopt if the bytes are not such an image.

@@ -30,7 +30,7 @@ std::pair<Vector3f, Vector3f> across(const Vector3f& way) {
   return {first, way.cross(first)};
 }
 
-/// Projects a welded soft shape to a plane without a seam: no face that occurs is edge-on.
+/// Projects a welded soft shape to a plane without a seam: none of its faces is edge-on.
 Vector2f soft_uv(const Vector3f& p) {
   return {p.x() + 0.6F * p.z(), p.y() + 0.6F * p.z()};
 }

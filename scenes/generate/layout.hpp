@@ -17,7 +17,8 @@ using Footprint = std::array<Eigen::Vector2d, 4>;
 
 Footprint footprint_of(const Eigen::Vector2d& middle_m, double turn_deg, double width_m,
                        double depth_m);
-/// Transforms a point from the frame of something at `middle_m`, rotated, to the room's frame.
+/// Transforms a point to the room's frame from the frame of something that is at `middle_m` and
+/// rotated by `turn_deg`.
 Eigen::Vector2d from_frame(const Eigen::Vector2d& middle_m, double turn_deg,
                            const Eigen::Vector2d& local_m);
 

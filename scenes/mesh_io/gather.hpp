@@ -28,7 +28,7 @@ struct ReadMesh {
 };
 
 /// Collects the meshes of a file's nodes into one scene, with their objects and classes (see
-/// load_mesh). It converts no materials: the scene must already have the file's.
+/// load_mesh). Does not convert materials: the scene must already have those of the file.
 /// @throws InputError naming the file: positions that are not finite, too many objects or
 /// materials.
 void gather(const ReadMesh& mesh, Scene& scene);

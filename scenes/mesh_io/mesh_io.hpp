@@ -22,7 +22,7 @@ struct MeshUse {
 /// Reads a mesh file through assimp: PLY, glTF/GLB, OBJ, DAE (and other formats that assimp reads).
 /// The result is z-up: glTF and DAE, which are y-up, are rotated; the others are left as they are.
 ///
-/// Textures may be embedded or next to the file. One that is missing or cannot be decoded is
+/// Textures may be embedded or next to the file. Textures that are missing or cannot be decoded are
 /// replaced by magenta and named in `warnings`. Texels that are not opaque are holes
 /// (Material::opacity); a mostly transparent material is a pane (Material::transmission).
 ///

@@ -54,7 +54,7 @@ std::optional<float> number(std::string_view word) {
   return value;
 }
 
-/// A texture as a line names it.
+/// A texture and its options, as stated in a line.
 struct Texture {
   std::string file;
   MtlUvs uvs{};

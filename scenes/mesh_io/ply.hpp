@@ -36,8 +36,8 @@ struct PlyParts {
   bool labels = true;
 };
 
-/// Whether a PLY that starts with these bytes is for parse_ply to read, or to report what is wrong
-/// with its header. PLYs with texture coordinates or triangle strips are left to assimp.
+/// Whether parse_ply should read a PLY that starts with these bytes (or report what is wrong with
+/// its header). PLYs with texture coordinates or triangle strips are left to assimp.
 bool is_plain_ply(std::string_view bytes);
 
 /// Reads a PLY, text or binary of either byte order. Little-endian PLYs are read in one pass over

@@ -63,7 +63,7 @@ std::vector<unsigned char> png_of(const Material& material) {
     const cv::Mat opacity(texture.height(), texture.width(), CV_8UC1,
                           const_cast<std::uint8_t*>(material.opacity.data()));
     cv::Mat with_opacity;
-    cv::merge(std::vector<cv::Mat>{out, opacity}, with_opacity);  // the last of (BGR), A
+    cv::merge(std::vector<cv::Mat>{out, opacity}, with_opacity);  // B, G, R, A
     out = with_opacity;
   }
   std::vector<unsigned char> png;

@@ -93,8 +93,7 @@ std::vector<RecordedFrame> read_associations(const fs::path& list, FirstImage ot
 
 void sort_frames(std::vector<RecordedFrame>& frames, const fs::path& list,
                  std::vector<std::string>* notes) {
-  // The longest subsequence of stamps that never decreases: for each length, the smallest stamp
-  // that ends such a subsequence.
+  // For each length, the smallest stamp that ends a non-decreasing subsequence of that length.
   std::vector<Stamp> ends;
   for (const RecordedFrame& frame : frames) {
     const auto place = std::ranges::upper_bound(ends, frame.stamp_ns);

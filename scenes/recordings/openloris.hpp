@@ -5,9 +5,9 @@
 
 namespace mh {
 
-/// OpenLORIS-Scene's packages (Shi et al., ICRA 2020): one folder per sequence. Read are the
+/// OpenLORIS-Scene's packages (Shi et al., ICRA 2020): one folder per sequence. The reader uses the
 /// D435i's color images and the depth aligned to them (color.txt, aligned_depth.txt; mm), the
-/// calibration in sensors.yaml, and groundtruth.txt. Its poses are those of the robot's base;
+/// calibration in sensors.yaml, and groundtruth.txt. The poses there are those of the robot's base;
 /// trans_matrix.yaml states where the camera is on the robot.
 extern const SequenceReader kOpenlorisReader;
 

@@ -23,7 +23,7 @@ double farthest_radius(const Distortion& distortion) {
   return kMost;
 }
 
-/// The points of a depth camera's pixels.
+/// Computes the 3D points of a depth camera's pixels.
 class Unprojector {
  public:
   explicit Unprojector(const Camera& camera) : camera_(camera) {}

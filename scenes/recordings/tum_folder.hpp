@@ -33,8 +33,8 @@ struct RecordedFrame {
   std::filesystem::path color, depth, classes;  ///< classes: empty if the recording has none
 };
 
-/// The list of pairs in a folder of TUM's or ETH3D's layout: associations.txt, associated.txt, or
-/// association.txt or associate.txt, which are also in use; empty if the folder holds none.
+/// The list of pairs in a folder of TUM's or ETH3D's layout: associations.txt, associated.txt,
+/// association.txt or associate.txt, all of which are in use; empty if the folder holds none.
 std::filesystem::path associations_in(const std::filesystem::path& folder);
 
 /// Reads a folder in TUM's layout: rgb.txt and depth.txt or, if one of them is missing,

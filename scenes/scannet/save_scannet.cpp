@@ -98,7 +98,7 @@ std::vector<SegmentGroup> groups_of(const Scene& scene, const std::vector<Owner>
   return list;
 }
 
-/// The mesh with each vertex's class, drawn in that class's color.
+/// The mesh with the class of each vertex as its label, and that class's color.
 PlyMesh label_mesh(PlyMesh mesh, const std::vector<Owner>& owner) {
   for (std::size_t v = 0; v < owner.size(); ++v) {
     const ClassInfo& info = classes()[classes()[owner[v].class_id].nyu40];

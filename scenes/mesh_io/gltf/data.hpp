@@ -52,12 +52,12 @@ struct Values {
 /// @throws InputError naming file and item: data outside of its buffer, an unknown type.
 class Data {
  public:
-  /// @param body  the binary chunk of a .glb; both must outlive this
+  /// @param body  the binary chunk of a .glb; it and `gltf` must outlive this
   Data(Json& gltf, const std::filesystem::path& file, std::string_view body);
 
   /// Whether assimp reads the accessor as we do: floats in a buffer, not sparse.
   bool is_plain(std::size_t accessor) const;
-  /// Values as floats: normalized integers are divided by the type's largest, sparse values are
+  /// Values as floats: normalized integers are divided by their type's maximum, sparse values are
   /// replaced.
   /// @param shares the values are fractions of one: integers are normalized even if the file does
   /// not request that

@@ -147,8 +147,8 @@ class BagFile : public MessageFile {
     }
   }
 
-  /// Reads the connections that are stored outside of chunks from this position on, as they are
-  /// after the last chunk: the only chunk that holds them may be damaged.
+  /// Reads the connections that are stored outside of chunks from this position on (bags repeat
+  /// them after the last chunk), in case the only chunk that holds them is damaged.
   void read_connections_from(std::uint64_t at) {
     if (std::exchange(connections_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {

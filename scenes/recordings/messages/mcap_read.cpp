@@ -96,8 +96,8 @@ class McapFile : public MessageFile {
     return at;
   }
 
-  /// Reads the channels that are stored outside of chunks from this position on, as in a summary:
-  /// the only chunk that holds them may be damaged.
+  /// Reads the channels that are stored outside of chunks from this position on (a summary repeats
+  /// them), in case the only chunk that holds them is damaged.
   void read_channels_from(std::uint64_t at) {
     if (std::exchange(channels_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {

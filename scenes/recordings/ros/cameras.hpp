@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// The cameras of a recording in messages.
+/// The cameras of a recording that consists of messages.
 struct RosCameras {
   Camera color;
   std::optional<DepthCamera> depth;  ///< absent: depth is registered to color
