@@ -76,7 +76,7 @@ ros::CameraInfo camera_info_message(const Camera& camera);
 std::vector<ros::Detection2D> detections_of(const Grid2d<ClassId>& classes,
                                             const Grid2d<InstanceId>& instances);
 
-/// Writes a log as the whole content of a file.
+/// Writes a log as the only content of a file.
 void write_log(MessageWriter& file, const MessageLog& log);
 
 }  // namespace mh
