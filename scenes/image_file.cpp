@@ -45,11 +45,11 @@ std::optional<ImageSize> jpeg_size(std::string_view bytes) {
   return std::nullopt;
 }
 
-/// Whether a JPEG's data continue to its end marker; within them 0xff never precedes 0xd9.
+/// Whether a JPEG's data continues to its end marker; inside the data, 0xff never precedes 0xd9.
 bool jpeg_is_whole(std::string_view bytes) {
   std::size_t at = 2;
   while (at + 2 <= bytes.size()) {
-    if (bytes[at] != '\xff') {  // data, or what a decoder would skip
+    if (bytes[at] != '\xff') {  // data, or bytes that a decoder would skip
       at = bytes.find('\xff', at);
       if (at == bytes.npos) return false;
       continue;
@@ -91,7 +91,7 @@ std::uint64_t bytes_per_pixel(std::string_view bytes) {
   return (type == 0 ? 1U : type >= 4 ? 4U : 3U) * (bytes[kBits] == 16 ? 2U : 1U);
 }
 
-/// Empty if the bytes hold no JPEG or PNG, or one that decode_image() refuses.
+/// Decodes a JPEG or PNG; empty if the bytes are neither, or if decode_image() refuses them.
 cv::Mat decode(std::string_view bytes) {
   if (!announced_size(bytes)) return {};
   try {
@@ -135,7 +135,7 @@ std::string without_remarks(std::string_view bytes) {
     const std::size_t length =
         std::min<std::size_t>(big_endian(bytes, at, 4), bytes.size() - at - kFrame);
     const std::string_view type = bytes.substr(at + 4, 4);
-    // A capital first letter: a critical chunk; tRNS is its opacity.
+    // A capital first letter marks a critical chunk; tRNS holds the opacity.
     if ((type[0] >= 'A' && type[0] <= 'Z') || type == "tRNS")
       kept += bytes.substr(at, kFrame + length);
     at += kFrame + length;
@@ -144,8 +144,8 @@ std::string without_remarks(std::string_view bytes) {
 }
 
 bool claims_too_much(std::string_view bytes) {
-  // An image of one color is the extreme case: a byte of deflate holds at most 1032, and a JPEG's
-  // block of 256 pixels takes a few bytes.
+  // An image of one color is the extreme case: a byte of deflate expands to at most 1032 bytes, and
+  // a JPEG's block of 256 pixels takes a few bytes.
   constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048, kMostBytes = 1U << 30;
   const auto size = announced_size(bytes);
   if (!size) return false;

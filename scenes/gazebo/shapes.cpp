@@ -28,7 +28,7 @@ Vector3f vector_of(const ignition::math::Vector3d& v) {
   return Eigen::Vector3d(v.X(), v.Y(), v.Z()).cast<float>();
 }
 
-/// Surfaces of one material, each covered by its texture once.
+/// Surfaces of one material; the texture covers each of them once.
 class Shape {
  public:
   explicit Shape(const Material& look) {
@@ -75,7 +75,7 @@ void add_cylinder(Shape& shape, float radius, float length) {
   for (const float z : {-0.5F * length, 0.5F * length}) shape.disc({0, 0, z}, radius);
 }
 
-/// A sphere scaled along its axes, or one whose halves are pulled apart.
+/// A sphere scaled along its axes, or one whose halves are pulled apart by `length`.
 void add_ball(Shape& shape, const Vector3f& radii, float length = 0.0F) {
   shape.sheet(kAround, kDown, [=](float u, float v) {
     const float around = 2.0F * kPi * u, down = kPi * v;

@@ -33,7 +33,7 @@ int draw_wanted_objects(Dice& dice, int group, double area_m2) {
   return std::max(3, static_cast<int>(ratio * area_m2 / 10.0));
 }
 
-/// Furnishes an empty room. @returns whether everything that it needs fits
+/// Furnishes an empty room. @returns whether all required pieces fit
 bool furnish(Draft& draft) {
   const RoomGrammar& grammar = draft.grammar;
   if (!add_doors(draft)) return false;

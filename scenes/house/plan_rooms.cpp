@@ -10,7 +10,7 @@ namespace mh {
 namespace {
 
 FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
-  constexpr double kLeft = 0.8;  // width of the passage that must remain next to it
+  constexpr double kLeft = 0.8;  // width of the passage that must remain next to the cut
   const YamlReader corner = yaml.at("corner"), size = yaml.at("size_m");
   const std::string name = corner.as_string();
   const bool south = name.starts_with("south_"), west = name.ends_with("_west");

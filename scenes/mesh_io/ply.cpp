@@ -63,7 +63,7 @@ class BodyParser {
     throw InputError(fmt::format("{}: {}", name_, what));
   }
 
-  /// Takes the records of an element without lists. @returns where they start
+  /// Moves past the records of an element without lists. @returns where they start
   const char* claim(const Element& element) {
     const std::size_t left = body_.size() - at_;
     if (element.stride > 0 && element.count > left / element.stride)
@@ -168,7 +168,7 @@ class BodyParser {
     if (indices == nullptr || !indices->count_type) fail("faces have no list 'vertex_indices'");
     if (indices->type == Type::kFloat || indices->type == Type::kDouble)
       fail("faces name vertices by numbers that are not whole");
-    // The usual record, 3 and three 32-bit indices, has a loop of its own.
+    // The usual record, a 3 and three 32-bit indices, has a loop of its own.
     const bool usual = element.properties.size() == 1 && size_of(*indices->count_type) == 1 &&
                        size_of(indices->type) == 4;
     mesh_.triangles.reserve(static_cast<std::size_t>(
@@ -205,7 +205,7 @@ class BodyParser {
                        element.name));
   }
 
-  /// The items of a list, with a total size of `bytes`; at_ is then past them.
+  /// The items of a list.
   struct List {
     const char* items;
     std::size_t count;
@@ -235,7 +235,7 @@ class BodyParser {
       }
       const List list = read_list(element, property, face);
       if (&property != indices) continue;
-      // Not visible; and if a count is damaged, everything after it is misread.
+      // Such a face is invisible; and if the count is damaged, everything after it is misread.
       if (list.count < 3)
         fail(fmt::format("face {} has {} corners: 3 are needed", face, list.count));
       const auto corner = [&](std::size_t k) {

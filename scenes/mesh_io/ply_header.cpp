@@ -12,7 +12,7 @@ namespace mh::ply {
 
 namespace {
 
-/// The first name of a type is the format's own.
+/// The first name of each type is the one in the PLY format's original definition.
 constexpr std::pair<std::string_view, Type> kNames[] = {
     {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
     {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
@@ -27,7 +27,7 @@ std::optional<Type> type_by_name(std::string_view name) {
   return std::nullopt;
 }
 
-/// Splits a header line at blanks.
+/// Splits a header line at whitespace.
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
   std::size_t at = 0;

@@ -29,8 +29,8 @@ bool is_number(const std::string& word) {
   return used == word.size();
 }
 
-/// @throws InputError if the first line's second word is a number: associate.py was given three
-/// lists, one of them of poses.
+/// @throws InputError if the first line's second word is a number: the pairs were made by
+/// associate.py from a list of poses.
 void refuse_poses(const std::string& text, const std::string& name) {
   std::istringstream lines(text);
   std::string line;
@@ -93,7 +93,7 @@ std::vector<RecordedFrame> read_associations(const fs::path& list, FirstImage ot
 
 void sort_frames(std::vector<RecordedFrame>& frames, const fs::path& list,
                  std::vector<std::string>* notes) {
-  // The longest sequence of stamps that never go back: the smallest that ends one of each length.
+  // For each length, the smallest stamp that ends a non-decreasing subsequence of that length.
   std::vector<Stamp> ends;
   for (const RecordedFrame& frame : frames) {
     const auto place = std::ranges::upper_bound(ends, frame.stamp_ns);

@@ -55,7 +55,7 @@ void note_foreign_ids(const LabelsOfFrames& labels, const ClassMap& map,
             fmt::format("{}: none of its ids has a class in {}: are they of another table?",
                         labels.place(i), table.string()));
       return;
-    } catch (const InputError&) {  // its frame is skipped, not the recording
+    } catch (const InputError&) {  // only its frame is skipped
     }
 }
 

@@ -46,7 +46,7 @@ void write_euroc_imu(const fs::path& file, std::span<const ImuReading> readings)
 
 namespace {
 
-/// Seven numbers of a line; the first as it is written.
+/// Parses the stamp and the six values of a line; nullopt if a value is not finite.
 std::optional<ImuReading> parse_reading(std::string_view line, const std::string& place) {
   std::array<double, 6> values{};
   const std::size_t comma = line.find(',');

@@ -95,7 +95,7 @@ RecordedCamera eth3d_camera(const fs::path& file, const std::vector<RecordedFram
       const cv::Mat image = read_image(frame.color);
       camera.width_px = image.cols, camera.height_px = image.rows;
       break;
-    } catch (const InputError&) {  // is reported when the frame is skipped
+    } catch (const InputError&) {  // reported when the frame is skipped
     }
   }
   try {
@@ -106,7 +106,7 @@ RecordedCamera eth3d_camera(const fs::path& file, const std::vector<RecordedFram
   return recorded;
 }
 
-/// @throws InputError if no calibration is specified and none is in the folder.
+/// @throws InputError if no calibration is specified and the folder has none.
 RecordedCamera camera_of(const fs::path& folder, const std::vector<RecordedFrame>& frames,
                          const RecordingConfig& config) {
   if (!config.calibration.empty()) return config.read_camera(config.calibration);
@@ -150,7 +150,7 @@ OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
   OpenedRecording opened;
   opened.notes = std::move(notes);
   note_depth_scale(listed.camera.depth_per_meter, config, opened.notes);
-  // Read even where labels are left out: what is read depends on the recording alone.
+  // Read even if labels are ignored, so that what is read depends only on the recording.
   if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
   for (const RecordedFrame& frame : listed.frames) {
     for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})

@@ -30,20 +30,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ICL-NUIM and Bonn before TUM, whose lists they have as well.
+// ICL-NUIM and Bonn come before TUM because they have TUM's lists as well.
 constexpr std::array kReaders = {&kIclNuimReader,   &kBonnReader,        &kTumReader,
                                  &kScannetReader,   &kSevenScenesReader, &kReplicaReader,
                                  &kOpenlorisReader, &kBagReader,         &kMcapReader};
 
-/// Notes a file's content in the open scopes; a missing file is noted as missing.
+/// Records a file's content in the open ReadScopes; a missing file is recorded as missing.
 void note_content(const fs::path& file) {
   try {
     read_file(file);
-  } catch (const InputError&) {  // a frame that cannot be read is skipped, not the recording
+  } catch (const InputError&) {  // only the frame that cannot be read is skipped
   }
 }
 
-/// Digests of the contents of files that were read, sorted, each once.
+/// Digests of the contents of those files that were read, sorted, without duplicates.
 std::vector<std::uint64_t> digests_of(const std::vector<fs::path>& files, const ReadRecord& read) {
   std::map<fs::path, std::uint64_t> digest_of;
   for (const FileObservation& o : read.observations)

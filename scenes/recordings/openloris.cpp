@@ -76,8 +76,8 @@ RecordedCamera read_sensors(const fs::path& file) {
   return recorded;
 }
 
-/// Where the color camera is on the robot: a chain of the file's transforms, each of which places a
-/// child in its parent.
+/// The pose of the color camera on the robot, from a chain of the file's transforms, each of which
+/// places a child in its parent.
 SE3 base_from_camera(const fs::path& file) {
   struct Link {
     std::string parent, child;

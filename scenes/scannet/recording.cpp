@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sixteen numbers of a text file, row by row; "-inf" is a number.
+/// Reads sixteen numbers from a text file, row by row; "-inf" is a number.
 Eigen::Matrix4d read_matrix(const fs::path& file) {
   return parse_matrix(read_text(file), file.string());
 }
@@ -130,7 +130,7 @@ class ExtractedFolder : public Recording {
                    static_cast<int>(size.height), intrinsics.string());
   }
 
-  /// @param what  is true of these files: "images have no partner in depth/"
+  /// @param what  statement about these files: "images have no partner in depth/"
   template <class Predicate>
   void note_alone(const char* which, const std::vector<std::uint32_t>& numbers,
                   const Predicate& is_alone, const char* what) {
@@ -141,7 +141,7 @@ class ExtractedFolder : public Recording {
                                    *first));
   }
 
-  /// Files without their counterparts are what a damaged download leaves.
+  /// Adds notes about files without counterparts, as a damaged download leaves them.
   void note_files_alone() {
     const auto without = [](const NumberedFiles& others) {
       return [&](std::uint32_t number) { return !others.contains(number); };
@@ -250,8 +250,8 @@ void Recording::note_faulty_poses() {
 }
 
 bool is_rotation(const Eigen::Matrix3d& matrix) {
-  // Written with six decimals or as floats, and so close to a rotation that the error of the
-  // quaternion is negligible.
+  // Files have six decimals or floats. Within this tolerance, the matrix is so close to a rotation
+  // that the error of the quaternion is negligible.
   constexpr double kTolerance = 1e-2;
   const Eigen::Matrix3d square = matrix * matrix.transpose();
   return square.isIdentity(kTolerance) && matrix.determinant() > 0;

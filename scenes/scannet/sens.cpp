@@ -159,7 +159,8 @@ class SensFile : public Recording {
     return size;
   }
 
-  /// A recording that was cut short is used as far as its frames are whole; see add_lost().
+  /// Reads the frames of a recording; if it was cut short, its complete frames are used (see
+  /// add_lost()).
   void read_frames(Cursor& cursor, std::uint64_t frames) {
     for (std::uint64_t i = 0; i < frames; ++i) try {
         frames_.push_back(read_record(cursor, i));
@@ -171,10 +172,10 @@ class SensFile : public Recording {
       }
   }
 
-  /// The frames that a truncated file has lost are part of the recording, unreadable, so that they
-  /// are counted. Their stamps go on at the mean interval of the others.
+  /// Adds the frames that a truncated file has lost as unreadable frames, so that they are counted.
+  /// Their stamps continue at the mean interval of the others.
   void add_lost(std::uint64_t frames) {
-    constexpr std::uint64_t kCredible = 1'000'000;  // 9 h; a damaged header may say anything
+    constexpr std::uint64_t kCredible = 1'000'000;  // 9 h; a damaged header may state any number
     whole_ = frames_.size();
     if (frames > kCredible) return;
     const Stamp first_ns = frames_.front().stamp_ns, last_ns = frames_.back().stamp_ns;
@@ -203,7 +204,7 @@ class SensFile : public Recording {
     return record;
   }
 
-  /// Some recordings have no stamps, or equal ones: then 30 Hz is assumed.
+  /// Some recordings have no stamps, or stamps that do not increase: 30 Hz is assumed for them.
   void mend_stamps() {
     const auto back = std::ranges::adjacent_find(
         frames_, [](Stamp a, Stamp b) { return a >= b; }, &FrameRecord::stamp_ns);
@@ -216,8 +217,8 @@ class SensFile : public Recording {
       frames_[i].stamp_ns = static_cast<Stamp>(i) * 1'000'000'000 / 30;
   }
 
-  /// The frames are followed by inertial measurements, which are not used: five vectors of doubles
-  /// and a stamp each. Other bytes indicate that the header counts too few frames.
+  /// The frames are followed by inertial measurements, which are not used; each is five vectors of
+  /// doubles and a stamp. Any other bytes indicate that the header states too few frames.
   void note_bytes_left(Cursor& cursor) {
     constexpr std::size_t kMeasurement = 5 * 3 * sizeof(double) + sizeof(std::uint64_t);
     const std::size_t left = cursor.left();
@@ -262,7 +263,8 @@ class SensFile : public Recording {
     return std::move(*image);
   }
 
-  /// Decodes raw bytes to an image of that size.
+  /// An image of a camera's size for raw pixels. @throws InputError if `bytes` does not fit that
+  /// size.
   template <class Pixel>
   Grid2d<Pixel> empty_image(const RecordedLens& lens, std::size_t bytes, std::size_t index,
                             const char* which) const {

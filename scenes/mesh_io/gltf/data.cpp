@@ -69,7 +69,7 @@ float number_at(const char* at, std::size_t type, bool normalized) {
   }
 }
 
-/// What an item of an accessor is made of.
+/// What the items of an accessor are made of.
 struct Kind {
   std::size_t type, width, count;
   std::size_t bytes() const { return size_of(type) * width; }
@@ -90,7 +90,8 @@ int decode(std::string_view mode, char* to, std::size_t count, std::size_t strid
   return meshopt_decodeIndexSequence(to, count, stride, bytes, from.size());
 }
 
-/// Whether the decoders take such data: some of their assumptions are only asserted.
+/// Whether the decoders accept data with these parameters, since they only assert some of their
+/// assumptions.
 bool is_decodable(std::string_view mode, std::string_view filter, std::size_t count,
                   std::size_t stride) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 32, kWidest = 256;

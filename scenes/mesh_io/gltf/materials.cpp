@@ -12,7 +12,7 @@
 namespace mh::gltf {
 namespace {
 
-/// An extension of an item, removed from it; null if it has none of that name.
+/// Removes an extension from an item and returns it; null if the item does not have it.
 Json take_extension(Json& item, const char* name) {
   const Json::json_pointer place(std::string("/extensions/") + name);
   if (!item.is_object() || !item.contains(place)) return nullptr;
@@ -126,7 +126,7 @@ std::vector<UvPlacement> take_uv_placements(Json& gltf, const std::filesystem::p
       throw InputError(fmt::format("{}: materials[{}]: its KHR_texture_transform is not sound",
                                    file.string(), i));
     }
-  drop_name(gltf, "extensionsUsed", "KHR_texture_transform");  // assimp would read others
+  drop_name(gltf, "extensionsUsed", "KHR_texture_transform");  // assimp would apply the rest
   return placements;
 }
 

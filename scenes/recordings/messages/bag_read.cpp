@@ -15,7 +15,7 @@ namespace {
 
 using bag::Op;
 
-/// The fields of a record's header: "name=value" each, after its length.
+/// The fields of a record's header. Each is stored as its length, then "name=value".
 using Fields = std::map<std::string_view, std::string_view>;
 
 Fields fields_of(std::string_view header) {
@@ -93,7 +93,7 @@ class BagFile : public MessageFile {
     std::size_t end = 0;  ///< in the bytes that hold it
   };
 
-  /// nullopt if there is no whole record.
+  /// nullopt if there is no whole record at this position.
   static std::optional<Record> record_at(std::string_view bytes, std::size_t at) {
     ByteReader from(bytes.substr(at));
     try {
@@ -147,8 +147,8 @@ class BagFile : public MessageFile {
     }
   }
 
-  /// Reads the connections that are stored outside of chunks from there on, as after the last
-  /// chunk: the only chunk that holds them may be damaged.
+  /// Reads the connections that are stored outside of chunks from this position on (bags repeat
+  /// them after the last chunk), in case the only chunk that holds them is damaged.
   void read_connections_from(std::uint64_t at) {
     if (std::exchange(connections_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {
@@ -156,7 +156,7 @@ class BagFile : public MessageFile {
       try {
         const Fields fields = fields_of(record->header);
         if (op_of(fields) == Op::kConnection) read_connection(fields, record->data);
-      } catch (const InputError&) {  // is reported when it is reached
+      } catch (const InputError&) {  // reported when reading gets there
       }
     }
   }
@@ -203,7 +203,7 @@ class BagFile : public MessageFile {
   const Visit& visit_;
   std::map<std::uint32_t, std::size_t> channels_by_id_;
   bool connections_are_read_ = false;  ///< by read_connections_from()
-  std::uint64_t index_at_ = 0;         ///< 0: it was not closed
+  std::uint64_t index_at_ = 0;         ///< 0 if the bag was not closed
 };
 
 }  // namespace
