@@ -89,8 +89,8 @@ Environment recorded_environment(std::string name, std::string category, std::st
   return e;
 }
 
-/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording,
-/// and a pattern that matches nothing, which is an error unless it may.
+/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording. A
+/// pattern that matches nothing is an error, or only noted if `may_be_absent`.
 std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const SuitePaths& paths,
                                             bool may_be_absent, std::vector<std::string>& notes) {
   const auto [layout, path] = split_sequence(pattern.as_string());

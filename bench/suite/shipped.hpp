@@ -11,7 +11,8 @@ namespace mh {
 enum class Shipped { kSuite, kScene, kTour, kRobot, kLevel, kVocabulary, kSettings };
 
 /// The folder that contains bench/suites, scenes, robots, sim/sensors/levels and assets: that of
-/// the installed package next to the executable (../share/modelhouse), otherwise the source tree.
+/// the installed package next to the executable (../share/modelhouse) or of the Python package,
+/// otherwise the source tree.
 std::filesystem::path data_folder();
 
 /// The names of everything shipped of a kind, in alphabetical order: a file's name without its
