@@ -13,7 +13,7 @@ namespace {
 struct Judged {
   const MatchDecision* decision = nullptr;
   bool right = false;
-  bool differ = false;  ///< the labels do, by equation 2
+  bool differ = false;  ///< whether the labels differ, by equation 2
   bool has_void = false, at_border = false;
 
   bool kept() const { return decision->gate == MatchGate::kKept; }

@@ -15,8 +15,8 @@ using Relevance = std::vector<unsigned char>;
 /// @param relevant  number of relevant items, in the list or not
 std::optional<double> average_precision(const Relevance& ranked, std::size_t relevant);
 
-/// Share of the first k items that are relevant; positions beyond the list's end are not. @pre k >
-/// 0
+/// Share of the first k items that are relevant; positions beyond the list's end are not.
+/// @pre k > 0
 double precision_at(std::size_t k, const Relevance& ranked);
 
 /// Share of the relevant items that are among the first k; absent if nothing is relevant.

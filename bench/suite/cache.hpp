@@ -51,7 +51,7 @@ class Cache {
 
   std::filesystem::path folder_;
   std::uintmax_t max_bytes_;
-  // since the last look; shared by copies
+  // Written since the last look; shared by copies.
   std::shared_ptr<std::atomic<std::uintmax_t>> unseen_bytes_;
 };
 

@@ -166,7 +166,7 @@ struct Environments {
 ///   `may_be_absent: true` a pattern without a match is left out with a note.
 /// - `files: PATTERN` must be the only field: each file that matches (* and ? in the last part of
 ///   the path), sorted by name, contains one such entry, with paths relative to its own folder.
-///   Names default to the category; `robot` to the given default.
+/// Names default to the category; `robot` to the given default.
 /// @throws InputError naming file, line, field and value: an empty list, two environments with the
 ///         same name or of the same place, a missing file.
 Environments read_environments(const YamlReader& list, const SuitePaths& paths,

@@ -18,7 +18,7 @@ struct GradedSpec {
   std::uint64_t seed = 0;                     ///< of the draw
   /// If mapping was a handheld scan: multiples of its speed at which each query's scan is played.
   std::vector<double> speed = {1.0};
-  /// A view of whose surface the mapped frames show a smaller share is counted, not asked.
+  /// A view is counted, not asked, if the mapped frames show less than this share of its surface.
   double least_shown = 0.05;
   friend bool operator==(const GradedSpec&, const GradedSpec&) = default;
 };

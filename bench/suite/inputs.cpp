@@ -35,7 +35,7 @@ std::string name_from(const fs::path& source, const fs::path& file) {
   return fs::absolute(file, error).lexically_normal().lexically_relative(folder).generic_string();
 }
 
-/// A file is read once per word.
+/// The names of the kinds: a file is read once per kind.
 constexpr Names<SourceKind, 6> kKinds{{{"scene", SourceKind::kScene},
                                        {"motion", SourceKind::kMotion},
                                        {"tour", SourceKind::kTour},
@@ -180,7 +180,7 @@ void InputReader::load(SourceKind kind, const fs::path& file, const SceneFrame& 
     case SourceKind::kScene:
       if (is_generated(file))  // depends only on its name; expensive to create
         return static_cast<void>(parse_generated(file.string()));
-      forget_scene();  // so that it is read, and thus noted
+      forget_scene();  // only what is read again is noted
       return static_cast<void>(scene(file, frame));
     case SourceKind::kMotion:
       return check_motion(file);

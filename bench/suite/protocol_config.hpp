@@ -34,7 +34,7 @@ enum class QueryTruth {
   kLocal,  ///< the nearest mapped frame's estimate, propagated to the query by the true motion
   /// Interpolated in time between the estimates of the mapped frames before and after (section 3.2
   /// of the paper: "based on the camera poses with neighboring frames"). Needs no ground truth, but
-  /// inherits the errors of the estimates. Without two near neighbors, as kLocal.
+  /// inherits the errors of the estimates. Without two near neighbors, kLocal applies.
   kInterpolated,
 };
 

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Request = nlohmann::ordered_json;
-// of a reply; even with many keys, the cost stays linear in its length
+// Of a reply: even with many keys, the cost stays linear in its length.
 using Json = nlohmann::json;
 
 constexpr int kProtocol = 1;

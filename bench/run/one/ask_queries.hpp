@@ -18,8 +18,8 @@ std::size_t count_queries(const RunSpec& spec, const World& world);
 
 /// Puts each set of queries to a frozen system, under each parameter point, and scores the answers
 /// into run.points.
-/// @param run   with the mapping, its trajectory and frames
-/// @param done  called after each query and point
+/// @param run   has the mapping and its trajectory; receives the answers
+/// @param done  called after each query under each point
 void ask_queries(const RunSpec& spec, const World& world, System& frozen, const FilesAsKeyed& files,
                  RunResult& run, const std::function<void()>& done);
 
