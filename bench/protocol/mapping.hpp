@@ -73,8 +73,8 @@ void fields(O& outcome, Visit& v) {
   v("skipped", skipped);
 }
 
-/// Whether frame `index` is a test frame, the last of every `test_interval`: 29, 59, ... at 30;
-/// none at 0.
+/// Whether frame `index` is a test frame, the last of every `test_interval` frames: 29, 59, ... for
+/// an interval of 30; none for 0.
 bool is_test_frame(std::size_t index, const ProtocolConfig& config);
 
 /// Returns the frames of a sequence from `first` on that are not test frames, in order.

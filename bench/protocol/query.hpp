@@ -14,7 +14,7 @@ namespace mh {
 struct QueryAnswer {
   std::size_t index = 0;                 ///< of the test frame in its sequence
   int blank_frames = 0;                  ///< shown until the system was lost
-  int attempts = 0;                      ///< times that the test frame was shown
+  int attempts = 0;                      ///< how often the test frame was shown
   std::optional<SE3> world_from_camera;  ///< the first returned pose
   std::uint32_t map = 0;                 ///< SystemReport::map
   /// The furthest stage that an attempt reached, if the system reports it; kVerified if a pose was

@@ -7,7 +7,7 @@
 namespace mh {
 namespace {
 
-/// Kinds of similar runs, most similar first.
+/// Keys of the groups of runs that are similar to this one, most similar first.
 std::array<std::string, 3> kinds_of(const RunSpec& run) {
   return {run.system.name + '\n' + run.environment.name, run.system.name, ""};
 }

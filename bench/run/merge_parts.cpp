@@ -26,7 +26,7 @@ void copy_missing(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Copies the folders of runs and the images that the output lacks.
+/// Copies the run folders and the images that the output lacks.
 void copy_files(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const std::string name = entry.path().filename().string();

@@ -15,7 +15,7 @@ namespace mh {
 std::vector<std::filesystem::path> mergeable_results(
     const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts);
 
-/// Copies the results, run folders and images that `out` lacks from a suite's parts.
+/// Copies from a suite's parts the results, run folders and images that are missing in `out`.
 /// @param say  receives a line about each part that adds nothing
 /// @pre mergeable_results() passed
 void merge_parts(const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts,

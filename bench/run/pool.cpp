@@ -260,7 +260,7 @@ class Pool {
     estimate_waiting();
     report();
   }
-  /// Whether no other run that waits or runs has the same value of `seen`.
+  /// Whether no other waiting or running job has the same value of `seen`.
   bool was_last(const Job& job, std::string Job::*seen) const {
     const auto sees_it = [&](const Job& other) { return other.*seen == job.*seen; };
     return std::ranges::none_of(waiting_, sees_it, &Waiting::job) &&

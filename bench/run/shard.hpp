@@ -15,7 +15,7 @@ struct Shard {
   std::size_t index = 1, of = 1;
 };
 
-/// Reads "i/n": "2/3". @throws InputError unless 1 <= i <= n.
+/// Reads "i/n", for example "2/3". @throws InputError unless 1 <= i <= n.
 Shard parse_shard(const std::string& text);
 
 /// Names the images that a run sees: the same text for runs of the same environment at the same

@@ -14,7 +14,7 @@ namespace mh {
 // number. `runs` also stores how many rows each run has in the other tables, and `suite` how many
 // `plan` has, because a lost row leaves no digest to check.
 
-/// The tables whose rows have one, in the order of the schema.
+/// The tables whose rows have a digest, in the order of the schema.
 inline constexpr const char* kDigestedTables[] = {"suite",    "plan",  "runs",   "points",
                                                   "metrics",  "calls", "frames", "queries",
                                                   "episodes", "times"};

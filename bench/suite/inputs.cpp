@@ -180,7 +180,7 @@ void InputReader::load(SourceKind kind, const fs::path& file, const SceneFrame& 
     case SourceKind::kScene:
       if (is_generated(file))  // depends only on its name; expensive to create
         return static_cast<void>(parse_generated(file.string()));
-      forget_scene();  // only what is read again is noted
+      forget_scene();  // to read it again: only what is read is noted
       return static_cast<void>(scene(file, frame));
     case SourceKind::kMotion:
       return check_motion(file);

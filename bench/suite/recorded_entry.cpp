@@ -113,7 +113,7 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
     if (reader != readers.end())
       found.push_back({join_sequence(layout, place),
                        (*reader)->scene_type ? (*reader)->scene_type(place) : ""});
-    else if (is_folder(place))  // a file is a list or a table next to the recordings
+    else if (is_folder(place))  // files are lists or tables next to the recordings
       others.push_back(name);
   }
   if (found.empty() && !may_be_absent)

@@ -55,7 +55,7 @@ std::string shown_point(const Sweep& sweep, const SlamConfig& point);
 inline constexpr std::size_t kSobolDimensions = 8;
 
 /// Point `index` of the Sobol sequence (Sobol, 1967; direction numbers of Joe and Kuo, 2008),
-/// shifted digitally by the seed: each dyadic interval of each dimension contains its share of
+/// digitally shifted by the seed: each dyadic interval of each dimension contains its share of
 /// every 2^k points. @returns coordinates in [0, 1)
 std::array<double, kSobolDimensions> sobol_point(std::uint32_t index, std::uint64_t seed);
 

@@ -62,7 +62,7 @@ class ChildProcess {
 
  private:
   void check_limits(std::string_view doing);
-  /// Describes how it ended, after waiting for its end.
+  /// Describes how it ended; waits at most `wait_ms` for its end.
   std::string ending(int wait_ms);
   bool ended_well();
 

@@ -20,7 +20,7 @@ struct WatchedCommand {
   std::uint64_t log_limit_bytes = 0;
   std::uint64_t file_limit_bytes = 0;  ///< per file that it writes; 0: unlimited
   const char* scratch = "";            ///< removed if this process ends before the watcher
-  const Hiding* hiding = nullptr;      ///< hides files from the command; null: none
+  const Hiding* hiding = nullptr;      ///< hides files from the command; null: nothing is hidden
 };
 
 /// How a watched command ended.

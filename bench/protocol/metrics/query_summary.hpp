@@ -34,7 +34,7 @@ struct QuerySummary {
   /// Shares of all queries; absent if none can be judged because the truth is unknown.
   std::optional<double> correct, false_positive;
   std::optional<double> in_map;          ///< share whose place is in the map
-  std::optional<double> success_in_map;  ///< share of those
+  std::optional<double> success_in_map;  ///< share of these that were answered
   /// Over the answered queries, to the local truth; absent if none was answered.
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame

@@ -40,7 +40,7 @@ void fields(S& score, Visit& v) {
   v(Metric{"in_any_map", "", "%", 2, kMore, "offered"}, in_any_map);
 }
 
-/// Computes ATE, RPE and completeness of an estimate, by the definitions of evaluate().
+/// Computes ATE, RPE and completeness of an estimate, as evaluate() defines them.
 /// @param truth    every frame of the sequence
 /// @param offered  frames that the system was supposed to map
 TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& truth,

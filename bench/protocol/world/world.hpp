@@ -53,7 +53,7 @@ struct SimulatedPlace {
 struct World {
   std::shared_ptr<const Sequence> mapping;      ///< what is mapped
   std::shared_ptr<const Sequence> query_tour;   ///< what is queried in addition; or null
-  std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
+  std::shared_ptr<const Sequence> graded = {};  ///< graded queries, one per frame; or null
   std::optional<SimulatedPlace> simulated;      ///< what these are made from; a recording has none
   std::vector<VariantPlace> variants = {};      ///< of the episodes; empty: none
   std::shared_ptr<const Vocabulary> vocabulary;
@@ -82,8 +82,8 @@ void simulate(World& world, LabelMode labels, const SharedImages& images = {});
 PlaceFacts facts(const World& world, const RunSpec& spec);
 
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours, draws the
-/// starts of episodes; or opens its recordings. With episodes, what is mapped has their frame rate.
-/// Reports baking through `say`, since it takes long.
+/// starts of episodes; or opens its recordings. With episodes, the mapped sequence has their frame
+/// rate. Reports baking through `say`, since it takes long.
 /// @param images  shared by all runs in this environment at this level, and by no others
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,

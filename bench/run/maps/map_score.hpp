@@ -54,14 +54,16 @@ struct TrueObject {
 };
 
 struct ObjectScore {
-  /// True objects of at least the least size with a found one of the class within reach.
+  /// Share of the true objects (at least least_m long) with a found object of their class within
+  /// reach_m.
   Share recall;
-  /// Found objects of that size within reach of a true one of the class, of any size.
+  /// Share of the found objects (likewise) within reach_m of a true object of their class, of any
+  /// size.
   Share precision;
   std::vector<TrueObject> objects;
 };
 
-/// @param least_m  the least length of the longest side of an object
+/// @param least_m  minimum length of an object's longest side
 /// @param reach_m  between centers
 ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scene,
                           double least_m = 0.4, double reach_m = 0.25);

@@ -40,7 +40,7 @@ inline constexpr std::array<const char*, 12> kMapFiles{"map.ot",
                                                        "grid_against_truth.png",
                                                        "score.json"};
 
-/// Writes the octree alone. @throws InputError naming the file.
+/// Writes only the octree. @throws InputError naming the file.
 void write_octree(const std::filesystem::path& folder, const VoxelMap& map);
 /// Writes the octree, the grid (trinary and raw), costs and objects. @throws InputError naming the
 /// file.
