@@ -42,7 +42,7 @@ struct Asked {
 /// What Algorithm 1 does with one query.
 struct Retrieved {
   std::vector<KeyframeId> candidates;
-  std::vector<KeyframeId> by_similarity;  ///< all that share anything
+  std::vector<KeyframeId> by_similarity;  ///< all keyframes that share anything with the query
 };
 
 class RunAuditor {

@@ -56,8 +56,8 @@ void check_recordings(const Environment& e, const Labels& labels,
   }
 }
 
-/// Lists settings of SLAM in a calibration file that a run does not use: a suite ignores them,
-/// except the readout time, which is the camera's.
+/// Warns about SLAM settings in a calibration file that a run does not use: a suite ignores them,
+/// except the readout time, which is a property of the camera.
 void warn_of_ignored_settings(const fs::path& file, const RunSpec& run,
                               const std::function<void(std::string_view)>& say) {
   const SlamConfig& of_run = run.slam;
@@ -75,7 +75,7 @@ void warn_of_ignored_settings(const fs::path& file, const RunSpec& run,
       file.string(), fmt::join(ignored, ", ")));
 }
 
-/// Checks that runs can have folders of their names.
+/// Checks that the runs' names are distinct and can be folder names.
 void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
   constexpr std::size_t kLongest = 200;  // a file's name has at most 255 bytes
   std::set<std::string> names;
@@ -91,7 +91,7 @@ void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
   }
 }
 
-/// Finds environments that are one place under two names.
+/// Finds environments that are the same place under two names.
 class Places {
  public:
   Places(const Suite& suite, const InputReader& inputs) : suite_(suite), inputs_(inputs) {}

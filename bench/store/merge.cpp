@@ -23,7 +23,7 @@ InputError made_otherwise(const fs::path& file, const std::string& run, const fs
                   file.string(), run, than_in.string()));
 }
 
-/// Checks that runs which both files have finished have the same results; their times may differ.
+/// Checks that runs that are finished in both files have the same results; their times may differ.
 void require_same_results(SQLite::Database& db, const fs::path& other, const fs::path& file) {
   std::string differs = "a.result <> b.result";
   for (const std::string_view table : kTablesOfRuns)
@@ -69,7 +69,7 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
     }
     if (suite.trials != first->first.trials)
       throw differs("was run with --trials", suite.trials, first->first.trials);
-    // A damaged run is found here, while its file can be named and nothing has been written.
+    // A damaged run is found here, while its file can be named and nothing has been written yet.
     const std::map<std::string, std::string> key_of(keys.begin(), keys.end());
     for (const RunSpec& spec : expand(suite))
       if (const auto key = key_of.find(spec.name);

@@ -13,7 +13,7 @@
 
 namespace mh {
 
-/// What is different when the robot is kidnapped from when it mapped.
+/// How the world in which the robot is kidnapped differs from the one that it mapped.
 struct EpisodeVariant {
   std::string name = "as_mapped";  ///< unique, valid as a folder name
   std::optional<std::filesystem::path> scene = {}, pedestrian = {}, level = {};
@@ -76,8 +76,8 @@ void fields(E& episodes, Visit& v) {
 }
 
 /// Reads the section `episodes` of a suite.
-/// @throws InputError naming file, line, field and value: a goal that is no class (with
-/// suggestions), two variants of one name, a missing file.
+/// @throws InputError naming file, line, field and value: a goal that is not a class (with
+/// suggestions), two variants with the same name, a missing file.
 EpisodesSpec read_episodes(YamlReader node, const SuitePaths& paths);
 
 }  // namespace mh

@@ -13,12 +13,12 @@ namespace mh {
 /// Queries drawn by their distance and angle from the nearest mapped view, the same number in each
 /// cell of a grid of both.
 struct GradedSpec {
-  std::vector<double> distance_m, angle_deg;  ///< edges of the bins, growing
-  std::size_t per_bin = 10;                   ///< queries of each pair of bins
+  std::vector<double> distance_m, angle_deg;  ///< edges of the bins, increasing
+  std::size_t per_bin = 10;                   ///< queries in each pair of bins
   std::uint64_t seed = 0;                     ///< of the draw
-  /// Where mapping was a scan by hand: its multiples at which each query's scan is played.
+  /// If mapping was a handheld scan: multiples of its speed at which each query's scan is played.
   std::vector<double> speed = {1.0};
-  /// A view of which the mapped frames show less (share of its surface) is counted, not asked.
+  /// A view is counted, not asked, if the mapped frames show less than this share of its surface.
   double least_shown = 0.05;
   friend bool operator==(const GradedSpec&, const GradedSpec&) = default;
 };
@@ -38,8 +38,8 @@ void fields(G& graded, Visit& v) {
     "a view of which the mapped frames show less (share of its surface) is counted, not asked");
 }
 
-/// Index of the bin that a value falls into; the number of bins if into none. Bins contain their
-/// lower edge.
+/// Index of the bin that a value falls into; the number of bins if it falls into none. Bins contain
+/// their lower edge.
 std::size_t bin_of(const std::vector<double>& edges, double value);
 inline std::size_t bins(const std::vector<double>& edges) {
   return edges.empty() ? 0 : edges.size() - 1;

@@ -32,9 +32,9 @@ constexpr std::array<std::pair<std::string_view, OnFailure>, 2> words(OnFailure)
 /// What a query's answer is compared with.
 enum class QueryTruth {
   kLocal,  ///< the nearest mapped frame's estimate, propagated to the query by the true motion
-  /// Interpolated by time between the estimates of the mapped frames before and after (section 3.2
+  /// Interpolated in time between the estimates of the mapped frames before and after (section 3.2
   /// of the paper: "based on the camera poses with neighboring frames"). Needs no ground truth, but
-  /// inherits the errors of the estimates. Without two near neighbors: kLocal.
+  /// inherits the errors of the estimates. Without two near neighbors, kLocal applies.
   kInterpolated,
 };
 
@@ -42,10 +42,10 @@ constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> words(QueryTrut
   return {{{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
 }
 
-/// What the attempts of one query differ in. RANSAC's draws differ in any case.
+/// How the attempts of one query differ. RANSAC's draws differ in any case.
 enum class Attempts {
   kSameFrame,  ///< the same frame again, with its noise
-  kNewNoise,   ///< the same moment rendered with independent noise in every attempt
+  kNewNoise,   ///< the same view with independent noise in every attempt
 };
 
 constexpr std::array<std::pair<std::string_view, Attempts>, 2> words(Attempts) {
@@ -72,7 +72,7 @@ struct ProtocolConfig {
   friend bool operator==(const ProtocolConfig&, const ProtocolConfig&) = default;
 };
 
-/// What only queries depend on: maps made under other values are the same.
+/// Settings that affect only queries: maps made with different values are the same.
 inline constexpr const char* kProtocolOfQueries[] = {"query_attempts",    "attempts",
                                                      "max_blank_frames",  "correct_distance_m",
                                                      "correct_angle_deg", "truth"};

@@ -89,8 +89,8 @@ Environment recorded_environment(std::string name, std::string category, std::st
   return e;
 }
 
-/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording,
-/// and a pattern that matches nothing, which is an error unless it may.
+/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording. A
+/// pattern that matches nothing is an error, or only noted if `may_be_absent`.
 std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const SuitePaths& paths,
                                             bool may_be_absent, std::vector<std::string>& notes) {
   const auto [layout, path] = split_sequence(pattern.as_string());
@@ -113,7 +113,7 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
     if (reader != readers.end())
       found.push_back({join_sequence(layout, place),
                        (*reader)->scene_type ? (*reader)->scene_type(place) : ""});
-    else if (is_folder(place))  // a file is a list or a table next to the recordings
+    else if (is_folder(place))  // files are lists or tables next to the recordings
       others.push_back(name);
   }
   if (found.empty() && !may_be_absent)

@@ -90,7 +90,7 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
   return levels;
 }
 
-/// Boxes of files are of the frames of one sequence.
+/// Boxes from a file belong to the frames of one sequence, so no environment may have a second.
 void check_boxes(const YamlReader& node, const Labels& labels, const Suite& suite) {
   if (!labels.detector || labels.detector->boxes.empty()) return;
   for (const Environment& e : suite.environments)
@@ -128,8 +128,8 @@ std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
   return all;
 }
 
-/// A study states its design before its evaluation begins, and its suite names that text by digest:
-/// a design that changed meanwhile is refused.
+/// A study states its design before its evaluation begins, and its suite gives the digest of that
+/// text: a design that has changed since is refused.
 void check_design(YamlReader study, const SuitePaths& paths) {
   const fs::path file = named_file(study.at("design"), paths);
   const std::string stated = study.string("xxh3");
@@ -165,7 +165,7 @@ std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
   return value->second;
 }
 
-/// The section `parameters` that --vary stands for: on one map where that is possible.
+/// The section `parameters` that is equivalent to --vary: on one map if that is possible.
 YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
   const bool fixed =
       std::ranges::all_of(vary, [](const auto& of) { return of.first.starts_with("semantics."); });
@@ -194,7 +194,7 @@ std::vector<Sense> read_senses(YamlReader& yaml, const std::vector<Environment>&
 }
 
 /// Reads "ORB-SLAM2: {rgbd_dataset_freiburg1_desk: 0.016}" and so on. The names may be of
-/// environments that are not at hand.
+/// environments that are not available.
 std::map<std::string, std::map<std::string, double>> read_published_ate(YamlReader& yaml) {
   std::map<std::string, std::map<std::string, double>> published;
   if (auto systems = yaml.find("published_ate_m"))
@@ -287,7 +287,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
           "no system of the suite uses what is varied: the plain one ignores what is of "
           "labels, an outside one all settings of SLAM");
   }
-  if (yaml.has("episodes")) suite.protocol = live_feed();  // nobody takes a robot back
+  if (yaml.has("episodes")) suite.protocol = live_feed();  // a driving robot cannot rewind
   SettingsReader protocol(yaml);
   protocol.section("protocol");
   fields(suite.protocol, protocol);

@@ -86,7 +86,7 @@ void read_sobol(YamlReader node, const SlamConfig& base, Sweep& sweep) {
   }
 }
 
-/// Refuses points at which gamma or a mass of labels would not act as stated.
+/// Refuses points at which gamma or a label mass would not have the effect that the suite states.
 void check_weights(const YamlReader& node, const Sweep& sweep) {
   const auto varies = [&](std::string_view setting) {
     return std::ranges::find(sweep.varied, setting) != sweep.varied.end();

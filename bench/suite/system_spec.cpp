@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// What a suite may call a system of ours.
+/// The names by which a suite may call our own systems.
 constexpr Names<SystemKind, 2> kOurs{words(SystemKind{})[0], words(SystemKind{})[1]};
 static_assert(name_of(SystemKind::kOutside, kOurs) == "?");
 
@@ -61,7 +61,7 @@ std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
   return all;
 }
 
-/// Reads one of ours under another name.
+/// Reads one of our systems under another name.
 void read_variant(YamlReader& node, SystemSpec& spec) {
   spec.kind = one_of(node.at("system"), kOurs);
   YamlReader slam = node.at("slam");

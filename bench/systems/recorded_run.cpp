@@ -34,10 +34,10 @@ std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
   return best;
 }
 
-/// The trajectory that the program wrote: a file in its own folder, not the target of a link.
+/// The trajectory that the program wrote: a file in its own folder, not a link out of it.
 /// @param home  the folder's canonical path, before the program ran
 std::string written_text(const fs::path& home, ChildProcess& child) {
-  constexpr std::uintmax_t kLongest = std::uintmax_t{64} << 20;  // one is about 1e5 bytes
+  constexpr std::uintmax_t kLongest = std::uintmax_t{64} << 20;  // a trajectory is about 1e5 bytes
   const fs::path trajectory = home / kTrajectory;
   std::error_code error;
   if (!fs::exists(trajectory, error)) child.fail("ended well but wrote no trajectory");
@@ -59,7 +59,7 @@ bool tracked_nothing(const std::string& trajectory) {
   return true;
 }
 
-/// Replaces the stamps of the poses by those of the frames that they belong to.
+/// Replaces the stamps of the poses with those of the frames that they belong to.
 Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frames,
                              ChildProcess& child) {
   std::size_t strange = 0;

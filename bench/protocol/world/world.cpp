@@ -138,7 +138,7 @@ std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& wo
   const auto vocabulary =
       std::make_shared<const Vocabulary>(noted(world.inputs, "vocabulary", spec.vocabulary,
                                                [&] { return Vocabulary::load(spec.vocabulary); }));
-  world.held.append(scope.record());  // it is a view of its file
+  world.held.append(scope.record());  // the vocabulary is a view of its file
   return vocabulary;
 }
 
@@ -291,7 +291,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
         along(*scene, *environment.kidnapped_tour, obstacles(place.mapping.camera.size()));
     const std::size_t before = place.mapping.camera.size();
     place.mapping = joined(std::move(place.mapping), elsewhere, rate_hz);
-    if (gives(Sense::kImu))  // not of being carried
+    if (gives(Sense::kImu))  // no readings while it is carried
       append(place.imu,
              {place.mapping.camera.begin() + static_cast<std::ptrdiff_t>(before),
               place.mapping.camera.end()},
@@ -329,7 +329,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   return world;
 }
 
-/// Replaces the labels of both sequences by a detector's.
+/// Replaces the labels of all sequences with a detector's.
 void add_detector(World& world, const DetectorSpec& spec, const Cache& cache, const Say& say) {
   const std::shared_ptr<const Detector> detector =
       noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
@@ -351,7 +351,7 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   if (spec.environment.is_recorded()) {
     const ReadScope scope;
     world = open_recordings(spec);
-    world.held = scope.record();  // the vocabulary's among it
+    world.held = scope.record();  // includes the vocabulary's
   } else {
     world = build(spec, threads, cache, say, baked);
   }

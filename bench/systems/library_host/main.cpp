@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// modelhouse-library-host LIBRARY SEED [SETTINGS]: speaks a conversation (docs/outside_systems.md)
-// for a shared library (include/modelhouse/system.h), so that no foreign code is ever loaded into
-// the bench. What the library prints goes to standard error.
+// modelhouse-library-host LIBRARY SEED [SETTINGS]: conducts the conversation
+// (docs/outside_systems.md) on behalf of a shared library (include/modelhouse/system.h), so that no
+// foreign code is ever loaded into the bench. What the library prints goes to standard error.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -60,7 +60,7 @@ class Image {
   const std::uint8_t* bytes() const {
     return reinterpret_cast<const std::uint8_t*>(bytes_.data()) + first_;
   }
-  /// Pixels of two bytes each, which the file has in big-endian order.
+  /// Pixels of two bytes each, which are big-endian in the file.
   std::vector<std::uint16_t> shorts() const {
     std::vector<std::uint16_t> pixels(static_cast<std::size_t>(width) *
                                       static_cast<std::size_t>(height));
@@ -157,7 +157,7 @@ Json reply_json(const mh_reply& reply) {
   return json;
 }
 
-/// Runs a function of the library.
+/// Calls `function`; turns exceptions that escape from the library into faults.
 template <class Function>
 auto guarded(const Function& function) {
   try {
@@ -185,7 +185,7 @@ MakeSystem load(const fs::path& file) {
   return make;
 }
 
-/// A system of the library, from `hello` on.
+/// A system of the library, which exists from `hello` on.
 class HostedSystem {
  public:
   HostedSystem(const Json& hello, const fs::path& library, std::uint64_t seed, std::string settings)
@@ -300,8 +300,8 @@ class HostedSystem {
   std::uint64_t session_ = 0;
 };
 
-/// Standard input and output as they were, out of the library's reach: it finds nothing to read,
-/// and prints to the log.
+/// Takes standard input and output out of the library's reach and returns them: the library finds
+/// nothing to read, and prints to the log.
 std::pair<int, std::FILE*> take_streams() {
   const int requests = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
   const int replies = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
