@@ -14,7 +14,7 @@ struct OptionDeclaration {
   std::string meaning;
   std::string usual;                 ///< the default; "" = none
   std::vector<std::string> choices;  ///< valid words, or names of shipped files
-  bool or_file = false;              ///< any other file is as valid
+  bool or_file = false;              ///< any other file is valid, too
   bool takes_value = false, positional = false, required = false;
 };
 

@@ -15,7 +15,7 @@ namespace mh {
 
 /// The outcome of an object, or of a detection, at the detector's own threshold: `truth` is void
 /// for a detection of nothing, `found` for an object that was missed. A detection belongs to the
-/// free object that it overlaps by at least 0.5, of its own class if there is one, else most.
+/// unassigned object that it overlaps most, by at least 0.5; objects of its own class go first.
 struct Outcome {
   ClassId truth = kVoid, found = kVoid;
   friend auto operator<=>(const Outcome&, const Outcome&) = default;
@@ -43,12 +43,12 @@ struct DetectorScore {
   /// False alarms, by their class and the most frequent class of pixels in their box.
   std::map<std::pair<ClassId, ClassId>, std::size_t> false_alarms;
   std::size_t badly_placed =
-      0;                       ///< overlap an object of their class by 0.1 to 0.5; no false alarms
+      0;                       ///< overlap an object of their class by 0.1 to 0.5; not false alarms
   DetectorConfig dials;        ///< settings of the simulated detector; NaN if not measured
   LabelScore box, foreground;  ///< by BoxFill; NaN if not measured
 };
 
-/// `dials` with the measured ones replaced (see DetectorScore::dials).
+/// `dials`, with those that were measured replaced (see DetectorScore::dials).
 DetectorConfig with_measured(DetectorConfig dials, const DetectorConfig& measured);
 
 /// Judges a detector by exact images. Objects are the visible parts of instances of COCO's classes;

@@ -39,7 +39,7 @@ struct Ranking {
   double average_precision = 0, chance = 0;
 };
 
-/// @param is_true  of each candidate, most similar first.
+/// @param is_true  whether each candidate is true, most similar first
 /// @returns nullopt if no candidate is true.
 std::optional<Ranking> judge(const std::vector<bool>& is_true) {
   Ranking ranking;

@@ -47,7 +47,7 @@ std::string identity_of_views(const World& world, const RunSpec& spec) {
   return text_key(text);
 }
 
-/// Without gnuplot the results stand without charts, which a report shows as well.
+/// Without gnuplot, the results lack charts, which a report shows as well.
 void draw_chart(const fs::path& file, const PlotPage& page) {
   try {
     write_plots(file, page);

@@ -30,9 +30,9 @@ struct Sum {
   double mean() const { return sum / static_cast<double>(count); }
 };
 
-/// Which frame of its tour each pose of a run's estimate is of: by the calls that mapped it, else
-/// (a program that returned a trajectory alone) by the frames of a simulated truth, else by
-/// counting poses.
+/// The frame of the tour that each pose of a run's estimate belongs to: from the calls that mapped
+/// it; else (for a program that returned only a trajectory) from the frames of a simulated truth;
+/// else by counting poses.
 std::vector<std::size_t> frames_of_estimate(const RunResult& run) {
   std::map<Stamp, std::size_t> frame_at;
   for (const MappedFrame& call : run.mapping.calls) frame_at.emplace(call.stamp_ns, call.index);
@@ -71,7 +71,8 @@ double student_t(double degrees_of_freedom) {
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
 
-/// The curve starts as a mean over all environments; below this many, it is not comparable.
+/// Each curve starts as a mean over all environments; a mean over fewer than this is not comparable
+/// with that.
 constexpr std::size_t kFewestCounted = 5;
 
 struct Curve {
@@ -83,7 +84,7 @@ struct Curve {
 }  // namespace
 
 Json error_by_frame_json(const Suite& suite, std::span<const Row> rows) {
-  // By curve, window and environment: over trials.
+  // By curve, window and environment: sums over trials.
   std::map<Curve, std::vector<std::map<std::size_t, Sum>>> all;
   for (const Row& row : rows) {
     if (row.parameters != 0 || !is_own_row(suite, row.system, row.labels)) continue;
