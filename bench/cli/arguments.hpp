@@ -20,13 +20,14 @@ namespace mh::cli {
 /// too small nor too large.)
 CLI::Validator number_between(double least, double greatest);
 
-/// Accepts a seed: an integer from 0 to 2^64 - 1. Parsing alone would let others wrap around.
+/// Accepts a seed: an integer from 0 to 2^64 - 1. Parsing alone would let other numbers wrap
+/// around.
 CLI::Validator seed_number();
 
 /// Accepts one of the given words; for a misspelling, the error suggests the nearest.
 CLI::Validator one_of_words(std::vector<std::string> words);
 
-/// Accepts any text except an empty one, as from an unset shell variable.
+/// Accepts any text except an empty one, such as that of an unset shell variable.
 CLI::Validator not_empty();
 
 /// Replaces a shipped name by its file (find_shipped; find_scene for scenes); leaves an empty word

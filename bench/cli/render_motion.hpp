@@ -23,7 +23,7 @@ class RenderMotion {
   /// The text for render.json.
   std::string text() const;
   bool is_driven() const { return !has_poses() && mh::is_driven(motion_); }
-  /// Whether the poses are those of the camera that is rendered, whichever it is.
+  /// Whether the poses are those of the camera that is rendered, whichever camera that is.
   bool is_of_camera() const { return has_poses() && poses_of_ == "camera"; }
 
   /// @pre read()

@@ -178,7 +178,7 @@ void preview(const SceneArguments& options) {
   write_image(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
-/// Also covers the labels that are written next to a PLY: they must not replace any other file.
+/// Also checks the labels that are written next to a PLY: they must not replace any other file.
 void require_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
   require_writable(out, read);
   const fs::path labels = labels_path(out);
@@ -199,7 +199,7 @@ Scene scanned(const Scene& scene) {
   constexpr std::size_t kViews = 90;
   const auto renderer = make_scene_renderer(scene);
   Camera camera;
-  // From anywhere, including up and down: a single walk misses half of the floor.
+  // Views in any direction, including up and down: a single walk would miss half of the floor.
   return scan_look(scene, *renderer, camera, scan_views(scene, 0, kViews));
 }
 

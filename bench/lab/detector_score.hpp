@@ -21,7 +21,7 @@ struct Outcome {
   friend auto operator<=>(const Outcome&, const Outcome&) = default;
 };
 
-/// Scores of one class that both we and COCO have.
+/// Scores of a class that is both ours and COCO's.
 struct ClassScore {
   ClassId class_id = kVoid;
   AveragePrecision precision;
@@ -30,14 +30,14 @@ struct ClassScore {
 
 /// How labels made of boxes agree with the exact classes of the pixels.
 struct LabelScore {
-  double right_share = 0;  ///< of the pixels that got a class: those that got their own
-  double found_share = 0;  ///< of the pixels of objects that COCO has: those that got their class
+  double right_share = 0;  ///< share of the pixels with a label whose label is right
+  double found_share = 0;  ///< share of the pixels of COCO's objects that got their class
 };
 
 struct DetectorScore {
   std::size_t images = 0;
   std::vector<ClassScore> classes;  ///< that occur, by id
-  /// Means over the classes that occur (of a size, for the sizes).
+  /// Means over the classes that occur (for a size: that occur in that size).
   AveragePrecision mean;
   std::map<Outcome, std::size_t> outcomes;
   /// False alarms, by their class and the most frequent class of pixels in their box.

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// The runs of one recording, each system with each kind of labels once: their trials see the same
+/// The first run of each system with each kind of labels on one recording: all trials see the same
 /// images.
 using Runs = std::vector<const RunResult*>;
 

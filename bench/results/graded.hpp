@@ -17,7 +17,7 @@ struct GradedShare {
   double low = 0, high = 1;
 };
 
-/// The graded queries between two edges of what they are graded by.
+/// The graded queries between two edges of the quantity that they are graded by.
 struct GradedBin {
   double low = 0, high = 0;
   std::size_t queries = 0;  ///< over scenes; each is made in every trial
@@ -27,7 +27,7 @@ struct GradedBin {
   std::optional<Comparison> difference = {};
 };
 
-/// Success as a function of what queries are graded by.
+/// Success as a function of a quantity that queries are graded by.
 struct GradedCurve {
   std::size_t level = 0;
   Labels labels;

@@ -22,7 +22,7 @@ inline PairedDifference paired_difference(const std::optional<double>& first,
   return first && second ? PairedDifference{*first - *second, true} : PairedDifference{};
 }
 
-/// What two systems are compared by.
+/// The quantity that two systems are compared by.
 struct Compared {
   std::string measure;  ///< "success", "distance where both answer"
   std::string unit;     ///< "m"; empty for shares

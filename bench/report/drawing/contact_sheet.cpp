@@ -75,7 +75,7 @@ View shoot(std::string caption, const Renderer& renderer, const Camera& camera, 
 struct CornerView {
   View view;
   int objects = 0;   ///< that fill at least 1/100 of it, except walls, floor and ceiling
-  float near_m = 0;  ///< 9/10 are farther: near 0 if something is in the way
+  float near_m = 0;  ///< 9/10 of it are farther away; near 0 if something blocks the view
 };
 
 CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& renderer,

@@ -8,7 +8,7 @@
 namespace mh {
 
 // Charts are drawn by gnuplot, since Debian packages it, it needs no window, and its whole input is
-// one script that anybody can change.
+// one script that anyone can change.
 
 /// A text quoted for gnuplot: nothing in it is interpreted, and lines break at '\n'.
 std::string gnuplot_text(const std::string& text);

@@ -33,7 +33,7 @@ struct ShadedField {
   std::vector<Mark> marks;
   Ticks x_ticks, y_ticks;
   std::string low_color = "#ecf3fb", high_color = "#084594";
-  std::optional<std::size_t> framed = {};  ///< a mark
+  std::optional<std::size_t> framed = {};  ///< index of a mark
 };
 
 /// One panel: series, or a field.

@@ -63,8 +63,8 @@ std::vector<Sum> window_errors(const RunResult& run) {
   return windows;
 }
 
-/// The 97.5 % quantile of Student's t, by Abramowitz and Stegun, 26.7.5: within 0.1 % from 4
-/// degrees of freedom on.
+/// The 97.5 % quantile of Student's t, by Abramowitz and Stegun, 26.7.5: accurate to 0.1 % with at
+/// least 4 degrees of freedom.
 double student_t(double degrees_of_freedom) {
   const double z = 1.959964, n = degrees_of_freedom, z2 = z * z;
   return z * (1 + (z2 + 1) / (4 * n) + ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +

@@ -62,7 +62,7 @@ class PlotTable {
   const nlohmann::ordered_json& json_;
 };
 
-/// The terminal, the key above, axes left and below, a faint grid.
+/// The beginning of a script: terminal, key above, axes left and below, a faint grid.
 std::string beginning(const PlotOrder& order, const std::filesystem::path& file, double height_cm);
 
 std::string plot_by_density(const PagesSource& source, const PlotOrder& order,

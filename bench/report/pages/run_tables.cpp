@@ -29,8 +29,8 @@ void identify(PageTable& table, const RunSpec& spec, const std::string& status) 
   table.number({"trial", "trial"}, spec.trial);
 }
 
-/// Titles of a run's metrics: those of queries with the short name of their set, those of episodes
-/// with that word.
+/// The title of a run's metric: for queries with the short name of their set, for episodes with
+/// that word.
 std::string metric_title(const Metric& metric) {
   std::string title = metric.heading.empty() ? metric.name : std::string(metric.heading);
   if (metric.name.starts_with("episodes.")) return "episodes: " + title;
