@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-constexpr Stamp kMaxApart_ns = 20'000'000;  // as TUM's associate.py
+constexpr Stamp kMaxApart_ns = 20'000'000;  // as in TUM's associate.py
 constexpr double kSecond_ns = 1e9;
 
 const TimedPose* nearest(const Trajectory& truth, Stamp stamp_ns) {

@@ -34,7 +34,7 @@ struct PublishedCandidates {
 inline constexpr PublishedCandidates kCandidates[] = {
     {"the paper's semantic system", 0.9936, 0.0218, 0.0093, 1.89, 0.6618}};
 
-/// The rows to show below those of a suite: none unless it names the table.
+/// The rows to show below those of a suite: none unless the suite names the table.
 inline std::span<const PublishedRow> published_rows(const Suite& suite) {
   if (suite.published != Published::kTable2) return {};
   return kTable2;

@@ -41,7 +41,7 @@ struct Comparison {
   std::size_t clusters = 0;  ///< scenes that the pooled queries come from; 0: not pooled
   double difference = 0;     ///< mean of first - second
   double low = 0, high = 0;  ///< 95 % bootstrap interval
-  double p = 1;              ///< two-sided; for queries by sign flips, for scenes Wilcoxon's
+  double p = 1;              ///< two-sided: for queries from sign flips, for scenes Wilcoxon's
   double p_holm = 1;         ///< corrected over the family (see holm)
   /// The true difference that would be detected with 80 % power at the 5 % level: 2.8 standard
   /// errors; for shares at least 3 / n, n being the yes-or-no answers behind them, since
