@@ -83,7 +83,7 @@ void resolve(std::string& word, Shipped what) {
 
 namespace {
 
-/// What a file begins with that has an ending; empty for endings that tell nothing.
+/// The first bytes of a file with this extension; empty if the extension determines none.
 std::string_view head_of(const fs::path& file) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeads = {
       {{".png", "\x89PNG"},
@@ -96,7 +96,7 @@ std::string_view head_of(const fs::path& file) {
   return {};
 }
 
-/// Whether a file that is there begins so, or is empty.
+/// Whether a file begins with `head`; also true if it is empty or missing.
 bool begins_with(const fs::path& file, std::string_view head) {
   std::string start(head.size(), '\0');
   std::ifstream in(file, std::ios::binary);
@@ -172,7 +172,7 @@ NewFolders::NewFolders(fs::path folder) {
 
 NewFolders::~NewFolders() {
   std::error_code error;
-  for (const fs::path& folder : missing_) fs::remove(folder, error);  // one with files stays
+  for (const fs::path& folder : missing_) fs::remove(folder, error);  // one that holds files stays
 }
 
 OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
@@ -206,7 +206,7 @@ OutputFolder::~OutputFolder() {
   if (mark_before_ && !holds_any()) {
     try {
       if (!mark_before_->empty()) write_atomically(folder_ / kOutputMark, *mark_before_);
-    } catch (const std::exception&) {  // leftovers there do no harm
+    } catch (const std::exception&) {  // a leftover mark does no harm
     }
     if (mark_before_->empty()) fs::remove(folder_ / kOutputMark, error);
   }

@@ -63,7 +63,7 @@ std::vector<std::string> names_of_audit() {
 
 namespace {
 
-/// The runs of a folder's results; nullopt: there are none.
+/// The planned runs of a folder's results; nullopt if it has no results.
 std::optional<PlannedKeys> runs_of_results(const std::filesystem::path& out) {
   const std::filesystem::path file = out / "results.sqlite";
   if (!std::filesystem::exists(file)) return std::nullopt;

@@ -41,7 +41,7 @@ fs::path baseline_file(const CheckArguments& options) {
 }
 
 /// Returns where an interrupted check of that suite leaves its finished results, to be resumed by
-/// the same command; nullopt if it cannot be created, or if another process works there.
+/// the same command; nullopt if it cannot be created, or if another process is working there.
 std::optional<OwnedFolder> place_for(const fs::path& suite) {
   const fs::path cache = Cache::default_folder();
   if (cache.empty()) return std::nullopt;
@@ -64,10 +64,10 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
   }
 }
 
-/// Runs the suite. Reuses no earlier results except those of the same interrupted check, and no
-/// maps, which runs without images never take from the cache: only light and detections, whose keys
-/// cover everything that decides them.
-/// @param inputs  which may have been read already
+/// Runs the suite. Reuses no earlier results except those of the same interrupted check. From the
+/// cache it uses only light and detections, whose keys cover everything that determines them: runs
+/// without images never take maps from there.
+/// @param inputs  reads the inputs; some may have been read already
 Baseline measure(const Suite& suite, const CheckArguments& of, InputReader& inputs,
                  Progress& progress) {
   std::optional<OwnedFolder> place = place_for(suite.file);
@@ -169,7 +169,7 @@ void run(CheckArguments options) {
   if (!fs::exists(file))
     throw InputError(
         fmt::format("{}: cannot be read: no such baseline; --update makes one", file.string()));
-  const Baseline baseline = load_baseline(file);  // before the work: a mistake costs no time
+  const Baseline baseline = load_baseline(file);  // first, so that a mistake costs no time
   check_suite(baseline, file, suite.name, gate_suite_digest(suite, inputs));
   const Baseline now = measure(suite, options, inputs, progress);
   const GateResult result = judge(suite, baseline, now);

@@ -57,7 +57,7 @@ class Frames {
             "--settings {}: is for a recording, and the sources are images", options.settings));
       images_ = options.sources;
       for (const std::string& image : images_)
-        if (!is_there(image)) read_file(image);  // for its message: damaged ones are skipped
+        if (!is_there(image)) read_file(image);  // throws; damaged ones are skipped later
       return;
     }
     if (options.sources.size() != 1)
@@ -71,12 +71,12 @@ class Frames {
     sequence_ = std::move(opened.sequence);
   }
   std::size_t size() const { return sequence_ ? sequence_->size() : images_.size(); }
-  /// Image files have the stamp of an RgbdFrame without one.
+  /// Image files have the default stamp of an RgbdFrame.
   std::vector<Stamp> stamps_ns() const {
     return sequence_ ? stamps_of(*sequence_)
                      : std::vector<Stamp>(images_.size(), RgbdFrame{}.stamp_ns);
   }
-  /// " of FILE" of an image; "" of a recording's frame.
+  /// " of FILE" for an image; "" for a recording's frame.
   std::string source_of(std::size_t i) const {
     return sequence_ ? "" : " of " + printable(images_[i]);
   }
@@ -92,8 +92,8 @@ class Frames {
   std::vector<std::string> images_;
 };
 
-/// COCO's results of a frame. The category is COCO's id for COCO's 80 classes; otherwise the
-/// class's index, from 1.
+/// Appends a frame's results in COCO's format. The category is COCO's id for COCO's 80 classes;
+/// otherwise the class's index, from 1.
 void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected& found,
                  bool of_coco) {
   std::map<int, int> category;  // by index among the 80
@@ -146,7 +146,8 @@ std::vector<std::string> drawn_earlier(const fs::path& out) {
   return names;
 }
 
-/// @throws InputError naming the file if one of a drawing's name is not from an earlier run.
+/// @throws InputError naming the file if an existing file with the name of a wanted image is not
+/// from an earlier run.
 void require_no_other_images(const fs::path& out, const std::vector<std::size_t>& wanted) {
   const std::vector<std::string> earlier = drawn_earlier(out);
   for (const std::size_t i : wanted)
@@ -158,7 +159,7 @@ void require_no_other_images(const fs::path& out, const std::vector<std::size_t>
                       (out / name).string()));
 }
 
-/// Replaces an earlier result by a finished one.
+/// Replaces an earlier result with a finished one.
 void replace_earlier(const fs::path& work, const fs::path& out, const std::string& results,
                      const std::string& drawn) {
   std::error_code error;

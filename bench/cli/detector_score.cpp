@@ -57,7 +57,7 @@ struct DetectorScoreArguments {
   bool json = false;
 };
 
-/// COCO's evaluation uses boxes with scores down to this; a detector's own threshold is far above.
+/// COCO's evaluation uses boxes with scores down to this; a detector's own threshold is far higher.
 constexpr double kLeastScore = 0.01;
 
 std::vector<std::string> names_of(const DetectorScoreArguments& options) {
@@ -72,7 +72,7 @@ struct JudgedFrame {
   double missed_pixels = 0;
 };
 
-/// The frames in which a detector missed most.
+/// The frames in which a detector missed the most object pixels.
 class Worst {
  public:
   void add(JudgedFrame frame) {
@@ -101,20 +101,20 @@ class Worst {
   std::vector<JudgedFrame> frames_;
 };
 
-/// The level's simulated detector with other settings, judged on the same frames.
+/// Scores of the detector and, on the same frames, of the level's simulated detector with the
+/// measured settings.
 struct Judged {
   DetectorScore real;
   std::optional<DetectorScore> simulated;
 };
 
-/// One moment of a scan, as the sensors deliver it.
+/// One frame of a scan, as the sensors deliver it.
 struct Moment {
   SensedMoment sensed;
   SE3 world_from_camera;
 };
 
-/// Calls visit(moment, index) for each moment of the rooms: of a hand-held scan of each, evenly
-/// spaced.
+/// Calls visit(moment, index) for evenly spaced frames of a handheld scan of each room.
 void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
                      const SensorConfig& sensors,
                      const std::function<void(const Moment&, std::size_t)>& visit) {
@@ -151,7 +151,7 @@ Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, W
   const SensorConfig sensors = load_sensor_config(options.level);
   const KeepDetections keep = detections_in(cache);
   DetectorJudge real(confidence);
-  std::vector<RenderedFrame> exact;  // without what the simulated detector does not use
+  std::vector<RenderedFrame> exact;  // only what the simulated detector uses
   std::vector<SE3> poses;
   for_each_moment(options, robot, sensors, [&](const Moment& moment, std::size_t index) {
     const RgbdFrame& frame = moment.sensed.frame;
@@ -250,7 +250,7 @@ void print_score(const Judged& judged) {
   print_dials(s.dials, judged.simulated->dials);
 }
 
-/// null for what is not known.
+/// The value; null if it is unknown (NaN).
 nlohmann::ordered_json known(double v) {
   return std::isnan(v) ? nlohmann::ordered_json() : nlohmann::ordered_json(v);
 }

@@ -33,8 +33,8 @@ struct EpisodeArguments {
   bool no_cache = false, json = false;
 };
 
-/// The run that the options name, by default the first, with the one variant and the starts up to
-/// the one that they name.
+/// The run that the options select (by default the first), with only the selected variant and the
+/// starts up to the selected one.
 RunSpec chosen_run(const Suite& suite, const EpisodeArguments& options) {
   const auto check = [&](const char* option, const std::string& word,
                          const std::vector<std::string>& all) {
@@ -97,7 +97,7 @@ void run(EpisodeArguments options) {
                  .episodes = {.only = WatchedEpisode{options.start, observer}}});
     progress.end();
     score = result.episodes.front();
-  } catch (const OutsideError&) {  // the log up to there may show why
+  } catch (const OutsideError&) {  // the log up to this point may show why
     for (const char* name : {"strip.png", "episode.json"}) std::filesystem::remove(out / name);
     write_atomically(out / "log.txt", record ? record->log_so_far() : "");
     throw;

@@ -37,7 +37,7 @@ const std::map<std::string, Alignment> kAlignments = {{"se3", Alignment::kSe3},
                                                       {"origin", Alignment::kOrigin},
                                                       {"none", Alignment::kNone}};
 
-/// "30f", "0.2m", "1s". @throws InputError naming the text.
+/// Parses "30f", "0.2m" or "1s". @throws InputError naming the text.
 RpeDelta parse_delta(const std::string& text, bool all_pairs) {
   const auto fail = [&] {
     throw InputError(fmt::format("--delta: '{}' is not a distance such as 30f, 0.2m or 1s", text));
@@ -97,7 +97,7 @@ nlohmann::ordered_json to_json(const Evaluation& e, const std::string& align) {
           {"rpe", rpe}};
 }
 
-/// A diverged trajectory is off by millions of meters.
+/// Formats an error; that of a diverged trajectory may be millions of meters.
 std::string cell(double error) {
   return error < 1000 ? fmt::format("{:>10.5f}", error) : fmt::format("{:>10.2e}", error);
 }
@@ -111,7 +111,7 @@ void print_row(const std::string& what, const ErrorStatistics& s) {
 
 constexpr Stamp kEarliest_ns = -10'000'000'000'000'000, kLatest_ns = 9'200'000'000'000'000'000;
 
-/// Seconds, with a sign or without, exactly. @throws InputError naming the text
+/// Parses seconds exactly, with an optional minus sign. @throws InputError naming the text
 Stamp parse_offset(const std::string& text) {
   const bool negative = text.starts_with('-');
   try {

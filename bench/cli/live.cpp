@@ -71,7 +71,7 @@ void run(LiveArguments options) {
       for (std::string* image : {&shown.color, &shown.depth, &shown.labels})
         server.send_image(std::string(1, kind++) + *image);
     }
-    // A machine that is too slow drives in slow motion, not in leaps.
+    // On a machine that is too slow, the robot drives in slow motion instead of in leaps.
     due = std::max(due + period, Clock::now() - period);
     if (!options.fast) std::this_thread::sleep_until(due);
   }

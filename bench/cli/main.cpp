@@ -52,8 +52,8 @@ int finish_output(int code) {
   return fail(kMachineFailed, "standard output: cannot be written" + why);
 }
 
-/// The first word of the form "--out=", for whose value CLI11 would take the next word; nullptr if
-/// there is none.
+/// The first word of the form "--out=", since CLI11 would take the next word as its value; nullptr
+/// if there is none.
 const char* option_without_value(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
     if (const std::string_view word = argv[i];
@@ -67,13 +67,14 @@ bool has_commands(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
-  // The process that started a run must see that it was killed, not a line about it.
+  // The process that started a run must see that the run was killed, not a message about it.
   const bool is_run = argc >= 2 && std::string_view(argv[1]) == "run-one";
   if (!is_run) mh::tell_of_interrupts();
   mh::end_at_lost_pages(mh::kErrorMark, is_run ? mh::kInputChangedCode : kBadInput);
-  // A file beyond `ulimit -f` is a failed write that is reported, not a silent end.
+  // With this, a write beyond `ulimit -f` fails and is reported instead of ending the process
+  // silently.
   std::signal(SIGXFSZ, SIG_IGN);
-  // Same bits at any load: OpenCV must not split its work by the number of processors.
+  // For the same bits at any load, OpenCV must not split its work by the number of processors.
   cv::setNumThreads(1);
   CLI::App app("Modelhouse: a simulation-backed test bench for object-aware visual SLAM.",
                "modelhouse");

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 `modelhouse map grid|cost|objects|plan|messages`: what a
-// robot gets from a saved octree.
+// SPDX-License-Identifier: Apache-2.0
+// `modelhouse map grid|cost|objects|plan|messages`: what a robot gets from a saved octree.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -79,7 +79,8 @@ VoxelMap load_map(const std::string& file) {
   return map;
 }
 
-/// @throws InputError if the map has no floor, or shows nothing between ground and head.
+/// @throws InputError if the map has no floor, or is empty between the ground and the robot's
+/// height.
 OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
                       const ObstacleGridConfig& band) {
   if (!map.on_floor())
@@ -92,7 +93,7 @@ OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
   return grid;
 }
 
-/// Gray is the mean of a pixel's colors, as in map_server.
+/// Decodes an image to gray, the mean of a pixel's colors, as in map_server.
 GrayImage decode_gray_image(const std::string& bytes) {
   cv::Mat decoded = decode_image(bytes);
   if (decoded.depth() != CV_8U && decoded.depth() != CV_16U)
@@ -192,8 +193,8 @@ void run(const MapMessagesArguments& options) {
              counted(study.objects.size(), "object"), counted(map.voxel_count(), "voxel"));
 }
 
-/// A goal next to a named object, where a robot in an episode would stop. Of several objects, the
-/// best-scored one that a path leads to.
+/// A goal next to a named object, where a robot in an episode would stop. If several objects match,
+/// it is next to the best-scored one that can be reached.
 Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownMap& known,
                       const Vector2d& from_m, double clearance_m) {
   constexpr double kReach_m = 1.5;  // farther than this is not at the object

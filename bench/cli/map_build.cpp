@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `modelhouse map build`: space, grid, costs and objects from a sequence's depth at known poses.
+// `modelhouse map build`: voxels, grid, costs and objects from a sequence's depth at known poses.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -45,7 +45,7 @@ struct MapBuildArguments : SourceOptions {
   bool plain = false, score = false, lasers = false;
 };
 
-/// Poses of the frames whose depth is taken, in the frame of their first camera.
+/// Poses of the frames whose depth is used, in the frame of their first camera.
 struct Posed {
   Trajectory poses;
   std::vector<MapPoint> landmarks;  ///< of the SLAM map; empty without one
@@ -86,8 +86,8 @@ Posed run_slam(const MapBuildArguments& options, const Source& source,
   return posed_by(state);
 }
 
-/// The poses of frames by a trajectory, whose stamps may differ from theirs, as with motion
-/// capture.
+/// Poses of the frames, interpolated from a trajectory whose stamps may differ from theirs, as with
+/// motion capture.
 Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory) {
   Trajectory poses;
   for (std::size_t i = 0; i < frames.size(); ++i)
@@ -116,8 +116,8 @@ Trajectory keep_posed(const MapBuildArguments& options, const Source& source,
   return kept;
 }
 
-/// The frame of the map: that of a scene, whose robot knows its dock; else the floor's; nullopt if
-/// no floor was seen.
+/// Transform from the mapped poses' frame to that of the map: the scene's if there is one, since
+/// its robot knows its dock; else the floor's; nullopt if no floor was seen.
 std::optional<SE3> find_map_frame(const MapBuildArguments& options, const Source& source,
                                   const OccupancyMapper& mapper, const Trajectory& poses) {
   if (const Trajectory* truth = source.frames->truth(); options.is_scene() && truth != nullptr)
@@ -201,7 +201,7 @@ MapStudy study_floor(const MapBuildArguments& options, const Source& source,
   std::optional<ScanGrid> scans;
   if (mapped != nullptr && mapped->lasers)
     scans = mapped->lasers->scans(poses, *source.frames->truth(), options.resolution_m);
-  // The frame of a recording's map is on the floor.
+  // The origin of a recording's map frame is on the floor.
   const double floor_z_m = mapped != nullptr ? mapped->scene.floor.middle_m.z() : 0;
   MapStudy study = study_of(map, {.floor_z_m = floor_z_m, .robot_height_m = options.height_m},
                             scans ? &*scans : nullptr);

@@ -148,7 +148,7 @@ class SettingsTables {
   std::string text_;
 };
 
-/// Sets `enabled` of every section, as it is where a level has the section.
+/// Sets `enabled` in every section, as in a level that has the section.
 struct SwitchOn {
   void section(const char*) const {}
   template <class T>

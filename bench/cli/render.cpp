@@ -54,7 +54,7 @@ struct RenderArguments {
   bool json = false;
 };
 
-/// The digest of an input as it was when it was read; empty if there is none of that name.
+/// The digest that an input had when it was read; empty if there is no input of that name.
 std::string digest_of(const std::vector<InputDigest>& inputs, std::string_view name) {
   const auto input = std::ranges::find(inputs, name, &InputDigest::name);
   return input == inputs.end() ? "" : hex(input->digest);
@@ -105,7 +105,7 @@ fs::path part_of_sequence(const fs::path& folder) {
 /// Images of two tours in one folder would look like one sequence.
 void refuse_older_sequence(const fs::path& folder) {
   if (!is_folder(folder) || fs::exists(folder / "render.json"))
-    return;  // compared when all settings are known
+    return;  // compared later, when all settings are known
   if (const fs::path part = part_of_sequence(folder); !part.empty())
     throw InputError(fmt::format("{}: holds a sequence already ({}); name another folder",
                                  folder.string(), part.filename().string()));

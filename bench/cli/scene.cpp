@@ -47,7 +47,7 @@ struct SceneArguments {
   SceneFrameOption frame;
   std::vector<std::string> scenes;  ///< preview
   bool scan_look = false;           ///< make
-  int each = 0;                     ///< preview: number of each category
+  int each = 0;                     ///< preview: scenes of each category
   int per_room = 2;                 ///< preview: rows of one scene's sheet
   bool no_captions = false;
   std::uint64_t seed = 0;
@@ -128,7 +128,7 @@ void info(SceneArguments options) {
   fmt::print("  digest     {}\n", hex(digest(scene)));
 }
 
-/// Keeps the first views of each room, at most this many.
+/// Keeps at most the first `count` views of each room.
 void keep_of_each_room(std::vector<View>& views, int count) {
   std::map<std::string, int> kept;
   std::erase_if(views, [&](const View& view) { return ++kept[view.caption] > count; });
@@ -178,7 +178,7 @@ void preview(const SceneArguments& options) {
   write_image(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
-/// Also covers the labels that are written next to a PLY: they must not replace any other file.
+/// Also checks the labels that are written next to a PLY: they must not replace any other file.
 void require_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
   require_writable(out, read);
   const fs::path labels = labels_path(out);
@@ -199,7 +199,7 @@ Scene scanned(const Scene& scene) {
   constexpr std::size_t kViews = 90;
   const auto renderer = make_scene_renderer(scene);
   Camera camera;
-  // From anywhere, including up and down: a single walk misses half of the floor.
+  // Views in any direction, including up and down: a single walk would miss half of the floor.
   return scan_look(scene, *renderer, camera, scan_views(scene, 0, kViews));
 }
 
@@ -277,7 +277,7 @@ void make(const SceneArguments& options) {
   if (options.out.empty()) return;
   if (fs::path(options.out).extension() == ".yaml") {
     const std::string text = with_detail(plan);
-    if (is_file(options.out) && read_file(options.out) != text)  // plans are edited by hand
+    if (is_file(options.out) && read_file(options.out) != text)  // may have been edited by hand
       throw InputError(
           fmt::format("{}: is there already, and differs: name another file", options.out));
     write_atomically(options.out, text);

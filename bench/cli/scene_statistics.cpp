@@ -41,8 +41,7 @@ std::vector<std::string> names_of(const SceneStatisticsArguments& options) {
   return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
-/// Measures moments of a hand-held scan of the scene, evenly spaced, as the level's sensors see
-/// them.
+/// Measures evenly spaced frames of a handheld scan of the scene, as the level's sensors see them.
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames,
                             const SceneStatisticsArguments& options, const Robot& robot,
                             const SensorConfig& sensors) {

@@ -95,7 +95,7 @@ std::string nothing_mapped(const std::string& source, const Sequence& frames, st
     const RgbdFrame frame = frames.frame(first, RandomStream());
     for (const float depth_m : frame.depth_m)
       if (depth_m > 0) depths_m.push_back(depth_m);
-  } catch (const InputError&) {  // was reported when it was skipped
+  } catch (const InputError&) {  // already reported when the frame was skipped
     return text;
   }
   if (depths_m.empty()) return text + " (the first image has no depth)";

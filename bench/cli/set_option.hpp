@@ -14,7 +14,7 @@
 namespace mh::cli {
 
 /// Words NAME=VALUE of an option that may be given several times.
-/// @throws InputError unless each is NAME=VALUE, each name once.
+/// @throws InputError if one is not NAME=VALUE, or if a name is given twice.
 inline std::map<std::string, std::string> named_values(const std::string& option,
                                                        const std::vector<std::string>& given) {
   std::map<std::string, std::string> values;

@@ -37,8 +37,7 @@ struct SlamArguments : SourceOptions {
 };
 
 /// Applies what --settings may change for a loaded map: the settings of relocalization. The others
-/// have shaped the map: the map's values are kept, and a note lists those that the file would
-/// change.
+/// shaped the map, so the map's values are kept, and a note lists those that the file would change.
 void apply_settings(const SlamArguments& options, SlamConfig& of_map,
                     std::vector<std::string>& notes) {
   const SlamConfig asked = load_settings(options.settings, of_map).slam;
@@ -62,7 +61,7 @@ SlamState first_state(const SlamArguments& options,
     state = make_slam(settings.camera, settings.slam, vocabulary);
   } else {
     state = load_slam(options.map, vocabulary);
-    Camera made_by = state.camera;  // without what it learned
+    Camera made_by = state.camera;  // without the learned disparity_sigma_px
     if (!made_by.disparity_sigma_is_given) made_by.disparity_sigma_px = Camera{}.disparity_sigma_px;
     if (made_by != settings.camera)
       throw InputError(fmt::format("{}: was made with another camera", options.map));
@@ -119,13 +118,12 @@ void require_no_other_file(const fs::path& map) {
         fmt::format("--save-map {}: is not a map file: choose another name", map.string()));
 }
 
-/// Runs the protocol on one sequence: that of the bench, or a live camera feed without held-out
-/// frames.
+/// Runs one sequence, under the bench's protocol or as a live camera feed without held-out frames.
 RunResult run_sequence(const SlamArguments& options, const World& world, SlamState& state,
                        std::size_t first, const StepObservers& observers,
                        const MappingObserver& watch) {
-  // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol the feed
-  // rewinds.
+  // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol, the feed
+  // rewinds instead.
   constexpr int kSmallMap = 5;
   RunSpec spec;
   spec.environment.sequence = options.source;

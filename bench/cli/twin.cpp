@@ -51,8 +51,8 @@ struct TwinArguments {
   SceneFrameOption frame;
 };
 
-/// From the frame of the recording's poses to that of the scene: as stated, else ScanNet's
-/// alignment, which the scene's loader applies and the recording's poses lack.
+/// Transform from the frame of the recording's poses to that of the scene: the one given, else
+/// ScanNet's alignment, which the scene's loader applies and the recording's poses lack.
 SE3 scene_from_recording(const TwinArguments& options) {
   if (!options.scene_from_recording.empty()) {
     const std::vector<double>& v = options.scene_from_recording;
@@ -71,7 +71,8 @@ SE3 scene_from_recording(const TwinArguments& options) {
           info.aligned_from_scan->topRightCorner<3, 1>()};
 }
 
-/// A map of one kind of frames, and how it answers queries of both kinds, at the same moments.
+/// A map from one kind of frames (recorded or rendered), and its answers to queries of both kinds
+/// at the same times.
 struct Mapped {
   MappingOutcome mapping;
   TrajectoryScore trajectory;

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// The runs of one recording, each system with each kind of labels once: their trials see the same
+/// The first run of each system with each kind of labels on one recording: all trials see the same
 /// images.
 using Runs = std::vector<const RunResult*>;
 
@@ -63,8 +63,8 @@ std::string notes_text(const RunResult& run) {
   return text;
 }
 
-/// Warns of a second recording that was answered often, by all systems together, and never
-/// correctly.
+/// Warns about a second recording whose queries were answered several times, over all systems, and
+/// never correctly.
 std::string other_frame_text(const Runs& runs) {
   constexpr std::size_t kFewest = 3;
   std::vector<double> distances_m;

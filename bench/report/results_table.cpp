@@ -23,7 +23,7 @@
 namespace mh {
 namespace {
 
-/// The warning above all tables of tours that were cut.
+/// The warning, above all tables, that tours were cut.
 std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) {
   const auto cut = std::ranges::find_if(runs, [](const RunResult& run) { return run.place.cut; });
   if (cut == runs.end()) return "";
@@ -91,7 +91,7 @@ std::vector<std::string> base_lines(const Suite& suite) {
 
 namespace {
 
-/// Nothing unless the suite states published figures.
+/// Empty unless the suite states published figures.
 std::string published_text(const AteBesidePublished& table) {
   if (table.environments.empty()) return "";
   std::vector<std::string> headings{"ATE m"};

@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Whether one value would press the others to the axis: it is far beyond all but a few.
+/// Whether the largest value is so far beyond most others that it would squeeze them against the
+/// axis.
 bool needs_logarithm(std::vector<double> values) {
   constexpr double kFar = 10;
   if (values.empty() || std::ranges::min(values) <= 0) return false;
