@@ -110,7 +110,8 @@ TEST(WheelBase, WheelsThatDriveNoBaseAreNamed) {
   // All three wheels point at the center: no rim moves when the base turns about it.
   expect_in("a direction in which no rim moves",
             wrong({wheel_at(0, 0.2, 0), wheel_at(0, -0.2, 0), wheel_at(0.3, 0, M_PI_2)}));
-  EXPECT_EQ(wrong({wheel_at(0, 0.08, -1.5708), wheel_at(0, -0.08, 1.57)}), "");  // rounded
+  EXPECT_EQ(wrong({wheel_at(0, 0.08, -1.5708), wheel_at(0, -0.08, 1.57)}),
+            "");  // the angles are rounded
   WheelBase again = wheels();
   EXPECT_EQ(find_kind(again), "");
   EXPECT_EQ(again.kind, WheelBase::Kind::kOmnidirectional);

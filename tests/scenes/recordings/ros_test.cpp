@@ -817,7 +817,7 @@ class Unregistered : public RosRecording {
     info.k = {f, 0, cx, 0, f, cy, 0, 0, 1};
     return info;
   }
-  /// @param color, depth  topics; their calibrations lie beside them
+  /// @param color, depth  topics
   void add_cameras(Foreign& robot, const std::string& color, const std::string& color_info,
                    const std::string& depth, const std::string& depth_info) const {
     const std::string pixels(8 * 6 * 3, 'c');
@@ -830,8 +830,8 @@ class Unregistered : public RosRecording {
     robot.add(color_info, 0, info(robot.header(0), 8, 8, 3.5, 2.5));
     robot.add(depth_info, 0, info(of_depth, 4, 4, 1.5, 1));
   }
-  /// A point at x = z (u - 1.5) / 4 + 0.5 m is seen at 8 x / z + 3.5 = 2 u + 2.5, 2 v + 2.5 - 2:
-  /// each depth pixel covers two columns and rows, from 2 u + 2 on.
+  /// A point at x = z (u - 1.5) / 4 + 0.5 m appears at 8 x / z + 3.5 = 2 u + 2.5 and 2 v + 2.5 - 2:
+  /// each depth pixel covers two columns and two rows, starting at column 2 u + 2.
   void expect_registered(const OpenedRecording& opened) const {
     const Grid2d<float> depth_m = opened.sequence->frame(0, RandomStream(0)).depth_m;
     for (int y = 0; y < 6; ++y)
@@ -859,7 +859,7 @@ TEST_P(Unregistered, DepthIsRegisteredByWhatRealSensesRecorderStates) {
   add_cameras(
       robot, "/device_0/sensor_1/Color_0/image/data", "/device_0/sensor_1/Color_0/info/camera_info",
       "/device_0/sensor_0/Depth_0/image/data", "/device_0/sensor_0/Depth_0/info/camera_info");
-  // From the reference to the stream: the reference lies 1 m to the right of depth.
+  // From the reference to the stream: the reference is 1 m to the right of the depth camera.
   robot.add("/device_0/sensor_0/Depth_0/tf/0", 0, ros::Transform{{1, 0, 0}, {}});
   robot.add("/device_0/sensor_1/Color_0/tf/0", 0, ros::Transform{{1.5, 0, 0}, {}});
   robot.write(writer());
@@ -881,7 +881,7 @@ TEST_P(Unregistered, WithoutATransformItIsRefused) {
   add_cameras(robot, "/rgb/image_raw", "/rgb/camera_info", "/depth/image_raw",
               "/depth/camera_info");
   robot.tf(0, "odom", "cam_optical", shift(1, 2, 3));
-  robot.tf(1, "odom", "cam_optical", shift(2, 2, 3));  // moves
+  robot.tf(1, "odom", "cam_optical", shift(2, 2, 3));  // it moves
   robot.tf(0, "odom", "depth_optical", shift(1.5, 2, 3));
   robot.write(writer());
   EXPECT_NE(error_of([&] { open(); })
