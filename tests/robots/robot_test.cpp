@@ -74,7 +74,7 @@ TEST(LoadRobot, FieldOfViewSpansTheImage) {
 TEST(LoadRobot, OpticalAxesFollowRep103) {
   const SE3 base_from_camera = load_robot(kPepper).base_from_camera;
   EXPECT_TRUE(base_from_camera.translation().isApprox(Eigen::Vector3d(0.0134, 0.0390, 1.1093)));
-  // Forward of the base is z of the camera; left of the base is -x of the camera.
+  // The base's forward direction is the camera's z; the base's left is the camera's -x.
   const Eigen::Matrix3d camera_from_base = base_from_camera.rotation().transpose();
   EXPECT_TRUE((camera_from_base * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitZ()));
   EXPECT_TRUE((camera_from_base * Eigen::Vector3d::UnitY()).isApprox(-Eigen::Vector3d::UnitX()));

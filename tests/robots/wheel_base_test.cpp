@@ -298,7 +298,7 @@ TEST(WheelOdometry, DriftsAsConfigured) {
   // Scale only: the error is proportional to the path.
   EXPECT_NEAR(end(10, {.scale = 0.01}, 0).x(), 10.1, 1e-9);
   EXPECT_NEAR(end(20, {.scale = 0.01}, 0).x(), 20.2, 1e-9);
-  // Slip only: along the path it affects just the two front wheels. A straight path of length L
+  // Slip only: the two front wheels share the motion along the path. A straight path of length L
   // needs L sin(61.6 deg) from each rim, so each reading has an error variance of slip^2 L sin, and
   // the measured path is half the difference of the readings divided by the sine: sigma = slip
   // sqrt(L / (2 sin)).

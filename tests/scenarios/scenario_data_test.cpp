@@ -78,8 +78,8 @@ TEST(ScenarioData, TheRobotDoesNotRunIntoThePersonWhoWalksByInFrontOfIt) {
     seen += chest.z() > 0 && std::abs(chest.x()) < 0.5 * chest.z() ? 1 : 0;
   }
   EXPECT_GT(nearest_m, robot.footprint_radius_m + kPedestrianRadius_m);
-  // The physics includes the pedestrian: the path is the same to the bit since the robot does not
-  // touch them.
+  // The physics includes the pedestrian: the path is the same to the bit since the two do not
+  // touch.
   const DrivenPath with_him =
       travel(room, robot, kFolder + "tours/room.yaml", {as_obstacle(room, pedestrian)});
   ASSERT_EQ(with_him.base.size(), path.base.size());

@@ -174,8 +174,8 @@ TEST(Generate, PicturesOfOneRuleDiffer) {
   EXPECT_EQ(images.size(), pictures);
 }
 
-// Where the robot's center can be, found from the triangles alone: cells with nothing between rugs
-// and the robot's head within its radius of the cell's center.
+// Where the robot's center can be, found from the triangles alone: cells where nothing at heights
+// between rugs and the robot's head is closer to the center than the robot's radius.
 cv::Mat free_floor(const Scene& scene, double radius_m, double cell_m) {
   Eigen::Vector2d high(0, 0);
   for (const Eigen::Vector2d& p : scene.rooms[0].polygon_m) high = high.cwiseMax(p);
@@ -246,7 +246,7 @@ TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
       EXPECT_LE(overlap_m(a.footprint(), b.footprint()), 0.0) << a.name << ", " << b.name;
     }
 
-  // The largest free part of the floor covers nearly all of the free area, and each door.
+  // The largest free part of the floor covers nearly all of the free area and includes each door.
   constexpr double kCell = 0.025;
   const cv::Mat free = free_floor(scene, 0.26, kCell);
   cv::Mat labels, facts, centers;

@@ -152,7 +152,7 @@ TEST_F(Scannet, CategoriesThatNyu40LumpsTogetherKeepTheirClass) {
   EXPECT_EQ(class_of(7), "otherprop");
   EXPECT_EQ(class_of(8), "void");
 
-  write_v2();  // the chair becomes a microwave, although the labels say 40
+  write_v2();  // the chair becomes a microwave, whose label is 40
   write("scannetv2-labels.combined.tsv",
         std::string(kTableV2) + "99\tmicrowave\tmicrowave\t9\t40\t7\tmicrowave\totherprop\n");
   write_scene({1, 1, 40, 40, 0, 40, 40}, "axisAlignment = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");

@@ -174,8 +174,8 @@ TEST(BenchProcess, JobsAndShardsChangeNoByte) {
   EXPECT_EQ(tables("merged"), undisturbed());
 }
 
-// Two trials of three combinations of system and labels, at a level with motion blur: once each run
-// makes its own images, once the runs share images made by the first one that needs them.
+// Two trials of three combinations of system and labels, at a level with motion blur: first each
+// run makes its own images, then the runs share images made by the first one that needs them.
 TEST(BenchProcess, SharedImagesChangeNoByte) {
   const std::string root = MH_SOURCE_DIR;
   const fs::path suite = write_suite("blurred", "[semantic, plain]",
@@ -831,7 +831,7 @@ TEST(BenchProcess, ABenchWithAnAuditGivesTheSameResultsAndTheSameAudit) {
   EXPECT_EQ(content(test_folder() / "bench_and_audit" / "audit.csv"),
             content(fs::path(alone) / "audit.csv"));
 
-  // An audit is kept next to the results it belongs to, and removed once they are others.
+  // An audit is kept next to the results that it belongs to, and removed when the results change.
   const fs::path audited = test_folder() / "bench_and_audit" / "audit.json";
   EXPECT_EQ(run(bench(write_suite(), "bench_and_audit")), 0) << errors();
   EXPECT_TRUE(fs::exists(audited));

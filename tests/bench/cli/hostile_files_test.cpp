@@ -33,7 +33,7 @@ struct Outcome {
   int code = -1;  ///< exit code; -1 if ended by a signal
   std::string said;
   double processor_s = 0,
-         memory_gb = 0;  ///< of the process and its children; memory: the largest one's
+         memory_gb = 0;  ///< time of the process and its children; memory of the largest one
 };
 
 /// One case, with its own folder.

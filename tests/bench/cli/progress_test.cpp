@@ -55,7 +55,7 @@ TEST(Progress, PreparationsDoNotMakeTheTimeToGoLonger) {
     progress.share(0);
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // such as baking light
     progress.share(0.101);
-    progress.share(0.501);  // at once: at this rate, the rest takes less than a second
+    progress.share(0.501);  // right after it: at this rate, the rest takes less than a second
     progress.share(0.6, "", 95);
     progress.share(0.7, "", std::nullopt);
   }

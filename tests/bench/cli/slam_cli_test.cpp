@@ -181,8 +181,8 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
 }
 
 TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
-  // Candidates are chosen only by labels, and a map made with gamma 0 has none: they are weighted
-  // anew.
+  // Candidates are chosen only by labels, and a map made with gamma 0 has none: the labels are
+  // weighted anew.
   std::string settings = format_settings(load_settings(folder_ / "room/camera.yaml"));
   settings.replace(settings.find("overlap: augmented"), 18, "overlap: labels");
   write_atomically(folder_ / "labels.yaml", settings);

@@ -52,7 +52,7 @@ TEST(MapSequence, AFrameThatIsTrackedOnTheThirdShowingCostsTwoRestarts) {
 }
 
 TEST(MapSequence, LostFramesOnTheWayBackAreNoFailures) {
-  // After the failure at 80, the system is not tracking again until frame 75.
+  // After the failure at 80, the system does not track again until frame 75.
   FakeSystem system([](Stamp frame, int showing) {
     if (frame == 80) return showing >= 2;
     return showing == 1 || frame >= 75;

@@ -154,8 +154,8 @@ TEST(EpisodesJson, HoldsWhatTheTableHolds) {
 }
 
 // Six blocks of two starts: success differs in the same direction in all of them (p 2/64), SPL in
-// one direction in five and in the other in one (14/64). The smaller p of the two comparisons
-// counts twice.
+// one direction in five blocks and in the other direction in one (14/64). The smaller p of the two
+// comparisons counts twice.
 TEST(EpisodesTable, StartsOfOnePlaceAreComparedInBlocksAndCorrectedByHolm) {
   const Suite suite = suite_of({"kitchen"}, 12, {{}});
   std::vector<EpisodeScore> first, second;

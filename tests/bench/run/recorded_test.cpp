@@ -543,8 +543,7 @@ TEST_F(Recorded, ACutRecordingSaysSo) {
   EXPECT_FALSE(world().cut);
 }
 
-// ---- keys
-// ----------------------------------------------------------------------------------------
+// ---- keys ------------------------------------------------------------------------------------
 
 /// Changes single bytes of each file below a folder: the key must change, or reading must fail.
 /// Files for which `counts` is false must not change the key.

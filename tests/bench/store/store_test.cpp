@@ -573,8 +573,7 @@ TEST_F(StoreFile, AClaimOfADeadProcessIsTakenOver) {
   Store store(file);
   ASSERT_TRUE(store.claim("k"));
   SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
-  raw.exec("UPDATE claims SET started = started - 1");  // the process number is in use, but by a
-                                                        // different process
+  raw.exec("UPDATE claims SET started = started - 1");  // its number is in use by another process
   EXPECT_TRUE(store.claim("k"));
   raw.exec("UPDATE claims SET host = 'elsewhere'");
   EXPECT_FALSE(store.claim("k")) << "it may live: it showed itself just now";

@@ -602,7 +602,7 @@ TEST_F(OutsideFaults, ARunMeetsNothingOfAnEarlierOne) {
   const std::set<std::string> all = {"dataset", "edited", "map.bin", "trajectory.txt",
                                      ProgramFolder::kList};
   EXPECT_EQ(names_in(kept), all);
-  // The next run takes the folder's place and has not seen it.
+  // The next run's files replace those of the first run, which it has not seen.
   std::ofstream(kept / "trajectory.txt", std::ios::app) << "# read by hand\n";
   fs::remove(kept / "trajectory.txt");
   const std::string second = look_about();

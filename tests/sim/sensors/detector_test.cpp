@@ -111,8 +111,8 @@ double overlap(const Detection& box, int left, int top, int size) {
 }
 
 TEST(Detector, BoxesStrayAsFarAsTheTableSays) {
-  // AP75 / AP50 and AP / AP50: the share of the boxes with an IoU above 0.5 that are above 0.75,
-  // and the mean of that share over the ten thresholds 0.5 to 0.95.
+  // AP75 / AP50 and AP / AP50: the share of the boxes with an IoU above 0.5 whose IoU is above
+  // 0.75, and the mean of such shares over the ten thresholds 0.5 to 0.95.
   DetectorConfig config = perfect();
   config.box_sigma = DetectorConfig{}.box_sigma;
   RenderedFrame truth = empty_frame();

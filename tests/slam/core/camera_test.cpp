@@ -109,7 +109,7 @@ TEST(Distortion, EightCoefficientsAreARationalOne) {
   EXPECT_EQ(text_of({.k1 = 0.1}), "k1 0.1, k2 0, p1 0, p2 0, k3 0");
 }
 
-// A message may contain a file name in Latin-1, and it is written to JSON.
+// A message may contain a file name in Latin-1 and is written to JSON.
 TEST(InputError, MessagesAreLegible) {
   EXPECT_STREQ(InputError("rgb/b\xfcro.png: cannot be read").what(),
                "rgb/b?ro.png: cannot be read");

@@ -48,7 +48,7 @@ std::string onnx_detection(int width, int height, const MadeHead& head);
 
 /// How a YOLOv8 is exported.
 struct MadeExport {
-  int opset = 17;           ///< since 13, Split gets its sizes as an input
+  int opset = 17;           ///< from 13 on, Split gets its sizes as an input
   bool open_sides = false;  ///< dynamic axes
   std::string metadata = {};
 };

@@ -84,7 +84,8 @@ TEST(EstimatePose, ItsInformationIsTheInverseCovarianceOfItsErrors) {
     const Vector6d error = (estimate->camera_from_world * truth.inverse()).log();
     squared += error.dot(estimate->information * error) / kViews;
   }
-  // Chi-square with 6 degrees of freedom has a mean of 6; the mean of 300 samples is off by 0.2.
+  // Chi-square with 6 degrees of freedom has a mean of 6; the mean of 300 samples has a standard
+  // error of 0.2.
   EXPECT_NEAR(squared, 6, 0.6);
 }
 

@@ -26,7 +26,7 @@ SlamState new_run() {
   SlamConfig config;
   config.features.count = 400;
   Camera camera = FeatureWorld::camera();
-  camera.disparity_sigma_px = 0.1;  // adds more keyframes than a learned one: some are culled
+  camera.disparity_sigma_px = 0.1;  // more keyframes than with a learned value: some are culled
   camera.disparity_sigma_is_given = true;
   return make_slam(camera, config, world_vocabulary());
 }

@@ -346,7 +346,7 @@ TEST(Relocalize, TheFirstSearchReachesAsFarAsItsRadius) {
   EXPECT_EQ(views.find(Acceptance::kOurs, 1).stage, RelocalizationStage::kInliers);
 }
 
-// Some of the first of 30 matches by words are false. Our acceptance needs ten true ones,
+// The first 10 or 16 of 30 matches by words are false. Our acceptance needs ten true ones,
 // ORB-SLAM2's half of all.
 TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
   const auto stage = [](std::uint32_t liars, Acceptance acceptance) {

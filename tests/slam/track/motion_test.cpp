@@ -87,7 +87,8 @@ TEST(Motion, ItsCovarianceIsThatOfItsErrors) {
     const Vector6d error = pose - best;
     squared += error.dot(motion.pose_covariance.llt().solve(error)) / kRuns;
   }
-  // Chi-square with 6 degrees of freedom has a mean of 6; the mean of 200 samples is off by 0.245.
+  // Chi-square with 6 degrees of freedom has a mean of 6; the mean of 200 samples has a standard
+  // error of 0.245.
   EXPECT_NEAR(squared, 6, 3 * 0.245);
 }
 

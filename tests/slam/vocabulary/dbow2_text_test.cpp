@@ -198,7 +198,7 @@ TEST(Dbow2Text, FaultsAreToldWithTheirLine) {
   const std::string head = "2 2 0 0\n" + leaf;
   EXPECT_EQ(fault_of(head + "3 1" + d + "32 0.5\n"),
             "t.txt:3: the parent: there is no node 3 before this line");
-  EXPECT_EQ(fault_of(head + "2 1" + d + "32 0.5\n"),  // itself
+  EXPECT_EQ(fault_of(head + "2 1" + d + "32 0.5\n"),  // its parent is itself
             "t.txt:3: the parent: there is no node 2 before this line");
   EXPECT_EQ(fault_of(head + "-1 1" + d + "32 0.5\n"),
             "t.txt:3: the parent: there is no node -1 before this line");

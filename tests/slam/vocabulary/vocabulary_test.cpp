@@ -69,8 +69,8 @@ TEST(Train, SeparatesWellSeparatedClustersExactly) {
 }
 
 TEST(Train, MediansAreBitwiseMajorities) {
-  // Two groups of three; each group's center is the majority of its members, although no member
-  // equals it.
+  // Two groups of three; each group's center is the bitwise majority of its members, although no
+  // member equals it.
   const RandomStream random(5);
   std::vector<std::vector<Descriptor>> images(1);
   std::vector<Descriptor> centers;

@@ -719,7 +719,7 @@ class InTheBrowser : public Reports {
     write("rooms", rooms);
     PagesSource later = rooms;
     later.name = "after";
-    later.suite->levels = {"dusk.yaml"};  // a level of its own does not change a system's color
+    later.suite->levels = {"dusk.yaml"};  // a different level does not change a system's color
     for (RunResult& run : later.results.runs) run.spec.level = "dusk.yaml";
     write_pages(root() / "two", std::array{rooms, later});
     write("sweep", source_of_suite(sweep()));

@@ -75,8 +75,8 @@ TEST(Gate, ASystemThatIsNotRepeatableIsWorseWhereChanceCannotSayWhy) {
   const auto verdict = [&](double after) {
     return change_of(judged(after), "completeness").verdict;
   };
-  // Both have a standard deviation of 0.01581, so the median of five differences has 1.2533 *
-  // 0.01581 * sqrt(2 / 5) = 0.01253. The tolerance of 0.05 plus 1.86 of these is 0.0733.
+  // Both have a standard deviation of 0.01581, so that of the median of five differences is 1.2533
+  // * 0.01581 * sqrt(2 / 5) = 0.01253. The tolerance of 0.05 plus 1.86 of these is 0.0733.
   EXPECT_EQ(verdict(0.84), ChangeVerdict::kWithin);
   EXPECT_EQ(verdict(0.828), ChangeVerdict::kWithin);
   EXPECT_EQ(verdict(0.826), ChangeVerdict::kWorse);
