@@ -17,7 +17,7 @@ ROBOT = ROOT + "/bench/scenarios/robot.yaml"
 
 
 class RecordingTest(unittest.TestCase):
-    """A rendered recording, mapped here and by the program."""
+    """A rendered recording, mapped from Python and by the program."""
 
     @classmethod
     def setUpClass(cls):
@@ -131,7 +131,7 @@ class RecordingTest(unittest.TestCase):
 
 class SemanticsTest(unittest.TestCase):
     def test_equation_1(self):
-        # Labels 5, 5, 7 and words 1, 2, 2: twice as heavy labels give 4, 2 and 1, 2 of 9.
+        # Labels 5, 5, 7 and words 1, 2, 2: with labels of double weight, 4, 2 and 1, 2 of 9.
         v = mh.semantics.augmented_vector([5, 5, 7, 0], [1, 2, 2], gamma=2)
         self.assertEqual(v.labels, {5: 4 / 9, 7: 2 / 9})
         self.assertEqual(v.words, {1: 1 / 9, 2: 2 / 9})
@@ -154,7 +154,7 @@ class SemanticsTest(unittest.TestCase):
             mh.semantics.distance([10, 10], [5, 0], [0, 5], xi=2, void_is_a_label=True), [20, 20])
 
     def test_equations_3_to_6(self):
-        # Of overlaps 4, 3, 1, 0 the last two fall to alpha 0.5; the sums are those of neighborhoods.
+        # alpha 0.5 removes the last two of the overlaps 4, 3, 1, 0; scores are sums over neighborhoods.
         found, left = mh.semantics.select_candidates(
             overlap=[4, 3, 1, 0], neighbors=[[0, 1], [1, 3], [2], [3]],
             similarity=[0.5, 0.25, 0.9, 0.125], alpha=0.5, beta=0.4)

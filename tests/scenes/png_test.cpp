@@ -11,7 +11,7 @@
 namespace mh {
 namespace {
 
-/// Half noise, half one value: literals and runs.
+/// Half noise, half a constant: literals and runs for the compression.
 cv::Mat some_image(int width, int height, int type) {
   cv::Mat image(height, width, type);
   const RandomStream stream(5);
@@ -57,7 +57,7 @@ TEST(PngText, IsFoundAgainAndLeavesTheImageAsItWas) {
   const std::vector<char> bytes(marked.begin(), marked.end());
   EXPECT_EQ(cv::norm(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image, cv::NORM_INF), 0.0);
   for (std::size_t size = 0; size < marked.size(); ++size)
-    text_in(std::string_view(marked).substr(0, size), "made of");  // no harm in a cut file
+    text_in(std::string_view(marked).substr(0, size), "made of");  // a truncated file does no harm
 }
 
 TEST(PngTypes, OthersAreLeftToOpenCv) {

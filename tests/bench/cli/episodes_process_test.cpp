@@ -73,7 +73,7 @@ TEST_F(EpisodeCommands, OneEpisodeIsTheOneThatTheSuiteScored) {
   EXPECT_NE(content(out("one") + "/log.txt").find("s  "), std::string::npos);
   EXPECT_TRUE(content(out("one") + "/strip.png").starts_with("\x89PNG"));
 
-  // Done once: the second time nothing is driven.
+  // A finished episode is not driven a second time.
   ASSERT_EQ(run(bench + out("all")), 0) << said();
   EXPECT_NE(said().find("1 run, 0 of them to do"), std::string::npos) << said();
   EXPECT_EQ(content(out("all") + "/results.json"), text);
@@ -171,7 +171,7 @@ TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
           "episodes");
   for (const std::string command : {"audit ", "bench --audit "})
     refused(command + suite().string() + " --out " + out("none"), "an audit is of queries");
-  write_suite("toilet");  // a room without one: nothing is left there
+  write_suite("toilet");  // a room without a toilet: no episode is left there
   refused("bench " + suite().string() + " --out " + out("none"), "toilet");
   EXPECT_FALSE(fs::exists(out("none")));
   write_suite("soaf");

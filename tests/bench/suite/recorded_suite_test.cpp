@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings in suites: what their entries say, and what is refused.
+// Recordings in suites: what their entries mean, and which ones are refused.
 #include <unistd.h>
 
 #include <filesystem>
@@ -89,7 +89,7 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
   EXPECT_EQ(names, (std::vector<std::string>{"semantic-recorded-recorded-0", "semantic-recorded-0",
                                              "plain-recorded-0", "semantic-recorded-recorded-1",
                                              "semantic-recorded-1", "plain-recorded-1"}));
-  // A process of its own is given the same.
+  // A separate process gets the same.
   for (const RunSpec& spec : expand(suite)) {
     const RunSpec back = run_spec_from_json(to_json(spec));
     EXPECT_EQ(back.environment.sequence, e.sequence);
@@ -98,7 +98,7 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
     EXPECT_EQ(back.environment.classes, e.classes);
     EXPECT_EQ(back.labels, spec.labels);
   }
-  // A path whose layout shows needs no name before it.
+  // A path whose layout can be recognized needs no layout prefix.
   EXPECT_EQ(load("- {category: desk, sequence: desk}").environments[0].sequence,
             (folder_ / "desk").string());
   EXPECT_EQ(load("- {category: scan, count: 2, sequence: 'scannet:scans/scene000{i}_00'}")
@@ -151,7 +151,7 @@ TEST_F(RecordedSuite, ASecondRecordingThatIsNeverQueriedIsNoted) {
   expect_in(unasked.notes[0], "no frame is queried, not even of the second tour of 'desk'");
 }
 
-// Statistics over scenes would count it twice.
+// Statistics over scenes would otherwise count it twice.
 TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
   fs::create_directory_symlink(folder_ / "desk", folder_ / "link");
   for (const char* other : {"tum:desk", "desk", "tum:desk/", "tum:scans/../desk", "tum:link"})
@@ -166,7 +166,7 @@ TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
             "suite.yaml:2: environments[0].queries: is the recording that is mapped");
   expect_in(error("- {category: desk, sequence: 'tum:desk', queries: 'tum:link/'}"),
             "is the recording that is mapped");
-  // Queries of another recording make another environment.
+  // With queries from a different recording it is a different environment.
   EXPECT_EQ(load(std::string(kDesk) +
                  "\n- {category: table, sequence: 'tum:desk', queries: 'tum:desk_again'}")
                 .environments.size(),
@@ -210,7 +210,7 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   const Suite with_half = load(entry, "[recorded]", "", set);
   ASSERT_EQ(with_half.notes.size(), 2U);
   expect_in(with_half.notes[0], "left out: 1 folder without a recording, the first: scene0009_00");
-  // Where the scans are not, their results are still read.
+  // The results can still be read where the scans do not exist.
   SuiteOverrides elsewhere = set;
   elsewhere.found = suite.found;
   fs::remove_all(folder_ / "scans");

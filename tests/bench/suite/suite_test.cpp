@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with empty files for a suite to name, and the suite.
+/// A folder with the suite and files for it to name.
 class SuiteFile : public testing::Test {
  protected:
   SuiteFile() : folder_(fs::temp_directory_path() / ("mh_suite_" + std::to_string(getpid()))) {
@@ -87,7 +87,7 @@ TEST_F(SuiteFile, IsJudgedByCorrectAnswersUnlessItNamesSuccess) {
   EXPECT_EQ(load("measure: success\n").measure, Measure::kSuccess);
   EXPECT_NE(error("measure: sucess\n").find("'sucess' is not one of correct, success"),
             std::string::npos);
-  // Designs that were stated before measuring name success.
+  // Suites whose designs were fixed before measuring use success.
   for (const char* name : {"arms", "rules_verdict", "table1", "like_rooms"})
     EXPECT_EQ(load_suite(shipped_file(name, Shipped::kSuite)).measure, Measure::kSuccess) << name;
   EXPECT_EQ(load_suite(shipped_file("model_house", Shipped::kSuite)).measure, Measure::kCorrect);
@@ -168,7 +168,7 @@ TEST_F(SuiteFile, ExpandsToOneRunPerSystemLabelsLevelTrialAndThePlainOnce) {
 TEST_F(SuiteFile, EveryKindOfLabelsReachesARunOfItsOwn) {
   const std::vector<RunSpec> runs =
       expand(load("", "[pepper.yaml]", "[exact, annotated, boxes, detector]"));
-  ASSERT_EQ(runs.size(), 5u);  // and the plain one
+  ASSERT_EQ(runs.size(), 5u);  // and one for the plain system
   for (const RunSpec& run : runs) EXPECT_EQ(run_spec_from_json(to_json(run)).labels, run.labels);
   EXPECT_EQ(runs[1].name, "semantic-annotated-pepper-0");
   EXPECT_EQ(runs[1].labels, LabelMode::kAnnotated);
@@ -501,8 +501,8 @@ TEST_F(SuiteFile, ASweepTakesAnySetting) {
 }
 
 // Sobol's sequence by the recurrence of Joe and Kuo ("Constructing Sobol sequences with better
-// two-dimensional projections", 2008), in whole numbers and from their table's first rows; each
-// axis is shifted by bits of its own, which are those of point 0.
+// two-dimensional projections", 2008), in integers and from the first rows of their table; each
+// axis is shifted by its own bits, which are those of point 0.
 TEST(Sobol, IsTheSequenceOfJoeAndKuoShifted) {
   struct Row {
     unsigned s, a;
@@ -794,7 +794,7 @@ TEST(Sobol, EachDyadicIntervalHoldsItsShare) {
 }
 
 TEST(Sobol, TheFirstTwoDimensionsAreANet) {
-  // A (0, 6, 2)-net: each of the 64 boxes of 8 x 8 holds one of 64 points.
+  // A (0, 6, 2)-net: each cell of an 8 x 8 grid contains one of 64 points.
   std::vector<int> in(64);
   for (std::uint32_t i = 0; i < 64; ++i) {
     const auto p = sobol_point(i, 7);
@@ -817,7 +817,7 @@ TEST_F(SuiteFile, TakesDetectorsAsLabels) {
   EXPECT_EQ(runs[1].name, "semantic-nano-pepper-0");
   const RunSpec back = run_spec_from_json(to_json(runs[1]));
   EXPECT_EQ(back.labels, runs[1].labels);
-  // The key depends on the contents of the files and on the settings, not on names.
+  // The key depends on the contents of the files and on the settings, but not on names.
   const std::vector<InputDigest> inputs = {{"detector", 7, {}}};
   RunSpec other = runs[1];
   other.labels.called = "another";
@@ -868,7 +868,7 @@ TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
 }
 
 TEST(ShippedSuites, AreWellFormed) {
-  // What users set; nobody has these files here, and suites are read without them, too.
+  // What users set; these files do not exist here, and suites can be read without them, too.
   const std::map<std::string, SuiteOverrides> of_users = {
       {"real_detector", {.set = {{"network", "/yolox_nano.onnx"}}}},
       {"bases_recorded", {.set = {{"mapped", "/mapped"}, {"queried", "/queried"}}}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Systems in shared libraries: a small one in C99 that does as its settings file says.
+// Systems in shared libraries: a small one in C99 that does what its settings file says.
 #include <unistd.h>
 
 #include <filesystem>
@@ -63,11 +63,11 @@ class LibrarySystems : public testing::Test {
     }
     return "no error";
   }
-  /// Of loading it.
+  /// The error of loading a library.
   std::string load_error(const std::string& name) const {
     return error_of([&] { make(library(name)); });
   }
-  /// Of mapping a frame, freezing and a query with one word of misbehavior.
+  /// The error of mapping a frame, freezing and querying with this misbehavior.
   std::string error(const std::string& word) const {
     return error_of([&] {
       const auto system = tiny(word);

@@ -95,7 +95,7 @@ TEST_F(TumFolder, EveryDepthIsTheQuotientOfTwoDoublesRounded) {
   }
 }
 
-// Lossy compression makes classes that nobody wrote.
+// Lossy compression creates class ids that were never written.
 TEST_F(TumFolder, LabelsThatAreNotExactAreRefused) {
   TumWriter writer(folder_, camera_);
   writer.add(0, exact(0, SE3()));
@@ -137,7 +137,7 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.9 b.png\n";
   std::vector<std::string> notes;
   const auto frames = load_tum_folder(folder_, &notes);
-  ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
+  ASSERT_EQ(frames.size(), 1u);  // there is no image close to 0.9 s
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_NE(notes[0].find("1 of 2 color images have no depth image"), std::string::npos);
   const auto refused = [&](const std::string& part) {
@@ -154,7 +154,7 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   const std::string whole = encode_png(Grid2d<std::uint8_t>(8, 6));
   std::ofstream(folder_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 12);
   refused("a.png: is truncated");
-  std::string huge = whole;  // its header announces 100000 x 100000 pixels
+  std::string huge = whole;  // its header declares 100000 x 100000 pixels
   huge.replace(16, 8, std::string("\0\1\x86\xa0\0\1\x86\xa0", 8));
   std::ofstream(folder_ / "a.png", std::ios::binary) << huge;
   refused("a.png: is 100000 x 100000, the camera has 8 x 6");
@@ -191,7 +191,7 @@ TEST_F(TumFolder, WhatHasNoUseIsTold) {
   std::ofstream(folder_ / "label.txt") << "0.1 c.png\n";
   EXPECT_NE(notes(classes).find("c.png: none of its ids has a class"), std::string::npos)
       << notes(classes);
-  fs::remove(folder_ / "c.png");  // costs its frame the labels, not the recording
+  fs::remove(folder_ / "c.png");  // costs the frame its labels, not the recording
   EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
   std::ofstream(folder_ / "c.png", std::ios::binary) << encode_jpeg(Grid2d<Rgb8>(4, 4), 90);
   EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
@@ -236,7 +236,8 @@ TEST_F(TumFolder, ListsInNoOrderAreSortedByTheirStamps) {
 
 TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
   fs::create_directories(folder_);
-  // Stamps in tens of milliseconds, out of order and more than once; some lie as near on each side.
+  // Timestamps in tens of milliseconds, out of order and repeated; some have equally near partners
+  // on both sides.
   const RandomStream draw(7);
   std::string colors, depths;
   std::vector<Stamp> color_ns, depth_ns;
@@ -283,7 +284,7 @@ TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[1].color, folder_ / "c.png");
   EXPECT_EQ(frames[1].depth, folder_ / "d.png");
-  // As listed, however far apart.
+  // Pairs are taken as listed, no matter how far apart they are.
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.2 b.png\n";
   EXPECT_EQ(load_tum_folder(folder_)[0].depth, folder_ / "b.png");
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png\n";
@@ -299,7 +300,7 @@ TEST_F(TumFolder, TheImagesTellWhichOfAPairIsDepth) {
   const std::string color = " rgb/0.100000000.png", depth = " depth/0.100000000.png";
   for (const std::string& line :
        {"0.1" + color + " 0.11" + depth, "0.11" + depth + " 0.1" + color}) {
-    // The first pair cannot be read, or only half of it.
+    // The first pair cannot be read at all, or only half of it can.
     for (const std::string& before : {std::string(), std::string("0.05 x.png 0.05 y.png\n")}) {
       std::ofstream(folder_ / "associations.txt") << before << line << "\n";
       const RecordedFrame read = load_tum_folder(folder_).back();
@@ -345,7 +346,7 @@ TEST_F(TumFolder, OfEth3dBringsItsCalibration) {
   EXPECT_EQ(camera.rate_hz, 25);
   EXPECT_TRUE(camera.distortion.none());
   EXPECT_EQ(opened.sequence->frame(1, RandomStream()).depth_m, frame(0).depth_m);
-  // The list of pairs alone is enough.
+  // The list of pairs is enough.
   fs::remove(folder_ / "rgb.txt");
   std::ofstream(folder_ / "associated.txt")
       << "0.1 rgb/0.100000000.png 0.1 depth/0.100000000.png\n";
@@ -356,8 +357,8 @@ TEST_F(TumFolder, OfEth3dBringsItsCalibration) {
   }
 }
 
-// As people write them: other names of the list of pairs, ROS' stamps, gray cameras, simulators'
-// images with opacity.
+// Variants in use: other names for the list of pairs, ROS timestamps, gray cameras, images with an
+// alpha channel from simulators.
 TEST_F(TumFolder, IsReadAsPeopleWriteIt) {
   TumWriter writer(folder_, camera_);
   writer.add(frame(100'000'000));

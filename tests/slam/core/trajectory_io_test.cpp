@@ -39,7 +39,7 @@ TEST(ParseStamp, IsExactToTheNanosecond) {
   EXPECT_EQ(parse_stamp("0"), 0);
   EXPECT_EQ(parse_stamp("0.000"), 0);
   EXPECT_EQ(parse_stamp("1305031229.528748"), 1'305'031'229'528'748'000);
-  // A double would end in ...535.
+  // As a double, it would end in ...535.
   EXPECT_EQ(parse_stamp("1403636580.013555527"), 1'403'636'580'013'555'527);
   EXPECT_EQ(parse_stamp("1.403636580013555527e+09"), 1'403'636'580'013'555'527);
   EXPECT_EQ(parse_stamp("+12e-1"), 1'200'000'000);
@@ -71,7 +71,7 @@ TEST(Tum, ReadsCommentsBlankLinesAndCarriageReturns) {
   ASSERT_EQ(t.size(), 3U);
   EXPECT_EQ(t[0].stamp_ns, 1'500'000'000);
   EXPECT_EQ(t[1].world_from_camera.translation(), Eigen::Vector3d(4, 5, -6));
-  // Quarter turn about z, w last: x goes to y. The quaternion's norm of 0.99 is mended.
+  // A quarter turn about z, w last: x turns into y. The quaternion's norm of 0.99 is normalized.
   EXPECT_LT(
       (t[0].world_from_camera.rotation() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY())
           .norm(),
@@ -116,7 +116,7 @@ TEST(Tum, EveryErrorNamesFileLineAndValue) {
             "/nowhere/f.txt: cannot be read: no such file");
 }
 
-// The head and the first line of numbers of EuRoC's V1_01_easy, and what others make of the format.
+// The header and the first data line of EuRoC's V1_01_easy, and variants of the format.
 TEST(Euroc, ReadsNanosecondsAndQuaternionsThatBeginWithW) {
   const Trajectory read = parse_trajectory(
       "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
@@ -192,7 +192,7 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
   for (const char* text :
        {"#timestamp x y z qx qy qz qw id\n5 1 2 3 0 0 0.6 0.8 7\n",  // rtabmap-export's format 11
         "timestamp tx ty tz qx qy qz qw\n5 1 2 3 0 0 0.6 0.8\n",     // without '#'
-        // of OpenVINS: with words before the names; with covariance from some line on
+        // OpenVINS: with words before the names; with a covariance from some line on
         "# format: timestamp tx ty tz qx qy qz qw Pt Pr\n5 1 2 3 0 0 0.6 0.8 9 9\n",
         "# timestamp(s) tx ty tz qx qy qz qw Pr Pt\n5 1 2 3 0 0 0.6 0.8\n6 1 2 3 0 0 0 1 9 9\n",
         "num,t,x,y,z,qx,qy,qz,qw\n1,5.0,1,2,3,0,0,0.6,0.8\n",
@@ -208,7 +208,7 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
         "Time,header.stamp.secs,header.stamp.nsecs,pose.position.x,pose.position.y,pose.position.z,"
         "pose.orientation.x,pose.orientation.y,pose.orientation.z,pose.orientation.w\n"
         "7.5,4,1000000000,1,2,3,0,0,0.6,0.8\n",
-        // pandas: its index has no name
+        // pandas, whose index has no name
         ",timestamp,tx,ty,tz,qx,qy,qz,qw\n0,5.0,1,2,3,0,0,0.6,0.8\n"}) {
     const Trajectory read = parse_trajectory(text, "f");
     EXPECT_EQ(read.at(0).stamp_ns, 5'000'000'000) << text;
@@ -224,8 +224,8 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
             "f.csv:1: its positions are in 'mm', not in m");
 }
 
-// PlotJuggler's names begin with _ and /, and it sorts them: without its names, the quaternion
-// would be taken for the position.
+// PlotJuggler's names begin with _ and /, and are sorted: if they were ignored, the quaternion
+// would be read as the position.
 TEST(Poses, AreFoundByNamesThatBeginWithASign) {
   const TimedPose pose = parse_trajectory(
       "__time,/odom/orientation/w,/odom/orientation/x,/odom/orientation/y,/odom/orientation/z,"
@@ -325,7 +325,7 @@ TEST(Poses, OfAnotherKindOfFileAreRefusedRatherThanLeftOut) {
 TEST(Poses, OfNoTextOrWithDecimalCommasAreRefused) {
   EXPECT_EQ(tum_error(std::string("#ROSBAG V2.0\n\x02\0\0", 16)),
             "f.txt: is not text, as files of poses are");
-  // A decimal comma, between semicolons.
+  // A decimal comma, with semicolons as separators.
   EXPECT_EQ(tum_error("1;0,5;0;0;1;0;0;0\n"), "f.txt:1: tx: '0,5' is not a number");
 }
 

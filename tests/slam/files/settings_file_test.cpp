@@ -133,7 +133,8 @@ TEST(Settings, NamesFileLinePlaceAndValue) {
             "s.yaml:1: camera.cx_px: 700 is outside [0, 639]");
 }
 
-// The docs are the oracle: whatever range they print holds at both of its ends, and not beyond.
+// The docs are the reference: each range that they print is accepted at both ends and refused
+// beyond them.
 TEST(Settings, EveryRangeOfTheDocsEndsWhereItSays) {
   std::istringstream docs(read_file(std::string(MH_SOURCE_DIR) + "/docs/reference/slam.md"));
   const std::regex section_line("## ([a-z]+)"),
@@ -170,7 +171,7 @@ TEST(Settings, EveryRangeOfTheDocsEndsWhereItSays) {
   EXPECT_GT(ranges, 50) << "the docs' table is not found";
 }
 
-// As it stands in the original's Examples/RGB-D folder, but for its comments.
+// As in the original's Examples/RGB-D folder, without its comments.
 constexpr const char* kTum1 = R"(%YAML:1.0
 
 Camera.fx: 517.306408
@@ -221,7 +222,7 @@ TEST(Settings, TakesOrbSlamsFilesAsTheyAre) {
   EXPECT_EQ(s.notes[1], "TUM1.yaml: passed over: Somebody.Else");
 }
 
-// What a file does not specify is the program's default.
+// Settings that a file does not specify have the program's defaults.
 TEST(Settings, OfAnOrbSlamFileWithoutARowThatRowIsTheDefault) {
   const Settings s =
       parse_settings("Camera.fx: 250\nCamera.fy: 251\nCamera.cx: 319\nCamera.cy: 239\n", "s.yaml");
@@ -256,11 +257,12 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
             std::string::npos);
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.type: \"PinHole\"\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
-  // Of ORB-SLAM3 before 1.0, as its RealSense_D435i.yaml has it.
+  // A key of ORB-SLAM3 before 1.0, as in its RealSense_D435i.yaml.
   EXPECT_EQ(parse_settings(std::string(kTum1) + "InsertKFsWhenLost: 0\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
 
-  // As the original's other files have them: a key twice with one value, a matrix without blanks.
+  // As in other files of the original: a key that occurs twice with the same value, a matrix
+  // without spaces.
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.width: 640\nCamera.bFishEye: 0\n" +
                                "LEFT.D: !!opencv-matrix\n   rows: 1\n   cols: 2\n   dt: d\n" +
                                "   data:[-0.28, 0.07]\n",
@@ -391,7 +393,7 @@ TEST(Settings, RosCalibrationsAreReadStrictly) {
       << complaint(bad);
 }
 
-// Of one camera, as four programs write it.
+// One camera in the formats of four programs.
 TEST(Settings, CalibrationsOfOtherProgramsAreReadAsTheyAre) {
   const std::string opencv =
       "%YAML:1.0\n---\ncalibration_time: \"Tue 12 May 2020\"\nnr_of_frames: 20\nimage_width: "
@@ -443,7 +445,7 @@ TEST(Settings, ADistortionThatCannotBeUndoneIsRefused) {
     return std::string("camera: {fx_px: 525, fy_px: 525, cx_px: 319.5, cy_px: 239.5,\n  ") +
            "distortion: " + distortion + "}\n";
   };
-  // So strong that the corners have no ray: the image ends at 0.703 of the focal length.
+  // So strong that the corners have no ray: the image ends at 0.703 times the focal length.
   EXPECT_EQ(
       complaint(with("{k1: -0.3}")),
       "s.yaml:2: camera.distortion: k1 -0.3, k2 0, p1 0, p2 0, k3 0: a distortion that cannot "

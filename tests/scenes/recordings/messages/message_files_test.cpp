@@ -47,7 +47,7 @@ Read read_all(const std::string& bytes) {
   return read;
 }
 
-/// A text that does not get shorter by compression.
+/// A text that compression does not shorten.
 std::string noise(int seed) {
   const RandomStream random(static_cast<std::uint64_t>(seed));
   std::string text(900'000, '\0');
@@ -57,7 +57,7 @@ std::string noise(int seed) {
 
 enum class Kind { kMcap, kBag };
 
-/// Files of 40 messages on two topics, in chunks of about ten.
+/// Files with 40 messages on two topics, in chunks of about ten.
 class MessageFiles : public testing::TestWithParam<std::tuple<Kind, ChunkCompression>> {
  protected:
   std::unique_ptr<MessageWriter> writer() const {
@@ -140,11 +140,12 @@ TEST_P(MessageFiles, AWrongByteCostsNoMoreThanItsChunk) {
 TEST_P(MessageFiles, TheFirstChunksDamageDoesNotTakeTheOthersTopics) {
   const auto written = write();
   std::string bytes = read_file(file());
-  const std::size_t name = bytes.find("/text");  // none if it is compressed
+  const std::size_t name = bytes.find("/text");  // not found if it is compressed
   if (name == std::string::npos) {
     bytes[bytes.size() / 10] ^= 0x55;
   } else {
-    for (std::size_t i = 0; i < 5; ++i) bytes[name - 1 - i] ^= 0x55;  // what tells where it begins
+    for (std::size_t i = 0; i < 5; ++i)
+      bytes[name - 1 - i] ^= 0x55;  // the bytes that say where the name begins
   }
   const Read read = read_all(bytes);
   ASSERT_GE(read.messages.size(), 20u);
@@ -162,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(All, MessageFiles,
                                          std::tuple(Kind::kBag, ChunkCompression::kNone),
                                          std::tuple(Kind::kBag, ChunkCompression::kLz4)));
 
-/// Builds an MCAP by hand.
+/// Builds an MCAP record by record.
 class Mcap {
  public:
   Mcap() { bytes_.raw(mcap::kMagic); }
@@ -207,7 +208,7 @@ class Mcap {
     c.raw(records);
     return record(mcap::Opcode::kChunk, c.bytes());
   }
-  /// Data's end, footer, magic.
+  /// Adds the end of the data, the footer and the magic bytes.
   Mcap& end(std::uint32_t crc_of_data = 0) {
     ByteWriter data_end;
     data_end.number(crc_of_data);
@@ -304,7 +305,7 @@ TEST(Bag, OfWhichSomethingFollowsOrARecordIsOfNoKindSaysSo) {
       << note_of(read_all(unknown));
 }
 
-// Readers of others look for the keys, whichever of the two places they read.
+// Other programs look for the keys in either of the two places.
 TEST(Bag, NamesATopicInItsConnectionsHeaderAndData) {
   const TemporaryFolder work(fs::temp_directory_path());
   const auto out = write_bag(work.path() / "out/file", ChunkCompression::kNone);
@@ -315,13 +316,13 @@ TEST(Bag, NamesATopicInItsConnectionsHeaderAndData) {
   int found = 0;
   for (auto at = bag.find(field); at != std::string::npos; at = bag.find(field, at + 1)) ++found;
   EXPECT_EQ(found, 4) << "in the chunk and in the index, each with header and data";
-  // The record of the bag's header takes 4096 bytes, so that it can be written last.
+  // The bag header record takes 4096 bytes, so that it can be written last.
   const auto number_at = [&](std::size_t at) {
     std::uint32_t number = 0;
     std::memcpy(&number, bag.data() + at, sizeof number);
     return number;
   };
-  constexpr std::size_t kMagic = 13;  // "#ROSBAG V2.0" and the end of its line
+  constexpr std::size_t kMagic = 13;  // "#ROSBAG V2.0" and its newline
   const std::uint32_t header_bytes = number_at(kMagic);
   EXPECT_EQ(4 + header_bytes + 4 + number_at(kMagic + 4 + header_bytes), 4096u);
 }
