@@ -40,16 +40,29 @@ Eigen::Vector3d bearing(const Keypoint& k, const Camera& camera) {
   return camera.unproject(k.u_px, k.v_px, 1.0);
 }
 
-/// Squared distance (px^2) of keypoint b from the epipolar line of keypoint a in b's image.
-double epipolar_distance2(const Keypoint& a, const Keypoint& b, const Eigen::Matrix3d& essential,
-                          const Camera& camera) {
-  // Line in normalized coordinates; focal lengths differ little, so one scale serves both axes.
-  const Eigen::Vector3d line = essential * bearing(a, camera);
-  const double norm2 = line.head<2>().squaredNorm();
-  if (norm2 < 1e-18) return 1e18;
-  const double offset = line.dot(bearing(b, camera));
-  return offset * offset / norm2 * camera.fx_px * camera.fy_px;
-}
+/// Epipolar lines of one view's keypoints in another, and how far its keypoints are from them.
+class EpipolarTest {
+ public:
+  EpipolarTest(const Features& a, const Features& b, const SE3& b_from_a, const Camera& camera)
+      : px2_(camera.fx_px * camera.fy_px) {
+    const Eigen::Matrix3d essential = hat(b_from_a.translation()) * b_from_a.rotation();
+    for (const Keypoint& k : a.keypoints) lines_.emplace_back(essential * bearing(k, camera));
+    for (const Keypoint& k : b.keypoints) bearings_.push_back(bearing(k, camera));
+  }
+  /// Squared distance (px^2) of b's keypoint from the line of a's.
+  double distance2(std::uint32_t a, std::uint32_t b) const {
+    // Line in normalized coordinates; focal lengths differ little, so one scale serves both axes.
+    const Eigen::Vector3d& line = lines_[a];
+    const double norm2 = line.head<2>().squaredNorm();
+    if (norm2 < 1e-18) return 1e18;
+    const double offset = line.dot(bearings_[b]);
+    return offset * offset / norm2 * px2_;
+  }
+
+ private:
+  double px2_;
+  std::vector<Eigen::Vector3d> lines_, bearings_;
+};
 
 bool reprojects(const Eigen::Vector3d& point_in_world, const Keyframe& keyframe, const Keypoint& k,
                 const Camera& camera, const FeatureConfig& features) {
@@ -156,7 +169,7 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext
     const SE3 b_from_a = b.camera_from_world * a.camera_from_world.inverse();
     if (b_from_a.translation().norm() < context.camera.baseline_m)
       continue;  // too close for parallax: depth is more accurate
-    const Eigen::Matrix3d essential = hat(b_from_a.translation()) * b_from_a.rotation();
+    const EpipolarTest epipolar(a.features, b.features, b_from_a, context.camera);
 
     const auto unmapped = [](const Keyframe& k) {
       std::vector<std::uint8_t> use(k.features.size());
@@ -164,10 +177,8 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext
       return use;
     };
     const auto on_line = [&](std::uint32_t fa, std::uint32_t fb) {
-      const Keypoint& kb = b.features.keypoints[fb];
-      const double sigma = octave_scale(context.config.features, kb.octave);
-      return epipolar_distance2(a.features.keypoints[fa], kb, essential, context.camera) <
-             kChi2Line * sigma * sigma;
+      const double sigma = octave_scale(context.config.features, b.features.keypoints[fb].octave);
+      return epipolar.distance2(fa, fb) < kChi2Line * sigma * sigma;
     };
     const std::vector<std::uint8_t> use_a = unmapped(a), use_b = unmapped(b);
     const auto matches =

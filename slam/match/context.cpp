@@ -12,8 +12,9 @@ namespace {
 void set_distance(MatchedPair& pair, LabeledDescriptor p, LabeledDescriptor q,
                   const SemanticConfig& config) {
   MatcherCounts counts;
-  pair.distance_bits = SemanticMatcher(config, counts)(p, q).semantic;
-  pair.penalized = counts.penalized != 0;
+  const SemanticMatcher::Distance distance = SemanticMatcher(config, counts)(p, q);
+  pair.distance_bits = distance.semantic;
+  pair.penalized = distance.penalized;
 }
 
 LabeledDescriptor view(const Features& features, std::uint32_t i) {

@@ -44,7 +44,8 @@ TEST(FeatureGrid, VisitsExactlyWhatLiesInTheCellsThatASquareTouches) {
         for (int x = column(u - radius); x <= column(u + radius); ++x)
           for (std::uint32_t i = 0; i < some.size(); ++i)
             if (column(some[i].u_px) == x && row(some[i].v_px) == y) expected.push_back(i);
-      grid.for_each_near(u, v, radius, [&](std::uint32_t i) { visited.push_back(i); });
+      grid.for_each_near(u, v, radius,
+                         [&](const FeatureGrid::Entry& k) { visited.push_back(k.index); });
       ASSERT_EQ(visited, expected) << u << " " << v << " " << radius;
       for (std::uint32_t i = 0; i < some.size(); ++i)
         if (std::abs(some[i].u_px - u) <= radius && std::abs(some[i].v_px - v) <= radius) {

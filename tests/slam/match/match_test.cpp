@@ -148,8 +148,8 @@ TEST(FeatureGrid, FindsWhatAScanFinds) {
         return std::abs(keypoints[i].u_px - u) <= radius &&
                std::abs(keypoints[i].v_px - v) <= radius;
       };
-      grid.for_each_near(u, v, radius, [&](std::uint32_t i) {
-        if (within(i)) found.push_back(i);
+      grid.for_each_near(u, v, radius, [&](const FeatureGrid::Entry& k) {
+        if (within(k.index)) found.push_back(k.index);
       });
       for (std::uint32_t i = 0; i < keypoints.size(); ++i)
         if (within(i)) scanned.push_back(i);
