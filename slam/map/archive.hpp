@@ -214,8 +214,8 @@ void fields(A& a, T& observation) {
 }
 template <class A, MaybeConst<Landmark> T>
 void fields(A& a, T& landmark) {
-  auto& [id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
-         max_distance_m, first_keyframe, visible, found, erased, described] = landmark;
+  auto& [position_in_world, mean_direction, min_distance_m, max_distance_m, id, label, erased,
+         described, descriptor, observations, first_keyframe, visible, found] = landmark;
   a(erased);
   if (erased) return;
   a(id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
