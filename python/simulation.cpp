@@ -301,11 +301,11 @@ void bind_simulation(py::module_& m) {
   py::class_<PythonSimulation>(
       m, "Simulation",
       "A robot in a scene that obeys velocity commands. The same commands give the same bits, also "
-      "in `modelhouse drive` and `render`.\n\nscene: a shipped name, a file, "
-      "'generated:CATEGORY:SEED'. robot, level: a shipped name or a file. labels: none, exact, "
-      "annotated, boxes or detector. ticks_per_frame: number of camera ticks from one frame to the "
-      "next. cache: the folder that keeps baked light; '' means the usual one, 'none' keeps "
-      "nothing. Raises InputError.")
+      "in `modelhouse drive` and `render`.\n\n"
+      "scene: a shipped name, a file, 'generated:CATEGORY:SEED'. robot, level: a shipped name or a "
+      "file. labels: none, exact, annotated, boxes or detector. ticks_per_frame: number of camera "
+      "ticks from one frame to the next. cache: the folder that keeps baked light; '' means the "
+      "usual one, 'none' keeps nothing. Raises InputError.")
       .def(py::init<const std::string&, const std::string&, const std::string&, std::uint64_t,
                     const std::string&, int, const std::string&>(),
            py::arg("scene"), py::arg("robot") = "pepper", py::arg("level") = "handheld",

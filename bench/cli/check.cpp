@@ -203,9 +203,9 @@ void add_check(CLI::App& app) {
   command->add_flag("--update", options->update, "Rewrites the baseline and shows the difference");
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
-      "Examples:\n  modelhouse check ci --jobs 2 --junit check.xml\n  modelhouse check "
-      "my_suite.yaml --jobs 2 --update\nExit code 1 if something got worse by more than its "
-      "tolerance.");
+      "Examples:\n  modelhouse check ci --jobs 2 --junit check.xml\n"
+      "  modelhouse check my_suite.yaml --jobs 2 --update\n"
+      "Exit code 1 if something got worse by more than its tolerance.");
   command->callback([options] { run(*options); });
 }
 

@@ -82,9 +82,10 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
   app.footer(
-      "Example:\n  modelhouse bench model_house --jobs 2\nExit codes: 0 success; 1 the work ran "
-      "but its check failed; 2 bad usage or bad input;\n3 failure of the machine or an outside "
-      "program; 130 interrupted: a message says whether\nthe same command resumes the work.");
+      "Example:\n  modelhouse bench model_house --jobs 2\n"
+      "Exit codes: 0 success; 1 the work ran but its check failed; 2 bad usage or bad input;\n"
+      "3 the machine or an outside program failed; 130 interrupted: a message says whether\n"
+      "the same command resumes the work.");
   mh::cli::add_bench(app);
   mh::cli::add_run_one(app);
   mh::cli::add_merge(app);

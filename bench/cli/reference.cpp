@@ -52,10 +52,10 @@ const char* place_of(Mount mount) {
 std::string furniture() {
   std::string text = heading("Kinds of furniture", "furniture");
   text +=
-      "Values of `kind` for an item in a house ([formats.md](../formats.md)). The usual size "
-      "is\nwidth x depth x height; `size_m` changes it. `materials` of an item may name the "
-      "roles.\n\n| kind | class | stands on | usual size, m | roles of materials "
-      "|\n|---|---|---|---|---|\n";
+      "Values of `kind` for an item in a house ([formats.md](../formats.md)). The usual size is\n"
+      "width x depth x height; `size_m` changes it. `materials` of an item may name the roles.\n\n"
+      "| kind | class | stands on | usual size, m | roles of materials |\n"
+      "|---|---|---|---|---|\n";
   for (const FurnitureKind& kind : furniture_kinds())
     text += fmt::format("| `{}` | {} | {} | {:g} x {:g} x {:g} | {} |\n", kind.name,
                         kind.class_name, place_of(kind.mount), kind.size_m.x(), kind.size_m.y(),
@@ -66,9 +66,10 @@ std::string furniture() {
 std::string materials() {
   std::string text = heading("Kinds of materials", "materials");
   text +=
-      "Values of `kind` for a material ([formats.md](../formats.md)). An image fills its "
-      "surface\nonce; everything else repeats without a seam.\n\n| kind | fills its surface "
-      "|\n|---|---|\n";
+      "Values of `kind` for a material ([formats.md](../formats.md)). An image fills its surface\n"
+      "once; everything else repeats without a seam.\n\n"
+      "| kind | fills its surface |\n"
+      "|---|---|\n";
   for (const std::string_view kind : material_kinds())
     text += fmt::format("| `{}` | {} |\n", kind, is_image(kind) ? "once" : "by repeating");
   return text;
@@ -78,9 +79,12 @@ std::string class_table() {
   std::string text = heading("Classes", "classes");
   text +=
       "Values of a label: the 40 classes of NYU40, *void* (unknown), *background* (a detector "
-      "looked\nand found nothing), and classes of COCO that NYU40 lumps together. Colors are those "
-      "of label\nimages.\n\n| id | class | in NYU40 files | in COCO's 80 | color "
-      "|\n|---|---|---|---|---|\n";
+      "looked\n"
+      "and found nothing), and classes of COCO that NYU40 lumps together. Colors are those of "
+      "label\n"
+      "images.\n\n"
+      "| id | class | in NYU40 files | in COCO's 80 | color |\n"
+      "|---|---|---|---|---|\n";
   for (const ClassInfo& info : classes()) {
     const Rgb8 color = class_color(info.id);
     text += fmt::format("| {} | {} | {} | {} | `#{:02x}{:02x}{:02x}` |\n", info.id, info.name,
@@ -172,9 +176,12 @@ std::string sensors() {
   for_each_setting(std::as_const(config), tables);
   return heading("Keys of a sensor level", "sensors") +
          "Every level must contain `depth_noise` and `color_noise`; the other sections are off "
-         "unless\nthey are present. Defaults apply to a section that is present. "
-         "[sensors.md](../sensors.md)\nexplains each fault and where its numbers come from. "
-         "`modelhouse sensors --print-settings\n[--level LEVEL]` prints a level with every key.\n" +
+         "unless\n"
+         "they are present. Defaults apply to a section that is present. "
+         "[sensors.md](../sensors.md)\n"
+         "explains each fault and where its numbers come from. `modelhouse sensors "
+         "--print-settings\n"
+         "[--level LEVEL]` prints a level with every key.\n" +
          tables.text();
 }
 
@@ -184,8 +191,8 @@ std::string protocol() {
   const ProtocolConfig config;
   fields(config, tables);
   return heading("Settings of the protocol", "protocol") +
-         "The section `protocol` of a suite; [protocol.md](../protocol.md) explains the "
-         "terms.\n`modelhouse bench --print-settings` prints it.\n" +
+         "The section `protocol` of a suite; [protocol.md](../protocol.md) explains the terms.\n"
+         "`modelhouse bench --print-settings` prints it.\n" +
          tables.text();
 }
 
@@ -230,9 +237,9 @@ std::string detector() {
   const DetectorSettings settings;
   fields(settings, tables);
   return heading("Settings of a detector", "detector") +
-         "Keys of a file for `--detector-settings` and of a mapping in `labels` of a "
-         "suite\n([detector.md](../detector.md)), in addition to `network`, `config`, `classes` "
-         "and `boxes`.\n" +
+         "Keys of a file for `--detector-settings` and of a mapping in `labels` of a suite\n"
+         "([detector.md](../detector.md)), in addition to `network`, `config`, `classes` and "
+         "`boxes`.\n" +
          tables.text();
 }
 

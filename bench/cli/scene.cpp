@@ -364,8 +364,8 @@ void add_scene(CLI::App& app) {
               "Makes the mesh look like a handheld scan: colors per vertex, holes, bumps");
   m->add_flag("--json", options->json, "Prints JSON");
   m->footer(
-      "Example:\n  modelhouse scene make bathroom --seed 3 --out bathroom.yaml\nWherever a scene "
-      "file is expected, generated:bathroom:3 stands for the same room.");
+      "Example:\n  modelhouse scene make bathroom --seed 3 --out bathroom.yaml\n"
+      "Wherever a scene file is expected, generated:bathroom:3 stands for the same room.");
   m->callback([options] { make(*options); });
 
   CLI::App* p = command->add_subcommand("preview",

@@ -85,8 +85,8 @@ void add_verify(CLI::App& app) {
   options->set.add_to(*command);
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
-      "Example:\n  modelhouse verify model_house --frames 600\nExit code 1 if a bit differs; the "
-      "first frame and stage that differ are named.");
+      "Example:\n  modelhouse verify model_house --frames 600\n"
+      "Exit code 1 if a bit differs; the first frame and stage that differ are named.");
   command->callback([options] { run(*options); });
 }
 
