@@ -105,7 +105,7 @@ Trajectory keyframes(const PythonSlam& slam) {
 }  // namespace
 
 void bind_slam(py::module_& m) {
-  py::class_<StepReport>(m, "Step", "What SLAM says of a frame.")
+  py::class_<StepReport>(m, "Step", "What SLAM reports about a frame.")
       .def_property_readonly(
           "status", [](const StepReport& r) { return std::string(name(r.status)); },
           "initialized, tracked, relocalized or lost")
@@ -114,7 +114,7 @@ void bind_slam(py::module_& m) {
           "4 x 4 world_from_camera; None if lost")
       .def_readonly("keypoints", &StepReport::keypoints, "found in the image")
       .def_readonly("inliers", &StepReport::inliers, "landmarks that agree with the pose")
-      .def_readonly("keyframe", &StepReport::keyframe_added, "whether it became one")
+      .def_readonly("keyframe", &StepReport::keyframe_added, "whether the frame became a keyframe")
       .def_readonly("loop_closed", &StepReport::loop_closed, "whether a loop was closed")
       .def_property_readonly(
           "stage", [](const StepReport& r) { return std::string(name(r.relocalization)); },
@@ -163,13 +163,13 @@ void bind_slam(py::module_& m) {
             return PythonSlam{load_slam(file, vocabulary_of(vocabulary)), seed};
           },
           py::arg("file"), py::arg("vocabulary") = "vocabulary", py::arg("seed") = 0,
-          "A saved map file, to go on with or to localize in.")
+          "Loads a saved map file, to continue mapping or to localize in it.")
       .def("step", &PythonSlam::step, py::arg("frame"), py::call_guard<py::gil_scoped_release>(),
            "Tracks and maps the next Frame; its stamp must increase. Returns a Step.")
-      .def(
-          "relocalize", &PythonSlam::relocalize, py::arg("frame"),
-          py::call_guard<py::gil_scoped_release>(),
-          "Finds a Frame in the map as a lost system does; the map stays as it is. Returns a Step.")
+      .def("relocalize", &PythonSlam::relocalize, py::arg("frame"),
+           py::call_guard<py::gil_scoped_release>(),
+           "Localizes a Frame in the map as a lost system does; the map stays as it is. Returns a "
+           "Step.")
       .def(
           "rewind",
           [](PythonSlam& s) {
@@ -195,7 +195,7 @@ void bind_slam(py::module_& m) {
           "landmarks", [](const PythonSlam& s) { return landmarks(s, false); }, "(N, 3) m, world")
       .def_property_readonly(
           "landmark_labels", [](const PythonSlam& s) { return landmarks(s, true); },
-          "(N,) class ids of them, 0 unknown")
+          "(N,) class ids of the landmarks, 0 if unknown")
       .def_property_readonly(
           "keyframes", [](const PythonSlam& s) { return keyframes(s); },
           "Poses of the keyframes, a Trajectory");

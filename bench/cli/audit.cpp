@@ -111,8 +111,9 @@ WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
 
 void add_audit(CLI::App& app) {
   auto options = std::make_shared<AuditArguments>();
-  CLI::App* command = app.add_subcommand(
-      "audit", "Says why queries fail: a suite's matches and candidates against the exact truth.");
+  CLI::App* command = app.add_subcommand("audit",
+                                         "Explains why queries fail: checks a suite's matches and "
+                                         "candidates against the exact truth.");
   command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")
       ->required();
   command->add_option("--out", options->out, "Folder for the tables (default: out/<suite>-audit)");

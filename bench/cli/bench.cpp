@@ -161,7 +161,9 @@ void add_bench(CLI::App& app) {
   command->add_option(
       "--out", options->out,
       "Folder for the results (default: out/<suite>; with --frames N out/<suite>-first-N)");
-  command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Runs executed at the same time; does not affect results")
       ->check(CLI::Range(1, 1024));
   command
       ->add_option("--trials", options->trials,
@@ -177,12 +179,12 @@ void add_bench(CLI::App& app) {
   options->set.add_to(*command);
   command
       ->add_option("--vary", options->vary,
-                   "SETTING=VALUE,VALUE,...: sweeps over a setting of SLAM, "
+                   "SETTING=VALUE,VALUE,...: sweeps over a setting of SLAM, such as "
                    "features.count=500,1000; several: over all combinations")
       ->allow_extra_args(false);
   command->add_option("--shard", options->shard,
-                      "i/n: takes the i-th of n shares of the runs, of about equal cost; `merge` "
-                      "puts them together");
+                      "i/n: executes the i-th of n shares of the runs, of about equal cost; "
+                      "`merge` combines their results");
   CLI::Option* const slurm =
       command
           ->add_option("--slurm", options->slurm,
@@ -191,7 +193,7 @@ void add_bench(CLI::App& app) {
           ->check(CLI::Range(1, 1000));
   command
       ->add_option("--sbatch", options->sbatch,
-                   "Further options of sbatch: --sbatch=\"--partition=long --mem=8G\"")
+                   "More options for sbatch: --sbatch=\"--partition=long --mem=8G\"")
       ->needs(slurm);
   command->add_option("--cache", options->cache,
                       "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
@@ -200,14 +202,17 @@ void add_bench(CLI::App& app) {
                     "Audits every query afterward, as `audit` does: maps come from the cache");
   command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
   command
-      ->add_option("--time-limit", options->time_limit_s,
-                   "Seconds for one run, besides limit_s of each of its episodes; 0 = none")
+      ->add_option(
+          "--time-limit", options->time_limit_s,
+          "Seconds for one run, in addition to limit_s of each of its episodes; 0 = no limit")
       ->check(number_between(0.0, 1e9));
-  command->add_option("--memory-limit", options->memory_limit_mb, "MB for one run; 0 = none")
+  command
+      ->add_option("--memory-limit", options->memory_limit_mb,
+                   "MB of memory for one run; 0 = no limit")
       ->check(number_between(0.0, 1e9));
   command
       ->add_option("--images-limit", options->images_limit_gb,
-                   "GB of disk, in --out, for images that runs share; 0 = each makes its own")
+                   "GB of disk, in --out, for images that runs share; 0 = each run renders its own")
       ->check(number_between(0.0, 1e6));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
   command->add_flag_callback(

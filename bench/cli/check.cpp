@@ -182,7 +182,7 @@ void run(CheckArguments options) {
 void add_check(CLI::App& app) {
   auto options = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand(
-      "check", "Runs a suite and compares it with committed figures: a gate for CI.");
+      "check", "Runs a suite and compares the results with committed figures: a gate for CI.");
   command
       ->add_option("suite", options->suite,
                    "Suite with a section `check`: a file (YAML), or the name of a shipped one")
@@ -190,12 +190,14 @@ void add_check(CLI::App& app) {
   command->add_option("--baseline", options->baseline,
                       "Committed figures (default: the suite's name with .baseline.json)");
   command->add_option("--junit", options->junit, "Writes the findings as JUnit XML");
-  command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Runs executed at the same time; does not affect results")
       ->check(CLI::Range(1, 1024));
   command
-      ->add_option("--frames", options->frames,
-                   "Cuts the tours after N frames; the baseline is then one of the same cut "
-                   "(default: all)")
+      ->add_option(
+          "--frames", options->frames,
+          "Cuts the tours after N frames; the baseline must have the same cut (default: all)")
       ->check(CLI::Range(1, 100000000));
   options->set.add_to(*command);
   command->add_flag("--update", options->update, "Rewrites the baseline and shows the difference");
@@ -203,7 +205,7 @@ void add_check(CLI::App& app) {
   command->footer(
       "Examples:\n  modelhouse check ci --jobs 2 --junit check.xml\n"
       "  modelhouse check my_suite.yaml --jobs 2 --update\n"
-      "Exit code 1 where something got worse by more than its tolerance.");
+      "Exit code 1 if something got worse by more than its tolerance.");
   command->callback([options] { run(*options); });
 }
 

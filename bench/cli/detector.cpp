@@ -260,7 +260,7 @@ void run(DetectorArguments options) {
 void add_detector(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "detector",
-      "Runs a real object detector, and judges it by the exact truth of rendered rooms.");
+      "Runs a real object detector, and scores it against the exact truth of rendered rooms.");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  modelhouse detector run out/sequence --network yolox_nano.onnx --out "
@@ -268,16 +268,18 @@ void add_detector(CLI::App& app) {
       "  modelhouse detector score --network yolox_nano.onnx --out out/score");
 
   auto options = std::make_shared<DetectorArguments>();
-  CLI::App* r = command->add_subcommand("run", "Draws what it finds in a recording or in images.");
+  CLI::App* r =
+      command->add_subcommand("run", "Draws what the detector finds in a recording or in images.");
   r->add_option("sources", options->sources, "Images (.png, .jpg), or one recording")->required();
   options->detector.add_to(*r, "--network,--detector");
   r->add_option("--settings", options->settings,
                 "Calibration of the recording (YAML), or the name of a shipped one");
-  r->add_option("--out", options->out,
-                "Folder for images, their list drawn.txt, and detections.json (COCO's results)")
+  r->add_option(
+       "--out", options->out,
+       "Folder for images, their list drawn.txt, and detections.json (COCO's results format)")
       ->required();
-  r->add_flag("--labels", options->labels, "Draws the labels of the pixels beside each frame");
-  r->add_option("--frames", options->frames, "Only the first so many frames")
+  r->add_flag("--labels", options->labels, "Draws the labels of the pixels next to each frame");
+  r->add_option("--frames", options->frames, "At most this many frames, from the first on")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   r->add_option("--every", options->every, "Every n-th frame only")

@@ -369,16 +369,19 @@ void add_common(CLI::App& command, const std::shared_ptr<DetectorScoreArguments>
   options->detector.add_to(command, "--network,--detector");
   command.add_option("--scenes", options->scenes,
                      "Scenes (default: generated rooms of every category)");
-  command.add_option("--per-category", options->per_category, "So many rooms of each category")
+  command.add_option("--per-category", options->per_category, "Rooms of each category")
       ->check(CLI::Range(1, 1000));
   command
-      .add_option("--frames", options->frames, "Of each scene, evenly spaced along a scan by hand")
+      .add_option("--frames", options->frames,
+                  "Frames of each scene, evenly spaced along a handheld scan")
       ->check(CLI::Range(1, 100000));
   command.add_option("--level", options->level,
                      "Sensor level (YAML), or the name of a shipped one");
   command.add_option("--robot", options->robot,
-                     "Whose camera (YAML), or the name of a shipped robot");
-  command.add_option("--threads", options->threads, "That bake light; changes no figure")
+                     "Robot whose camera is used (YAML), or the name of a shipped one");
+  command
+      .add_option("--threads", options->threads,
+                  "Threads that bake light; does not affect the figures")
       ->check(CLI::Range(1, 256));
 }
 
@@ -387,9 +390,10 @@ void add_common(CLI::App& command, const std::shared_ptr<DetectorScoreArguments>
 void add_detector_score(CLI::App& detector) {
   auto options = std::make_shared<DetectorScoreArguments>();
   CLI::App* s = detector.add_subcommand(
-      "score", "Average precision per class on rendered rooms, and what is taken for what.");
+      "score", "Average precision per class on rendered rooms, and which classes are confused.");
   add_common(*s, options);
-  s->add_option("--out", options->out, "Folder for score.json and missed.png, what it missed most");
+  s->add_option("--out", options->out,
+                "Folder for score.json and missed.png (what it missed most)");
   s->add_flag("--json", options->json, "Prints JSON");
   s->footer("Example:\n  modelhouse detector score --network yolox_nano.onnx --out out/score");
   s->callback([options] { score(*options); });
@@ -397,9 +401,9 @@ void add_detector_score(CLI::App& detector) {
   auto of_fit = std::make_shared<DetectorScoreArguments>();
   CLI::App* f = detector.add_subcommand(
       "fit",
-      "Writes a sensor level whose simulated detector errs as the real one was measured to.");
+      "Writes a sensor level whose simulated detector has the errors measured for the real one.");
   add_common(*f, of_fit);
-  f->add_option("--base", of_fit->base, "Level whose other settings it keeps");
+  f->add_option("--base", of_fit->base, "Level that provides all other settings");
   f->add_option("--out", of_fit->out, "Level to write (YAML)")->required();
   f->footer(
       "Example:\n  modelhouse detector fit --network yolox_nano.onnx --base pepper "

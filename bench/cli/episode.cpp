@@ -127,7 +127,7 @@ void add_episode(CLI::App& app) {
                       "One of the suite's systems (default: the first)");
   command
       ->add_option("--start", options->start,
-                   "Number of the start, from 0; the suite's `starts` is no limit")
+                   "Number of the start, from 0; may exceed the suite's `starts`")
       ->check(CLI::Range(0, 99999));
   command->add_option("--environment", options->environment,
                       "One of the suite's environments (default: the first)");

@@ -198,21 +198,21 @@ void add_evaluate(CLI::App& app) {
       app.add_subcommand("evaluate", "Scores an estimated trajectory against the true one.");
   command->add_option("truth", options->truth, "True trajectory")->required();
   command->add_option("estimate", options->estimate, "Estimated trajectory")->required();
-  command->add_option("--align", options->align, "How the estimate is laid over the truth")
+  command->add_option("--align", options->align, "How the estimate is aligned with the truth")
       ->check(one_of_words({"se3", "sim3", "origin", "none"}));
   command
       ->add_option("--format", options->format,
-                   "Of both files; where tum is expected, CSV is recognized")
+                   "Format of both files; tum also accepts EuRoC's CSV")
       ->check(one_of_words({"tum", "kitti"}));
   command
       ->add_option("--delta", options->deltas,
                    "Step of the relative error: 30f (frames), 0.2m or 1s; one or more")
       ->expected(1, 100);
   command->add_flag("--all-pairs", options->all_pairs,
-                    "Steps of frames start at every pose (those of meters and seconds always do)");
+                    "Steps in frames start at every pose (those in meters and seconds always do)");
   command
       ->add_option("--max-difference", options->max_difference_s,
-                   "Stamps (s) that are taken for one moment")
+                   "Largest difference in time between paired poses, s")
       ->check(number_between(0.0, 1e6));
   command
       ->add_option("--offset", options->offset,

@@ -83,9 +83,9 @@ int run(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   app.footer(
       "Example:\n  modelhouse bench model_house --jobs 2\n"
-      "Exit codes: 0 good; 1 the work ran and its check failed; 2 bad usage or bad input;\n"
-      "3 the machine or an outside program failed it; 130 interrupted; it says whether "
-      "the\nsame command goes on with what is finished.");
+      "Exit codes: 0 success; 1 the work ran but its check failed; 2 bad usage or bad input;\n"
+      "3 the machine or an outside program failed; 130 interrupted: a message says whether\n"
+      "the same command resumes the work.");
   mh::cli::add_bench(app);
   mh::cli::add_run_one(app);
   mh::cli::add_merge(app);

@@ -59,7 +59,8 @@ struct MapPlanArguments {
 
 void add_band(CLI::App& command, ObstacleGridConfig& band) {
   command
-      .add_option("--height", band.robot_height_m, "Of the robot, m: what is higher is no obstacle")
+      .add_option("--height", band.robot_height_m,
+                  "Height of the robot, m: anything higher is no obstacle")
       ->check(number_between(0.15, 10.0));
   command.add_option("--floor-z", band.floor_z_m, "Height of the floor in the map, m")
       ->check(number_between(-1000.0, 1000.0));
@@ -270,8 +271,8 @@ void run(const MapPlanArguments& options) {
 
 void add_grid(CLI::App& map) {
   auto options = std::make_shared<MapGridArguments>();
-  CLI::App* command =
-      map.add_subcommand("grid", "The part of a saved octree that obstructs a robot.");
+  CLI::App* command = map.add_subcommand(
+      "grid", "Writes the part of a saved octree that obstructs a robot, as a grid.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -286,16 +287,20 @@ void add_grid(CLI::App& map) {
 
 void add_cost(CLI::App& map) {
   auto options = std::make_shared<MapCostArguments>();
-  CLI::App* command = map.add_subcommand("cost", "Costs of a grid, as Nav2 numbers them.");
+  CLI::App* command =
+      map.add_subcommand("cost", "Writes the costs of a grid, as Nav2 numbers them.");
   command->add_option("grid", options->grid, "YAML file of a grid for map_server")->required();
   command
       ->add_option("--out", options->out,
-                   "Path without extension: costs as gray levels, and with _published the values "
-                   "that Nav2 publishes")
+                   "Path without extension: costs as gray levels; with _published appended, the "
+                   "values that Nav2 publishes")
       ->required();
-  command->add_option("--radius", options->config.inscribed_radius_m, "Of the robot's disc, m")
+  command
+      ->add_option("--radius", options->config.inscribed_radius_m, "Radius of the robot's disc, m")
       ->check(number_between(0.0, 10.0));
-  command->add_option("--inflation", options->config.inflation_radius_m, "Where costs end, m")
+  command
+      ->add_option("--inflation", options->config.inflation_radius_m,
+                   "Distance at which costs end, m")
       ->check(number_between(0.0, 10.0));
   command->add_option("--scaling", options->config.cost_scaling_factor, "Decay, 1/m")
       ->check(number_between(0.0, 1000.0));
@@ -305,8 +310,8 @@ void add_cost(CLI::App& map) {
 
 void add_objects(CLI::App& map) {
   auto options = std::make_shared<MapObjectsArguments>();
-  CLI::App* command =
-      map.add_subcommand("objects", "The objects of a saved octree, or those of a name.");
+  CLI::App* command = map.add_subcommand(
+      "objects", "Lists the objects of a saved octree, or those with a given name.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -321,7 +326,7 @@ void add_objects(CLI::App& map) {
 void add_messages(CLI::App& map) {
   auto options = std::make_shared<MapMessagesArguments>();
   CLI::App* command = map.add_subcommand(
-      "messages", "A saved octree for RViz: grid, costs, objects as markers, voxels.");
+      "messages", "Writes a saved octree for RViz: grid, costs, objects as markers, voxels.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -336,8 +341,8 @@ void add_messages(CLI::App& map) {
 void add_plan(CLI::App& map) {
   auto options = std::make_shared<MapPlanArguments>();
   CLI::App* command = map.add_subcommand("plan",
-                                         "A path over the floor of a saved octree: short, and away "
-                                         "from obstacles where there is room.");
+                                         "Plans a path over the floor of a saved octree: short, "
+                                         "and away from obstacles where there is room.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -350,12 +355,13 @@ void add_plan(CLI::App& map) {
       ->expected(2)
       ->check(number_between(-1e6, 1e6));
   command
-      ->add_option("--to-object", options->thing,
-                   "Goal: at this object, no wall between; a class, or an object's name")
+      ->add_option(
+          "--to-object", options->thing,
+          "Goal: next to this object, with no wall in between; a class, or an object's name")
       ->check(not_empty());
-  command->add_option("--radius", options->radius_m, "Of the robot's disc, m")
+  command->add_option("--radius", options->radius_m, "Radius of the robot's disc, m")
       ->check(number_between(0.0, 10.0));
-  command->add_option("--margin", options->margin_m, "Kept beyond the radius, m")
+  command->add_option("--margin", options->margin_m, "Clearance beyond the radius, m")
       ->check(number_between(0.0, 10.0));
   command->add_option("--out", options->out, "CSV file of the path's corners")->check(not_empty());
   add_band(*command, options->band);

@@ -298,35 +298,37 @@ void run(MapBuildArguments options) {
 void add_map_build(CLI::App& map) {
   auto options = std::make_shared<MapBuildArguments>();
   CLI::App* command = map.add_subcommand(
-      "build", "Octree, grid, costs and objects from the depth of a sequence's keyframes.");
+      "build",
+      "Builds an octree, grid, costs and objects from the depth of a sequence's keyframes.");
   options->add_to(*command);
   command->add_option("--out", options->out, "Folder for the results")->required();
   command->add_option("--map", options->map,
-                      "Saved map (slam --save-map) of this sequence: where its keyframes are; "
-                      "without: SLAM is run");
-  command->add_option(
-      "--poses", options->poses,
-      "Trajectory of this sequence instead, TUM text or EuRoC CSV; between its stamps, "
-      "poses are interpolated over at most 0.05 s");
+                      "Saved map (slam --save-map) of this sequence, which gives its keyframes' "
+                      "poses (default: runs SLAM)");
+  command->add_option("--poses", options->poses,
+                      "Trajectory of this sequence instead of a map, TUM text or EuRoC CSV; "
+                      "between its stamps, poses are interpolated over at most 0.05 s");
   command
       ->add_option("--every", options->every,
-                   "--poses, --map: only every n-th frame that has a pose")
+                   "With --poses or --map: only every n-th frame that has a pose")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--resolution", options->resolution_m, "Side of a voxel, m")
       ->check(number_between(0.016, 0.5));
   command
-      ->add_option("--height", options->height_m, "Of the robot, m: what is higher is no obstacle")
+      ->add_option("--height", options->height_m,
+                   "Height of the robot, m: anything higher is no obstacle")
       ->check(number_between(0.15, 10.0));
-  command->add_option("--frames", options->frames, "At most so many frames")
+  command->add_option("--frames", options->frames, "At most this many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   command->add_flag("--plain", options->plain, "SLAM without semantics");
   command->add_flag("--lasers", options->lasers,
-                    "scene: what the robot's lasers see of the floor joins the grid");
-  command->add_flag("--score", options->score,
-                    "scene: against the exact mesh, with the poses given and with the true ones");
+                    "scene: adds what the robot's lasers see of the floor to the grid");
+  command->add_flag(
+      "--score", options->score,
+      "scene: scores against the exact mesh, with the given poses and with the true ones");
   command->footer("Example:\n  modelhouse map build out/sequence --out out/map");
   command->callback([options] { run(*options); });
 }

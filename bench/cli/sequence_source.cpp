@@ -50,15 +50,16 @@ void SourceOptions::add_to(CLI::App& command) {
                      "Settings (YAML), also ORB-SLAM2's, or the name of shipped ones (default: the "
                      "folder's camera.yaml)");
   command.add_option("--classes", classes,
-                     "What the labels of a recording mean (YAML), where they are not our classes");
+                     "What the labels of a recording mean (YAML), if they are not our classes");
   command.add_option("--topics", topics,
-                     "Topics of a bag or MCAP file, where several could be meant: "
-                     "color=/a,depth=/b; also labels, info (CameraInfo), truth");
+                     "Topics of a bag or MCAP file, if several could be meant: color=/a,depth=/b; "
+                     "also labels, info (CameraInfo), truth");
   command.add_option("--tour", tour, "scene: tour (YAML), or the name of a shipped one");
   command.add_option("--robot", robot, "scene: robot (YAML), or the name of a shipped one")
       ->default_str(kUsualRobot);
-  command.add_option("--level", level,
-                     "scene: sensor level (YAML), or the name of a shipped one; without: no noise");
+  command.add_option(
+      "--level", level,
+      "scene: sensor level (YAML), or the name of a shipped one (default: no noise)");
   frame.add_to(command);
   command.add_option("--seed", seed, "Seed of RANSAC and of a scene's noise")->check(seed_number());
 }

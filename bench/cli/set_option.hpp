@@ -35,8 +35,8 @@ struct SetOption {
   void add_to(CLI::App& command) {
     command
         .add_option("--set", given,
-                    "NAME=VALUE: what ${NAME} in the suite stands for; a file or folder is seen "
-                    "from here")
+                    "NAME=VALUE: replaces ${NAME} in the suite; a file or folder is relative to "
+                    "the current folder")
         ->allow_extra_args(false);
   }
 

@@ -251,22 +251,22 @@ void add_slam(CLI::App& app) {
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--out", options->out, "Folder for the results")->required();
-  command->add_option("--map", options->map, "Map file to begin with");
+  command->add_option("--map", options->map, "Map file to start from");
   CLI::Option* localize =
-      command->add_flag("--localize", options->localize, "The map stays as it is");
+      command->add_flag("--localize", options->localize, "Only localizes: the map stays as it is");
   command->add_flag("--resume", options->resume, "Resumes the sequence where the map's run stopped")
       ->excludes(localize);
   command
       ->add_flag("--protocol", options->protocol,
-                 "As a suite runs it: frames are held out and queried after mapping, and "
-                 "the feed goes back where tracking is lost")
+                 "Runs as in a suite: frames are held out and queried after mapping, and the feed "
+                 "goes back when tracking is lost")
       ->excludes(localize);
   command->add_option("--save-map", options->save_map, "Map file to write")->excludes(localize);
   command->add_option(
       "--truth", options->truth,
       "True trajectory, TUM text or EuRoC CSV (default: the folder's groundtruth.txt "
       "or groundtruth.csv)");
-  command->add_option("--frames", options->frames, "At most so many frames")
+  command->add_option("--frames", options->frames, "At most this many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   const std::vector<CLI::Option*> detector = options->detector.add_to(*command);
@@ -277,9 +277,9 @@ void add_slam(CLI::App& app) {
   CLI::Option* xi =
       command
           ->add_option("--xi", options->xi,
-                       "Penalty of labels that differ, equation 2 (default: the settings')")
+                       "Penalty for labels that differ, equation 2 (default: the settings')")
           ->check(number_between(1.0, 1e6));
-  CLI::Option* plain = command->add_flag("--plain", options->plain, "Without semantics");
+  CLI::Option* plain = command->add_flag("--plain", options->plain, "Runs without semantics");
   plain->excludes(gamma, xi);
   for (CLI::Option* option : detector) plain->excludes(option);
   command->add_flag_callback(
@@ -290,8 +290,7 @@ void add_slam(CLI::App& app) {
       },
       "Prints every setting with its default, meaning and range");
   command->footer(
-      "Example:\n  modelhouse slam out/sequence --out out/slam "
-      " --save-map out/house.mhmap");
+      "Example:\n  modelhouse slam out/sequence --out out/slam --save-map out/house.mhmap");
   command->callback([options] { run(*options); });
 }
 

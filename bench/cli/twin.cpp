@@ -243,9 +243,9 @@ void run(TwinArguments options) {
 void add_twin(CLI::App& app) {
   auto options = std::make_shared<TwinArguments>();
   CLI::App* command = app.add_subcommand(
-      "twin", "Renders a recording's own scene along its poses and compares the two.");
+      "twin", "Renders the scene of a recording along its poses and compares the two.");
   command->add_option("recording", options->recording, sequence_forms())->required();
-  command->add_option("scene", options->scene, "The mesh of the same place")->required();
+  command->add_option("scene", options->scene, "Mesh of the same place")->required();
   command->add_option("--out", options->out, "Folder for pairs.png and twin.json")->required();
   command->add_option("--settings", options->settings,
                       "Calibration (default: that of the recording)");
@@ -255,13 +255,15 @@ void add_twin(CLI::App& app) {
                    "tx ty tz qx qy qz qw: from the frame of the recording's poses to the scene's "
                    "(default: ScanNet's alignment, otherwise none)")
       ->expected(7);
-  command->add_option("--frames", options->frames, "At most so many frames with a pose");
-  command->add_option("--every", options->every, "Compares every so many frames")
+  command->add_option("--frames", options->frames, "At most this many frames with a pose");
+  command->add_option("--every", options->every, "Compares every n-th frame only")
       ->check(CLI::Range(1, 1000000));
-  command->add_flag("--no-maps", options->plain_comparison, "Compares images alone");
+  command->add_flag("--no-maps", options->plain_comparison, "Compares only images, makes no maps");
   command->add_option("--vocabulary", options->vocabulary, "Vocabulary of the maps");
-  command->add_option("--seed", options->seed, "Of SLAM's draws");
-  command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
+  command->add_option("--seed", options->seed, "Seed of SLAM's random draws");
+  command
+      ->add_option("--jobs", options->threads,
+                   "Threads that bake light; does not affect the figures")
       ->check(CLI::Range(1, 1024));
   command->add_option("--cache", options->cache,
                       "Cache folder for baked light (default: $XDG_CACHE_HOME/modelhouse)");

@@ -84,22 +84,19 @@ void sources(E& e, Visit&& visit) {
   visit(WorldSource{"scene", kScene, "where the robot maps", false, true}, e.scene);
   visit(WorldSource{"robot", kRobot, "default: the suite's"}, e.robot);
   visit(WorldSource{"mapping_tour", kMotion, "default: `auto:0`", false, true}, e.mapping_tour);
-  visit(
-      WorldSource{
-          "kidnapped_tour", kTour,
-          "after the mapping tour the robot is moved, from one frame to the next, to the start "
-          "of this tour and continues mapping",
-          false, true},
-      e.kidnapped_tour);
+  visit(WorldSource{"kidnapped_tour", kTour,
+                    "after the mapping tour, the robot is moved from one frame to the next to the "
+                    "start of this tour, and continues mapping",
+                    false, true},
+        e.kidnapped_tour);
   visit(WorldSource{"query_tour", kMotion,
                     "the second tour; default: only held-out frames are "
                     "queries",
                     true, true},
         e.query_tour);
   visit(WorldSource{"query_scene", kScene,
-                    "another scene for the second tour: furniture moved, "
-                    "lights changed",
-                    true, true},
+                    "a different scene for the second tour: furniture moved, lights changed", true,
+                    true},
         e.query_scene);
   visit(
       WorldSource{"sensors", kLevel, "sensor settings of this environment instead of the level's"},

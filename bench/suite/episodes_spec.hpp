@@ -24,10 +24,12 @@ struct EpisodeVariant {
 template <MaybeConst<EpisodeVariant> V, class Visit>
 void sources(V& variant, Visit&& visit) {
   using enum SourceKind;
-  visit(WorldSource{"scene", kScene, "furniture moved, evening light", false, true}, variant.scene);
+  visit(WorldSource{"scene", kScene, "a different scene: furniture moved, evening light", false,
+                    true},
+        variant.scene);
   visit(WorldSource{"pedestrian", kPedestrian, "present during the episodes", false, true},
         variant.pedestrian);
-  visit(WorldSource{"level", kLevel, "of the robot's camera"}, variant.level);
+  visit(WorldSource{"level", kLevel, "for the robot's camera"}, variant.level);
 }
 
 template <MaybeConst<EpisodeVariant> V, class Visit>
@@ -60,13 +62,14 @@ template <MaybeConst<EpisodesSpec> E, class Visit>
 void episode_settings(E& episodes, Visit& v) {
   auto& [goals, starts, seed, limit_s, arrival_m, ticks_per_frame, dark_s, variants] = episodes;
   v("goals", goals, setting::required({}), "classes; each start draws one that the scene has");
-  v("starts", starts, {1, 100000}, "of each variant in each environment");
-  v("seed", seed, setting::kSeed, "of starts and noise");
+  v("starts", starts, {1, 100000}, "starts of each variant in each environment");
+  v("seed", seed, setting::kSeed, "seed of starts and noise");
   v("limit_s", limit_s, {1, 3600}, "simulated time of an episode");
   v("arrival_m", arrival_m, {0.5, 10},
     "success: the robot's center is at most this far from the object");
-  v("ticks_per_frame", ticks_per_frame, {1, 60}, "of the camera's 30 Hz: 3 are 10 Hz");
-  v("dark_s", dark_s, {0, 60}, "blank frames at the start; less than limit_s");
+  v("ticks_per_frame", ticks_per_frame, {1, 60},
+    "ticks of the camera's 30 Hz per frame: 3 gives 10 Hz");
+  v("dark_s", dark_s, {0, 60}, "time of blank frames at the start; less than limit_s");
 }
 
 template <MaybeConst<EpisodesSpec> E, class Visit>

@@ -28,14 +28,14 @@ void fields(G& graded, Visit& v) {
   auto& [distance_m, angle_deg, per_bin, seed, speed, least_shown] = graded;
   using setting::required;
   v("distance_m", distance_m, required({0, 100}),
-    "edges of the bins of distance from the nearest mapped view");
-  v("angle_deg", angle_deg, required({0, 180}), "edges of the bins of angle from it");
-  v("per_bin", per_bin, {1, 1000}, "queries of each pair of bins");
-  v("seed", seed, setting::kSeed, "of the draw");
+    "edges of the bins of the distance from the nearest mapped view");
+  v("angle_deg", angle_deg, required({0, 180}), "edges of the bins of the angle from it");
+  v("per_bin", per_bin, {1, 1000}, "queries in each pair of bins");
+  v("seed", seed, setting::kSeed, "seed of the draw");
   v("speed", speed, {0.1, 10},
-    "multiples of the speed at which each query's scan by hand is played");
+    "multiples of the speed at which each query's handheld scan is played");
   v("least_shown", least_shown, {0, 1},
-    "a view of which the mapped frames show less (share of its surface) is counted, not asked");
+    "a view is counted, not asked, if the mapped frames show less than this share of its surface");
 }
 
 /// Index of the bin that a value falls into; the number of bins if it falls into none. Bins contain

@@ -96,21 +96,19 @@ void fields(C& c, Visit& v) {
     "when tracking is lost, the feed goes back (rewind) or on (continue)");
   v("rewind_frames", rewind_frames, {1, 100000}, "how far the feed goes back after a failure");
   v("restarts_per_frame", restarts_per_frame, {0, 1000},
-    "failed restarts after which the frame that failed is dropped");
+    "failed restarts after which the failing frame is dropped");
   v("reset", reset, {},
-    "after a dropped frame: set the count of restarts to zero (counter), or discard the map too "
-    "(map)");
+    "after a dropped frame: reset the count of restarts (counter), or discard the map, too (map)");
   v("hopeless_after", hopeless_after, {0, 100000},
-    "frames dropped in a row after which those that follow are shown once, until one is tracked; "
-    "0: "
-    "never");
+    "after this many frames dropped in a row, each frame is shown only once until one is tracked; "
+    "0: never");
   v("max_effort", max_effort, {1, 1000},
     "mapping stops after this many track calls per frame of the sequence");
-  v("query_attempts", query_attempts, {1, 1000}, "times that a test frame is shown");
+  v("query_attempts", query_attempts, {1, 1000}, "how many times a test frame is shown");
   v("attempts", attempts, {},
-    "they repeat the same frame (same_frame), or show its moment with new noise (new_noise)");
+    "repeat the same frame (same_frame), or show the same view with new noise (new_noise)");
   v("max_blank_frames", max_blank_frames, {1, 100000},
-    "blank frames shown at most until the system is lost");
+    "blank frames shown until the system is lost, at most");
   v("correct_distance_m", correct_distance_m, setting::kLength_m,
     "largest position error of a correct answer");
   v("correct_angle_deg", correct_angle_deg, {0, 180}, "largest rotation error of a correct answer");

@@ -93,13 +93,12 @@ struct Suite {
 template <MaybeConst<Suite> S, class Visit>
 void fields(S& suite, Visit& v) {
   v("trials", suite.trials, {1, 1000}, "repeats; trial t uses seed + t");
-  v("seed", suite.seed, setting::kSeed, "of the first trial");
+  v("seed", suite.seed, setting::kSeed, "seed of the first trial");
   v("measure", suite.measure, {},
-    "the share of a system's answers that decides which system is better; the other one is shown, "
-    "too");
+    "the share of a system's answers that decides which system is better; the other is shown, too");
   v("non_inferiority_margin", suite.non_inferiority_margin, setting::kShare,
-    "stated in advance: a system is not worse if the interval of its share minus the other's lies "
-    "above minus this");
+    "fixed in advance: a system is not worse if the interval of its share minus the other's lies "
+    "above the negative of this");
   v("published", suite.published, {}, "figures of the paper to show below the measured ones");
 }
 

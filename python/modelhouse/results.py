@@ -20,13 +20,13 @@ class Results:
         self.folder = pathlib.Path(folder)
         file = self.folder if self.folder.suffix == ".sqlite" else self.folder / "results.sqlite"
         if not file.is_file():
-            raise FileNotFoundError(f"{file}: there are no results")
+            raise FileNotFoundError(f"{file}: does not exist, so there are no results")
         self._database = sqlite3.connect(file.absolute().as_uri() + "?mode=ro", uri=True)
         try:
             self._database.execute("SELECT key, name FROM runs LIMIT 1")
             self._database.execute("SELECT key, point, name, value FROM metrics LIMIT 1")
         except sqlite3.DatabaseError as error:
-            raise ValueError(f"{file}: is no results file of this version ({error})") from None
+            raise ValueError(f"{file}: is not a results file of this version ({error})") from None
 
     def sql(self, query: str, parameters: Sequence[Any] = ()) -> Any:
         """The rows of any query over the tables of docs/store.md."""

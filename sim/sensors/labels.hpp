@@ -60,12 +60,13 @@ template <MaybeConst<DetectorConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [recall_small, recall_medium, recall_large, confusion, false_alarms, box_sigma] = c;
   v("recall_small", recall_small, setting::kShare, "of objects below 32 x 32 px");
-  v("recall_medium", recall_medium, setting::kShare, "of objects between");
-  v("recall_large", recall_large, setting::kShare, "of objects from 96 x 96 px on");
-  v("confusion", confusion, setting::kShare, "of an object's detections with the wrong class");
-  v("false_alarms", false_alarms, {0, 8}, "expected detections of nothing per image");
+  v("recall_medium", recall_medium, setting::kShare, "of objects in between");
+  v("recall_large", recall_large, setting::kShare, "of objects of 96 x 96 px or more");
+  v("confusion", confusion, setting::kShare,
+    "share of an object's detections with the wrong class");
+  v("false_alarms", false_alarms, {0, 8}, "expected detections per image where there is no object");
   v("box_sigma", box_sigma, setting::kShare,
-    "of a box's width or height by which its sides stray, standard deviation");
+    "standard deviation of the error of a box's sides, as a share of its width or height");
 }
 
 /// Configurable faults on top of any kind of labels, for dose-response studies: 0 is none.
@@ -88,13 +89,14 @@ struct LabelNoiseConfig {
 template <MaybeConst<LabelNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, confusion, swap, dropout, erosion_px, class_set] = c;
-  v("enabled", enabled, setting::kSwitch, "the five dials below; what follows them holds anyway");
-  v("confusion", confusion, setting::kShare, "of instances that carry a wrong class");
+  v("enabled", enabled, setting::kSwitch,
+    "switches the five dials below; the settings after them always apply");
+  v("confusion", confusion, setting::kShare, "share of instances that carry a wrong class");
   v("swap", swap, setting::kShare,
-    "of instances that exchange classes with their nearest neighbor");
-  v("dropout", dropout, setting::kShare, "of instances that carry no label");
-  v("erosion_px", erosion_px, {0, 1000}, "pixels so near to a border between labels become void");
-  v("class_set", class_set, {}, "classes that are distinguished: all, thirteen, five or two");
+    "share of instances that exchange classes with their nearest neighbor");
+  v("dropout", dropout, setting::kShare, "share of instances that carry no label");
+  v("erosion_px", erosion_px, {0, 1000}, "pixels this near to a border between labels become void");
+  v("class_set", class_set, {}, "classes that are told apart: all, thirteen, five or two");
 }
 
 /// Label faults depend on what is seen and from where, as a network's do: each is decided by a
@@ -117,10 +119,11 @@ void for_each_setting(C& config, Visit& v) {
   v.section("label_noise");
   fields(noise, v);
   v("persistent_share", persistent_share, setting::kShare,
-    "of the variance of faults: what an instance keeps for ever");
+    "share of the faults' variance that is constant for an instance");
   v("frame_share", frame_share, setting::kShare,
-    "of it: new in each frame; with persistent_share at most 1, the view's is the rest");
-  v("seed", seed, setting::kSeed, "another seed is another network");
+    "share that is drawn again in each frame; the two sum to at most 1, the rest depends on the "
+    "view");
+  v("seed", seed, setting::kSeed, "a different seed acts as a different network");
   v.section("detector");
   fields(detector, v);
 }

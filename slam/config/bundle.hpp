@@ -17,10 +17,11 @@ struct BundleConfig {
 template <MaybeConst<BundleConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [iterations, refine_iterations, relative_decrease, chi2_mono, chi2_stereo] = c;
-  v("iterations", iterations, {1, 1000}, "with Huber's cost, before outliers are dropped");
-  v("refine_iterations", refine_iterations, {0, 1000}, "after");
+  v("iterations", iterations, {1, 1000}, "with Huber's loss, before outliers are dropped");
+  v("refine_iterations", refine_iterations, {0, 1000},
+    "at most this many more, without Huber's loss");
   v("relative_decrease", relative_decrease, setting::kShare,
-    "of the cost; a smaller step ends a phase");
+    "a phase ends when a step reduces the cost by no more than this share");
   v("chi2_mono", chi2_mono, setting::kGate, "gate of an observation without depth");
   v("chi2_stereo", chi2_stereo, setting::kGate, "gate of an observation with depth");
 }

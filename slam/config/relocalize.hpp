@@ -59,17 +59,20 @@ template <MaybeConst<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, rival_share, search_radius_px,
          disparity_sigma_px, ransac] = c;
-  v("acceptance", acceptance, {}, "of a candidate's pose: ours or orb_slam2");
+  v("acceptance", acceptance, {},
+    "by which rules a candidate's pose is accepted: ours or orb_slam2");
   v("neighbor_scores", neighbor_scores, {},
-    "in equation 5: fresh, cleared or as_released (by ORB-SLAM2)");
-  v("min_word_matches", min_word_matches, setting::kPoints, "with a candidate keyframe");
-  v("min_inliers", min_inliers, setting::kPoints, "to accept a pose");
+    "scores of neighbors in equation 5: fresh, cleared or as_released (as in ORB-SLAM2)");
+  v("min_word_matches", min_word_matches, setting::kPoints,
+    "matches by words that a candidate keyframe needs");
+  v("min_inliers", min_inliers, setting::kPoints, "inliers needed to accept a pose");
   v("rival_share", rival_share, setting::kShare,
-    "of its inliers refuse a pose if another has them elsewhere; 0: the first is taken");
+    "a pose is rejected if another one elsewhere has this share of its inliers; 0: the first pose "
+    "is taken");
   v("search_radius_px", search_radius_px, setting::kRadius_px,
-    "of the first search by pose (ours)");
+    "of the first search by pose (acceptance: ours)");
   v("disparity_sigma_px", disparity_sigma_px, {0, 1000},
-    "how far a true pair's depth strays; at least the camera's own");
+    "standard deviation of a true pair's disparity error; at least the camera's own");
   fields(ransac, v);
 }
 
