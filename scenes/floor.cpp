@@ -305,7 +305,7 @@ FloorPlane fitted(const std::vector<Vector3d>& points, double z_m,
   if (slope_rad >= kLevelFloor_rad && slope_rad <= kSteepest_rad) return plane;
   if (slope_rad > kSteepest_rad && warnings != nullptr)
     warnings->push_back(fmt::format(
-        "{}: its floor slopes by {:.1f} degrees: taken as level (up to 2 degrees are followed)",
+        "{}: its floor slopes by {:.1f} degrees: treated as level (slopes of up to 2 degrees are followed)",
         name, slope_rad * 180 / std::numbers::pi));
   plane = {};
   plane.middle_m.z() = z_m;

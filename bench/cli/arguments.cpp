@@ -122,7 +122,7 @@ void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
   std::error_code error;
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
-                                 fs::is_directory(file, error) ? "a folder" : "no file"));
+                                 fs::is_directory(file, error) ? "a folder" : "not a file"));
   for (const fs::path& input : read) require_other_file(file, input);
   if (!begins_with(file, head_of(file)))
     throw InputError(

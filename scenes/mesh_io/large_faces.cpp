@@ -59,8 +59,7 @@ void cut_large_faces(const aiScene& in, const std::filesystem::path& file,
     if (large == faces.end()) continue;
     if (warnings != nullptr)
       warnings->push_back(fmt::format(
-          "{}: mesh '{}' has a face of {} corners: it is cut like a fan, wrongly where it is not "
-          "convex",
+          "{}: mesh '{}' has a face of {} corners: it is cut into a fan of triangles, which is wrong where it is not convex",
           file.string(), mesh->mName.C_Str(), large->mNumIndices));
     cut(*mesh);
   }

@@ -141,7 +141,7 @@ void note_depth_scale(double depth_per_meter, const RecordingConfig& config,
   const std::optional<double> stated = config.depth_per_meter(config.calibration);
   if (stated && *stated != depth_per_meter)
     notes.push_back(
-        fmt::format("{}: its depth per meter, {:g}, gives way to {:g}, the recording's own",
+        fmt::format("{}: its depth per meter, {:g}, is replaced by {:g}, the recording's own",
                     config.calibration.string(), *stated, depth_per_meter));
 }
 

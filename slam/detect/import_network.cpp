@@ -91,10 +91,10 @@ void check_weights(const DetectorSpec& spec, cv::dnn::Net& net, std::string_view
     return;
   }
   refuse_network(spec.network,
-                 fmt::format("holds {} bytes where {} asks for {}: {}", weights.size(),
+                 fmt::format("holds {} bytes, but {} needs {}: {}", weights.size(),
                              spec.config.string(), expected,
-                             weights.size() < expected ? "it is truncated, or of another one"
-                                                       : "it is of another one"));
+                             weights.size() < expected ? "it is truncated, or belongs to another network"
+                                                       : "it belongs to another network"));
 }
 
 NetworkOutputs forward(ImportedNetwork& imported, const cv::Mat& input) {
@@ -149,8 +149,7 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
   auto names = read_class_names(stated->second);
   if (!names)
     refuse_network(spec.network,
-                   fmt::format("its metadata's `names` is no list of classes: '{}'; name them by "
-                               "`classes`",
+                   fmt::format("its metadata's `names` is not a list of classes: '{}'; name them with `classes`",
                                printable(stated->second)));
   return *std::move(names);
 }
@@ -198,14 +197,12 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNet
             seen == Head::kAuto ? "" : fmt::format(" but of '{}'", SettingsWriter::word_of(seen))));
   if (head == Head::kAuto && gives_boxes_and_masks(out.tensors, imported.input))
     refuse_network(spec.network,
-                   fmt::format("gives boxes and masks of objects ({}), which are not read: "
-                               "export a network of the task detect",
+                   fmt::format("gives boxes and masks of objects ({}), which are not supported: export a network for the task detect",
                                fmt::join(shapes, ", ")));
   if (head == Head::kAuto)
     refuse_network(
         spec.network,
-        fmt::format("its output ({}) at an input of {} x {} is that of no known head: name it by "
-                    "`head`, or its input by `width_px` and `height_px`",
+        fmt::format("its output ({}) at an input of {} x {} matches no known head: name it with `head`, or set its input with `width_px` and `height_px`",
                     fmt::join(shapes, ", "), imported.input.width, imported.input.height));
   const int classes = class_count(head, out.tensors, imported.input);
   if (classes == 0)
@@ -227,7 +224,7 @@ InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
     refuse_network(
         file, fmt::format("takes {} images at once: export it with a batch of 1", input.images));
   if (std::max(input.width, input.height) > std::uint64_t{kLargestInput_px})
-    refuse_network(file, fmt::format("its input is fixed to {} x {}: at most {} pixels are taken",
+    refuse_network(file, fmt::format("its input is fixed to {} x {}: at most {} pixels are supported",
                                      input.width, input.height, kLargestInput_px));
   return {static_cast<int>(input.width), static_cast<int>(input.height)};
 }
@@ -255,8 +252,7 @@ void require_detection(const DetectorSpec& spec, const NetworkFiles& files) {
   constexpr std::array kOthers = {"segment", "pose", "obb", "classify"};
   if (task == metadata.end() || std::ranges::find(kOthers, task->second) == kOthers.end()) return;
   refuse_network(spec.network,
-                 fmt::format("is of the task '{}': of Ultralytics' networks, those of the task "
-                             "detect are read",
+                 fmt::format("is for the task '{}': only Ultralytics networks for the task detect are supported",
                              task->second));
 }
 
@@ -268,7 +264,7 @@ std::string export_advice(const NetworkFiles& files) {
       return fmt::format(
           "; it selects its boxes itself ([{}]): export it without (nms=False end2end=False)",
           node.op);
-  return "; a YOLO of Ultralytics runs by `yolo export format=onnx opset=12 simplify=True`";
+  return "; export an Ultralytics YOLO with `yolo export format=onnx opset=12 simplify=True`";
 }
 
 /// The size of the input: from the settings or the file, otherwise the usual one.
@@ -277,10 +273,10 @@ InputSize input_size(const DetectorSpec& spec, const NetworkFiles& files) {
   const InputSize usual = files.is_darknet ? InputSize{} : trained_size(files);
   const auto side = [&](int named, int stated, int otherwise, const char* key) {
     if (named > 0 && stated > 0 && named != stated && !files.is_darknet)
-      refuse_network(spec.network, fmt::format("its input is fixed to {} x {}: `{}: {}` cannot be",
+      refuse_network(spec.network, fmt::format("its input is fixed to {} x {}: `{}: {}` does not fit",
                                                declared.width, declared.height, key, named));
     if (files.is_darknet && named <= 0 && stated <= 0)
-      refuse_network(spec.config, fmt::format("section [net] states no {}: name it by `{}`",
+      refuse_network(spec.config, fmt::format("section [net] has no {}: set it with `{}`",
                                               key[0] == 'w' ? "width" : "height", key));
     return named > 0 ? named : stated > 0 ? stated : otherwise;
   };

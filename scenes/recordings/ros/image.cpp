@@ -102,7 +102,7 @@ Grid2d<Rgb8> converted(const cv::Mat& stored, const Conversion& conversion, int 
   const bool mosaic = std::string_view(conversion.encoding).starts_with("bayer");
   if (mosaic ? width < 3 || height < 3 : width % 2 != 0 || height % (conversion.rows_of_2 - 1) != 0)
     throw InputError(
-        fmt::format("is of {} x {} pixels, which no {} has", width, height, conversion.encoding));
+        fmt::format("has {} x {} pixels, which {} does not allow", width, height, conversion.encoding));
   Grid2d<Rgb8> color(width, height);
   cv::Mat rgb(height, width, CV_8UC3, color.data());
   cv::cvtColor(stored, rgb, conversion.code);
@@ -159,7 +159,7 @@ Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire, double 
   std::string_view png = image.data;
   DepthHead head;
   if (has_head) {
-    if (png.size() < sizeof(head)) throw InputError("is shorter than its head");
+    if (png.size() < sizeof(head)) throw InputError("is shorter than its header");
     std::memcpy(&head, png.data(), sizeof(head));
     png.remove_prefix(sizeof(head));
   }
