@@ -26,7 +26,7 @@ class Results:
             self._database.execute("SELECT key, name FROM runs LIMIT 1")
             self._database.execute("SELECT key, point, name, value FROM metrics LIMIT 1")
         except sqlite3.DatabaseError as error:
-            raise ValueError(f"{file}: is no results file of this version ({error})") from None
+            raise ValueError(f"{file}: is not a results file of this version ({error})") from None
 
     def sql(self, query: str, parameters: Sequence[Any] = ()) -> Any:
         """The rows of any query over the tables of docs/store.md."""

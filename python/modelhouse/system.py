@@ -45,14 +45,14 @@ def numbers(pose: Pose) -> List[float]:
     Raises ValueError if it is neither, holds a number that is not finite, or is not a rigid motion."""
     given = np.asarray(pose, dtype=np.float64)
     if given.shape not in ((4, 4), (7,)) or not np.isfinite(given).all():
-        raise ValueError(f"no pose: expected 4 x 4 or 7 finite numbers, got shape {given.shape}")
+        raise ValueError(f"not a pose: expected 4 x 4 or 7 finite numbers, got shape {given.shape}")
     if given.shape == (7,):
         if abs(np.linalg.norm(given[3:]) - 1) > 1e-3:
-            raise ValueError("no pose: its quaternion is not of unit length")
+            raise ValueError("not a pose: its quaternion is not of unit length")
         return [float(number) for number in given]
     if (np.abs(given[:3, :3].T @ given[:3, :3] - np.eye(3)).max() > 1e-3
             or np.linalg.det(given[:3, :3]) < 0 or (given[3] != (0, 0, 0, 1)).any()):
-        raise ValueError("no pose: its rotation is none, or its last row is not 0 0 0 1")
+        raise ValueError("not a pose: its rotation is not valid, or its last row is not 0 0 0 1")
     r = given[:3, :3]
     # The eigenvector of the largest eigenvalue is the quaternion (Bar-Itzhack, 2000); eigh reads the lower half.
     four = np.zeros((4, 4))

@@ -116,8 +116,8 @@ void warn_of_face_colors(std::string_view bytes, const fs::path& file,
     return element != header.elements.end() && element->find("red") != nullptr;
   };
   if (warnings != nullptr && has_colors("face") && !has_colors("vertex"))
-    warnings->push_back(fmt::format(
-        "{}: its face colors are not read; vertex colors would be", file.string()));
+    warnings->push_back(
+        fmt::format("{}: its face colors are not read; vertex colors would be", file.string()));
 }
 
 /// assimp assigns a gray material to a mesh without one; vertex colors should show unchanged.

@@ -216,8 +216,8 @@ class BodyParser {
     at_ += size_of(*list.count_type);
     const std::size_t left = (body_.size() - at_) / size_of(list.type);
     if (count < 0 || count > static_cast<double>(left))
-      fail(fmt::format("record {} of element '{}' declares a list of {} items, {} are left",
-                       record, element.name, count, left));
+      fail(fmt::format("record {} of element '{}' declares a list of {} items, {} are left", record,
+                       element.name, count, left));
     const List result{body_.data() + at_, static_cast<std::size_t>(count)};
     at_ += result.count * size_of(list.type);
     return result;

@@ -107,7 +107,8 @@ SE3 base_from_camera(const fs::path& file) {
   }
   const auto found = base_from.find(kColorFrame);
   if (found == base_from.end())
-    throw InputError(fmt::format("{}: does not connect {} to base_link", file.string(), kColorFrame));
+    throw InputError(
+        fmt::format("{}: does not connect {} to base_link", file.string(), kColorFrame));
   return found->second.normalized();
 }
 

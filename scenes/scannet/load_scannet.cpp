@@ -246,7 +246,8 @@ class Loader {
         if (!claims.at(segment).in_mesh) absent.insert(segment);
     if (!absent.empty())
       warn(
-          fmt::format("{}: {} of the {} segments of its objects belong to no vertex (such as segment {}): ignored",
+          fmt::format("{}: {} of the {} segments of its objects belong to no vertex (such as "
+                      "segment {}): ignored",
                       files_.aggregation.string(), absent.size(), claims.size(), *absent.begin()));
   }
 

@@ -119,9 +119,8 @@ class ExtractedFolder : public Recording {
     const fs::path intrinsics = folder_ / "intrinsic" / ("intrinsic_" + which + ".txt");
     const fs::path extrinsics = folder_ / "intrinsic" / ("extrinsic_" + which + ".txt");
     if (!is_there(extrinsics))
-      notes_.push_back(
-          fmt::format("{}: is missing: the {} camera is taken as the device's origin",
-                      extrinsics.string(), which));
+      notes_.push_back(fmt::format("{}: is missing: the {} camera is taken as the device's origin",
+                                   extrinsics.string(), which));
     const Eigen::Matrix4d placed =
         is_there(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity();
     if (!pose_of(placed, extrinsics.string()))
@@ -225,8 +224,9 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
                     lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, width_px, height_px));
   for (const auto& [row, column] : {std::pair{0, 1}, {1, 0}, {2, 0}, {2, 1}})
     if (std::abs(intrinsics(row, column)) > 1e-6)
-      throw InputError(fmt::format("{}: row {}, column {} of the intrinsics is {}, but a pinhole camera has 0 there",
-                                   what, row + 1, column + 1, intrinsics(row, column)));
+      throw InputError(fmt::format(
+          "{}: row {}, column {} of the intrinsics is {}, but a pinhole camera has 0 there", what,
+          row + 1, column + 1, intrinsics(row, column)));
   const auto placed = pose_of(extrinsics, what);
   if (!placed) throw InputError(fmt::format("{}: the extrinsics are not finite", what));
   RecordedLens result = lens;

@@ -227,7 +227,8 @@ class SensFile : public Recording {
     if (counted && cursor.left() % kMeasurement == 0 && cursor.left() / kMeasurement == count)
       return;
     notes_.push_back(
-        fmt::format("{}: the {} bytes after frame {}, the last, are not a whole number of inertial measurements and are not read",
+        fmt::format("{}: the {} bytes after frame {}, the last, are not a whole number of inertial "
+                    "measurements and are not read",
                     name_, left, frames_.size() - 1));
   }
 
@@ -379,7 +380,8 @@ void save_sens(const fs::path& file, const RecordingInfo& info, std::size_t fram
     for (std::size_t i = 0; i < frames; ++i) {
       const RecordedMoment moment = frame_at(i);
       if (!fits(moment.color, info.color) || !fits(moment.depth, info.depth))
-        throw InputError(fmt::format("{}: frame {} does not have the cameras' size", file.string(), i));
+        throw InputError(
+            fmt::format("{}: frame {} does not have the cameras' size", file.string(), i));
       const std::string color = encode_jpeg(moment.color, kRecordedJpegQuality);
       const std::string depth = compressed(moment.depth);
       const double lost = -std::numeric_limits<double>::infinity();

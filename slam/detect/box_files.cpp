@@ -168,8 +168,9 @@ void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxe
       check(box, names, place);
       if (std::ranges::any_of(std::span(v).subspan(1, 4),
                               [](double share) { return std::abs(share) > kLargestShare; }))
-        throw InputError(fmt::format("{}: box {} {} {} {} is not given as fractions of the image size", place,
-                                     v[1], v[2], v[3], v[4]));
+        throw InputError(
+            fmt::format("{}: box {} {} {} {} is not given as fractions of the image size", place,
+                        v[1], v[2], v[3], v[4]));
       boxes.push_back(box);
     });
   }
@@ -208,18 +209,17 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
   try {
     json = Json::parse(text);
   } catch (const Json::out_of_range&) {
-    throw InputError(
-        fmt::format("{}: holds a number beyond the range of a double", file.string()));
+    throw InputError(fmt::format("{}: holds a number beyond the range of a double", file.string()));
   } catch (const Json::parse_error& error) {
     const std::string_view before = std::string_view(text).substr(0, error.byte);
     throw InputError(fmt::format("{}:{}: is not JSON (which has no NaN and no comments)",
                                  file.string(), 1 + std::ranges::count(before, '\n')));
   }
   if (json.is_object() && json.contains("annotations"))
-    throw InputError(
-        fmt::format("{}: holds COCO annotations, but COCO results are needed, a list of {{image_id, "
-                    "category_id, bbox, score}}",
-                    file.string()));
+    throw InputError(fmt::format(
+        "{}: holds COCO annotations, but COCO results are needed, a list of {{image_id, "
+        "category_id, bbox, score}}",
+        file.string()));
   if (!json.is_array())
     throw InputError(fmt::format("{}: is not a list of COCO's results", file.string()));
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -353,10 +353,11 @@ class BoxesFromFiles : public Detector {
     for (const auto& [index, boxes] : filed_.by_index) look(boxes);
     for (const auto& [stamp_ns, boxes] : filed_.by_stamp) look(boxes);
     if (found.empty())
-      throw InputError(fmt::format(
-          "{}: none of its {} is one of the sequence's {}, the first is '{}': frames are named by {}",
-          file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
-          kind_ == kMot ? "number from 1" : "index from 0 or by stamp"));
+      throw InputError(
+          fmt::format("{}: none of its {} is one of the sequence's {}, the first is '{}': frames "
+                      "are named by {}",
+                      file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
+                      kind_ == kMot ? "number from 1" : "index from 0 or by stamp"));
     return fmt::format("{}: {} of its {} are not among the sequence's {}, the first is '{}'{}",
                        file_.string(), frame_count() - found.size(),
                        counted(frame_count(), "frame"), stamps_ns.size(), lost->name,

@@ -182,9 +182,10 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   if (settings.depth_per_meter == 0) settings.depth_per_meter = 1;
   settings.exchange_red_blue = yaml.integer_or("Camera.RGB", 0, 0, 1) == 1;
   if (settings.exchange_red_blue)
-    settings.notes.push_back(fmt::format(
-        "{}: Camera.RGB: 1: OpenCV's first channel, blue, is taken as red, as {} does; write 0 if colors matter and the files are ordinary ones",
-        yaml.file(), keys.program));
+    settings.notes.push_back(
+        fmt::format("{}: Camera.RGB: 1: OpenCV's first channel, blue, is taken as red, as {} does; "
+                    "write 0 if colors matter and the files are ordinary ones",
+                    yaml.file(), keys.program));
 
   FeatureConfig& f = settings.slam.features;
   f.count = static_cast<int>(yaml.integer_or("ORBextractor.nFeatures", f.count, 10, 20000));

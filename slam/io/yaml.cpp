@@ -66,9 +66,8 @@ YamlReader YamlReader::load(const std::filesystem::path& file) {
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
   constexpr std::size_t kMostBytes = 4 << 20;  // yaml-cpp takes a second for each megabyte
   if (text.size() > kMostBytes)
-    throw InputError(
-        fmt::format("{}: has {} bytes: YAML files may have at most {}",
-                    name, text.size(), kMostBytes));
+    throw InputError(fmt::format("{}: has {} bytes: YAML files may have at most {}", name,
+                                 text.size(), kMostBytes));
   try {
     YAML::Node node = YAML::Load(text);
     Walk(name).visit(node);

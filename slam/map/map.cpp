@@ -260,8 +260,8 @@ void Map::check_invariants() const {
   };
   for (const Keyframe& k : keyframes_) {
     if (k.erased) {
-      require(k.covisible.empty() && k.landmarks.empty(), "an erased keyframe still has landmarks or neighbors",
-              k.id.value);
+      require(k.covisible.empty() && k.landmarks.empty(),
+              "an erased keyframe still has landmarks or neighbors", k.id.value);
       continue;
     }
     const auto near = keyframes_near(k.camera_from_world.inverse().translation(), 0.0);
@@ -283,7 +283,8 @@ void Map::check_invariants() const {
     }
   }
   for (const Landmark& l : landmarks_) {
-    require(l.erased == l.observations.empty(), "a landmark is unobserved but not erased, or the reverse", l.id.value);
+    require(l.erased == l.observations.empty(),
+            "a landmark is unobserved but not erased, or the reverse", l.id.value);
     for (const Observation& o : l.observations)
       require(!at(o.keyframe).erased && at(o.keyframe).landmarks[o.feature] == l.id,
               "a keyframe does not list its landmark", l.id.value);

@@ -66,7 +66,9 @@ PgmHeader read_pgm_header(const std::string& content, const std::string& file) {
     in >> *number;
   }
   if (!in || header.brightest < 1 || header.brightest > 65535)
-    throw InputError(file + ": is not a PGM image: it must begin with width, height and a maximum of 1 to 65535");
+    throw InputError(
+        file +
+        ": is not a PGM image: it must begin with width, height and a maximum of 1 to 65535");
   if (header.width < 1 || header.height < 1 || header.width > 65536 || header.height > 65536)
     throw InputError(
         fmt::format("{}: {} x {} pixels, not 1 to 65536 each", file, header.width, header.height));

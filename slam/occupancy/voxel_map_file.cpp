@@ -273,7 +273,8 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
     reader.fail(fmt::format("its tree does not have the {} nodes that it declares", header.size));
   if (reader.at_end())
     throw InputError(fmt::format(
-        "{}: has no counts after its tree: it was written by another program, or was edited", name));
+        "{}: has no counts after its tree: it was written by another program, or was edited",
+        name));
   const std::string_view magic = reader.take(kCountsMagic.size());
   const bool old = magic == kSecondCountsMagic || magic == kFirstCountsMagic;
   if (magic != kCountsMagic && magic != kFloorlessMagic && !old)
@@ -334,9 +335,9 @@ VoxelMap VoxelMap::load_octree(const std::filesystem::path& file, std::vector<st
                                  header.resolution_m, kMostForeignVoxels));
   read_octomap_nodes(reader, header,
                      [&](const OctomapLeaf& leaf) { add_leaf(map.impl_->tree, leaf); });
-  notes.push_back(
-      fmt::format("{}: was written by another program: it has no classes, and its z axis is taken as up",
-                  name));
+  notes.push_back(fmt::format(
+      "{}: was written by another program: it has no classes, and its z axis is taken as up",
+      name));
   return map;
 }
 

@@ -56,7 +56,8 @@ class LineReader {
 
   void end_line() {
     skip_blanks();
-    if (!line_.empty()) throw fault(fmt::format("line continues where it should end: '{}'", word()));
+    if (!line_.empty())
+      throw fault(fmt::format("line continues where it should end: '{}'", word()));
   }
 
   InputError fault(std::string_view what) const { return fault(number_, what); }

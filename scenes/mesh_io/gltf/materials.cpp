@@ -75,9 +75,10 @@ UvPlacement take_placement_of(Json& material, std::size_t index,
   const auto is_positive = [](const Json& factor) { return factor > 0.0; };
   if (glows && emission != placement &&
       std::ranges::any_of(list_of(material, "emissiveFactor"), is_positive))
-    warnings.push_back(fmt::format(
-        "materials[{}]: its emissive texture is placed differently from its base color: it is drawn where the base color is",
-        index));
+    warnings.push_back(
+        fmt::format("materials[{}]: its emissive texture is placed differently from its base "
+                    "color: it is drawn where the base color is",
+                    index));
   return placement;
 }
 

@@ -215,8 +215,8 @@ std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTop
         file, depth.name, depth.width_px, depth.height_px, color.name, color.width_px,
         color.height_px, has_own ? "neither tf nor extrinsics" : "no CameraInfo of depth"));
   notes.push_back(fmt::format(
-      "{}: depth of {} has a different {} from color of {}: it is used as if it were registered", file,
-      depth.name, differ(chosen) ? "calibration" : "frame", color.name));
+      "{}: depth of {} has a different {} from color of {}: it is used as if it were registered",
+      file, depth.name, differ(chosen) ? "calibration" : "frame", color.name));
   return std::nullopt;
 }
 

@@ -101,8 +101,8 @@ const Conversion* conversion_of(const std::string& encoding) {
 Grid2d<Rgb8> converted(const cv::Mat& stored, const Conversion& conversion, int width, int height) {
   const bool mosaic = std::string_view(conversion.encoding).starts_with("bayer");
   if (mosaic ? width < 3 || height < 3 : width % 2 != 0 || height % (conversion.rows_of_2 - 1) != 0)
-    throw InputError(
-        fmt::format("has {} x {} pixels, which {} does not allow", width, height, conversion.encoding));
+    throw InputError(fmt::format("has {} x {} pixels, which {} does not allow", width, height,
+                                 conversion.encoding));
   Grid2d<Rgb8> color(width, height);
   cv::Mat rgb(height, width, CV_8UC3, color.data());
   cv::cvtColor(stored, rgb, conversion.code);
