@@ -246,7 +246,7 @@ TEST_F(Gltf, ATextureThatCannotLieAsItShouldIsWarnedOf) {
   file.material()["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
   load(file);
   ASSERT_EQ(warnings_.size(), 1U);
-  EXPECT_TRUE(names(warnings_[0], {"materials[0]", "emissive texture lies otherwise"}));
+  EXPECT_TRUE(names(warnings_[0], {"materials[0]", "emissive texture is placed differently"}));
   file.material().erase("emissiveTexture");
   file.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 10497}}};
   file.json["textures"][0]["sampler"] = 0;

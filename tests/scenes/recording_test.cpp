@@ -250,7 +250,7 @@ TEST_F(SensFile, BytesBehindTheFramesThatAreNoMeasurementsAreNoted) {
         with(whole, kCount, std::uint64_t{2})}) {
     const auto found = notes(odd);
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_TRUE(names(found[0], {"a.sens", "bytes behind frame"}));
+    EXPECT_TRUE(names(found[0], {"a.sens", "bytes after frame"}));
   }
 }
 
