@@ -235,7 +235,7 @@ class SystemTest(unittest.TestCase):
         row[3, 3] = 2
         for pose in (np.zeros((4, 4)), 5 * np.eye(4), mirrored, row, np.zeros(7), np.eye(3),
                      np.full((4, 4), np.nan)):
-            with self.assertRaisesRegex(ValueError, "no pose"):
+            with self.assertRaisesRegex(ValueError, "not a pose"):
                 numbers(pose)
 
     def test_what_it_says_is_passed_on_or_refused(self):
@@ -257,7 +257,7 @@ class SystemTest(unittest.TestCase):
                          {"id": 2, "pose": [0, 0, 0, 0, 0, 0, 1], "keypoints": 3, "keyframe": True})
         self.assertEqual(said("return None"), {"id": 2, "pose": None})
         for reply, part in (("return Reply(None, keypoints=2.5)", "TypeError"),
-                            ("return np.zeros((4, 4))", "ValueError: no pose"),
+                            ("return np.zeros((4, 4))", "ValueError: not a pose"),
                             ("raise SystemExit('enough')", "SystemExit: enough"),
                             ("raise ValueError('two\\nlines')", "ValueError: two lines")):
             self.assertIn(part, said(reply)["error"])

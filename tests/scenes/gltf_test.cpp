@@ -375,7 +375,7 @@ TEST_F(Gltf, AnUnknownExtensionIsRefusedIfRequiredOtherwiseWarnedOf) {
                                  "KHR_materials_ior", "KHR_materials_variants"};
   load(file);
   ASSERT_EQ(warnings_.size(), 2U);
-  EXPECT_TRUE(names(warnings_[0], {"a.gltf", "ACME_fog", "not known"}));
+  EXPECT_TRUE(names(warnings_[0], {"a.gltf", "ACME_fog", "unknown"}));
   EXPECT_TRUE(names(warnings_[1], {"a.gltf", "KHR_lights_punctual", "lights are left out"}));
   file.json["extensionsRequired"] = {"KHR_materials_ior"};
   load(file);

@@ -179,7 +179,7 @@ TEST_F(Worlds, IncludesThatLeadInACircleAreAnError) {
   testing::internal::CaptureStderr();
   const std::string error = error_of([&] { load_gazebo_world(world); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libsdformat prints nothing
-  EXPECT_TRUE(names(error, {"w.sdf includes", "a/model.sdf", "b/model.sdf", "circle"}));
+  EXPECT_TRUE(names(error, {"w.sdf includes", "a/model.sdf", "b/model.sdf", "cycle"}));
 }
 
 TEST_F(Worlds, BadWorldsAreNamedWithTheirPlace) {

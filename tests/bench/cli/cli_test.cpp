@@ -811,7 +811,7 @@ TEST_F(CommandLine, ATourFasterThanTheRobotIsTold) {
                                               "waypoints: [{to: [3, 2]}]\n");
     ASSERT_EQ(run("drive " + mesh.string() + " " + tour.string() + " --robot " + robot_), 0)
         << err_;
-    EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' does: 0.55") !=
+    EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' can do: 0.55") !=
                   std::string::npos,
               reported)
         << err_;

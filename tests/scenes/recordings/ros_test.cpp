@@ -940,7 +940,7 @@ TEST(TopicNames, AreKeysAndTopics) {
 
 TEST(TopicNames, OnlyMessagesHaveThem) {
   EXPECT_NE(
-      error_of([] { open_sequence("tum:/nowhere", with_topics("color=/a")); }).find("has none"),
+      error_of([] { open_sequence("tum:/nowhere", with_topics("color=/a")); }).find("has no topics"),
       std::string::npos);
 }
 
