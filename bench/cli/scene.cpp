@@ -262,7 +262,7 @@ nlohmann::ordered_json facts_json(const GeneratedReference& reference, const Gen
 void make(const SceneArguments& options) {
   const GeneratedReference reference{options.scene, options.seed};
   if (options.scan_look && options.out.empty())
-    throw InputError("--scan-look writes a mesh: name its file by --out FILE.glb or FILE.ply");
+    throw InputError("--scan-look writes a mesh: name its file with --out FILE.glb or FILE.ply");
   if (options.scan_look)
     require_ending(options, {".glb", ".ply"});
   else if (!options.out.empty())

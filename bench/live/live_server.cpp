@@ -239,7 +239,7 @@ std::string LiveServer::Impl::refusal(const http::request<http::string_body>& re
   }
   if (const std::string origin = text_of(request[http::field::origin]);
       !origin.empty() && origin != "http://" + host)
-    return "another page may not open this";
+    return "pages from other sites may not open this";
   return "";
 }
 

@@ -161,7 +161,7 @@ std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
   const auto value = overrides.set.find(name);
   if (value == overrides.set.end())
     throw InputError(fmt::format(
-        "'${{{0}}}' is not set: --set {0}=VALUE does{1}", name,
+        "'${{{0}}}' is not set: use --set {0}=VALUE{1}", name,
         overrides.set.empty() ? "" : fmt::format(" (set is '{}')", overrides.set.begin()->first)));
   return value->second;
 }

@@ -235,7 +235,8 @@ class Conversation {
                        shortened(it->dump())));
     for (std::size_t k = 0; k < v.size(); ++k) {
       if (!(*it)[k].is_number())
-        fail(fmt::format("gave a pose that is not of numbers: {}", shortened(it->dump())));
+        fail(
+            fmt::format("gave a pose that does not consist of numbers: {}", shortened(it->dump())));
       v[k] = (*it)[k];
     }
     return told_pose(v, [this](const std::string& what) { fail(what); });

@@ -43,7 +43,7 @@ class SearchEnv:
         """Returns observation, reward, terminated, truncated and info: `goal`, and at the end
         `success` and `spl`."""
         if self.start is None:
-            raise RuntimeError("reset() begins an episode")
+            raise RuntimeError("call reset() to begin an episode")
         vx, vy, wz, stop = (float(number) for number in action)
         seen = self.simulation.step(vx, vy, wz, self.dt)
         truth = self.simulation.truth()

@@ -121,8 +121,8 @@ class SensFile : public Recording {
   std::uint64_t read_header(Cursor& cursor) {
     const auto version = cursor.take<std::uint32_t>("the version");
     if (version != kVersion)
-      throw InputError(
-          fmt::format("{}: is of version {}; version {} is read", name_, version, kVersion));
+      throw InputError(fmt::format("{}: has version {}, but only version {} is supported", name_,
+                                   version, kVersion));
     const auto length = cursor.take<std::uint64_t>("the length of the sensor's name");
     if (length > kLongestName) cursor.fail(fmt::format("a sensor's name of {} bytes", length));
     info_.sensor = cursor.take_bytes(length, "the sensor's name");

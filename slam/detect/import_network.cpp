@@ -172,12 +172,13 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
                         SettingsWriter::word_of(head), SettingsWriter::word_of(seen));
   refuse_network(
       spec.network,
-      own ? fmt::format("has {} classes, and its metadata names {}: name them by `classes`, a "
+      own ? fmt::format("has {} classes, and its metadata names {}: name them with `classes`, a "
                         "file of one name per line{}",
                         classes, imported.names.size(), other)
-          : fmt::format("has {} classes, not COCO's 80: name them by `classes`, a file of one name "
-                        "per line{}",
-                        classes, other));
+          : fmt::format(
+                "has {} classes, not COCO's 80: name them with `classes`, a file of one name "
+                "per line{}",
+                classes, other));
 }
 
 /// Sets the head, from the settings or from the output for a gray image, and checks the number of

@@ -288,7 +288,7 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
   CountsReader counts(content, name);
   const auto resolution_m = counts.get<double>();  // the header's is rounded
   if (!(std::abs(resolution_m - header.resolution_m) <= 1e-4 * header.resolution_m))
-    counts.fail("its counts have another resolution");
+    counts.fail("its counts have a different resolution");
   VoxelMap map(resolution_m);
   map.set_on_floor(magic != kFloorlessMagic);
   if (magic != kFirstCountsMagic) map.set_detected(read_detected(counts));

@@ -108,9 +108,8 @@ Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
     return config.read_camera(config.calibration).camera;
   if (chosen.info == nullptr)
     throw InputError(
-        fmt::format("{}: holds no sensor_msgs/CameraInfo for {}; name its topic "
-                    "(info=TOPIC) or a settings file by --settings, in a suite by "
-                    "`settings:`",
+        fmt::format("{}: holds no sensor_msgs/CameraInfo for {}; name its topic (info=TOPIC) or a "
+                    "settings file with --settings, in a suite with `settings:`",
                     file, chosen.color->name));
   if (chosen.info->other_at_ns)
     notes.push_back(

@@ -26,7 +26,7 @@ constexpr std::uint32_t kLargestSide_px = 65535;
 void check_size(const ros::Image& image, std::size_t bytes_per_pixel, std::uint64_t rows) {
   if (image.width == 0 || image.height == 0 || image.width > kLargestSide_px ||
       image.height > kLargestSide_px)
-    throw InputError(fmt::format("is of {} x {} pixels", image.width, image.height));
+    throw InputError(fmt::format("has {} x {} pixels", image.width, image.height));
   const std::uint64_t row = bytes_per_pixel * image.width;
   if (image.step < row || std::uint64_t{image.step} * (rows - 1) + row > image.data.size())
     throw InputError(fmt::format("holds {} bytes, too few for {} x {} pixels of {} in rows of {}",

@@ -224,7 +224,7 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   expect_in(error(entry, "[recorded]", "", set), "scene0001_00' is a broken link");
   fs::remove_all(folder_ / "scans");
 
-  expect_in(error(entry), "'${scans}' is not set: --set scans=VALUE does");
+  expect_in(error(entry), "'${scans}' is not set: use --set scans=VALUE");
   expect_in(error(kDesk, "[recorded]", "", set), "--set scans: nothing in it is called ${scans}");
   expect_in(error(kDesk, "[recorded]", "", {.set = {{"features.count", "500"}}}),
             "${features.count}; SLAM settings go into the suite, under `slam:`");

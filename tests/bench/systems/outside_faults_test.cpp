@@ -680,8 +680,10 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   EXPECT_HOLDS(replies("garbage"), "wrote something that is not a line of JSON: 'garbage'");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
-  EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
-  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"),
+               "pose that does not consist of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"),
+               "pose that does not consist of numbers");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,-1e9,0,0,0,0,1]})"), "a pose more than 1e+08 m away");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
