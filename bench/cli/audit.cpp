@@ -95,8 +95,7 @@ WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
     if (const auto runs = runs_of_results(out); runs && *runs != keys)
       throw InputError(
           fmt::format("{}: holds results of runs that {} no longer has: an audit belongs beside "
-                      "its own results "
-                      "(`bench --audit`), or into another --out",
+                      "its own results (`bench --audit`), or into another --out",
                       out.string(), suite.file.string()));
   };
   how.say = [&](std::string_view stage) { progress.say(stage); };

@@ -939,9 +939,10 @@ TEST(TopicNames, AreKeysAndTopics) {
 }
 
 TEST(TopicNames, OnlyMessagesHaveThem) {
-  EXPECT_NE(
-      error_of([] { open_sequence("tum:/nowhere", with_topics("color=/a")); }).find("has no topics"),
-      std::string::npos);
+  EXPECT_NE(error_of([] {
+              open_sequence("tum:/nowhere", with_topics("color=/a"));
+            }).find("has no topics"),
+            std::string::npos);
 }
 
 }  // namespace
