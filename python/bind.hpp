@@ -70,7 +70,7 @@ Grid2d<Rgb8> color_of(const Array<std::uint8_t>& image);
 /// Converts a list or an array with numpy. @throws py::value_error if numpy cannot
 inline py::array array_of_numbers(const py::object& object, const char* what) {
   py::array array = py::array::ensure(object);
-  if (!array) throw py::value_error(std::string(what) + ": is no array");
+  if (!array) throw py::value_error(std::string(what) + ": is not an array");
   return array;
 }
 

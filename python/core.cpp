@@ -58,7 +58,7 @@ SE3 to_pose(const Array<double>& matrix) {
   if (!translation_m.allFinite() || !rotation.allFinite() ||
       (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).norm() > kRound ||
       rotation.determinant() < 0)
-    throw py::value_error("not a rigid pose: its rotation is none, or a number is not finite");
+    throw py::value_error("not a rigid pose: its rotation is not valid, or a number is not finite");
   return {rotation, translation_m};
 }
 
@@ -156,7 +156,7 @@ RgbdFrame make_frame(const py::object& colors, const py::object& depths, Stamp s
     for (int y = 0; y < given.height(); ++y)
       for (int x = 0; x < given.width(); ++x) {
         if (given(x, y) < 0 || static_cast<std::size_t>(given(x, y)) >= classes().size())
-          throw py::value_error(fmt::format("labels: {} is no class", given(x, y)));
+          throw py::value_error(fmt::format("labels: {} is not a class", given(x, y)));
         ids(x, y) = static_cast<std::uint16_t>(given(x, y));
       }
     frame.semantics = one_hot(ids, nullptr);

@@ -26,7 +26,7 @@ class Ids {
     const Array<std::int64_t> all(given);
     for (py::ssize_t i = 0; i < all.size(); ++i) {
       if (all.data()[i] < 0 || all.data()[i] > UINT32_MAX)
-        throw py::value_error(fmt::format("{}: {} is no id", what, all.data()[i]));
+        throw py::value_error(fmt::format("{}: {} is not an id", what, all.data()[i]));
       ids_.push_back(static_cast<std::uint32_t>(all.data()[i]));
     }
   }

@@ -182,7 +182,7 @@ class PythonSimulation {
     for (const double number : place)
       if (!(std::abs(number) <= kFarthest_m))
         throw InputError(
-            fmt::format("pose ({}, {}, {}): is no place", place[0], place[1], place[2]));
+            fmt::format("pose ({}, {}, {}): is not a valid place", place[0], place[1], place[2]));
     return {{place[0], place[1]}, place[2]};
   }
   /// Takes the lock; other Python threads can run while this one waits for it.

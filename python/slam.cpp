@@ -25,9 +25,10 @@ SlamConfig config_of(const py::object& settings, const SlamConfig& base) {
   std::map<std::string, std::string> sections;
   for (const auto& [key, value] : settings.cast<py::dict>()) {
     if (!py::isinstance<py::str>(key))
-      throw InputError(fmt::format("settings: {} is no name", py::repr(key).cast<std::string>()));
+      throw InputError(
+          fmt::format("settings: {} is not a name", py::repr(key).cast<std::string>()));
     const auto full = key.cast<std::string>();
-    if (!is_setting(full)) throw InputError(fmt::format("settings: '{}' is no setting", full));
+    if (!is_setting(full)) throw InputError(fmt::format("settings: '{}' is not a setting", full));
     const auto dot = full.find('.');
     const std::string text = py::isinstance<py::bool_>(value)
                                  ? (value.cast<bool>() ? "true" : "false")

@@ -304,9 +304,10 @@ FloorPlane fitted(const std::vector<Vector3d>& points, double z_m,
   const double slope_rad = std::atan(plane.slope.norm());
   if (slope_rad >= kLevelFloor_rad && slope_rad <= kSteepest_rad) return plane;
   if (slope_rad > kSteepest_rad && warnings != nullptr)
-    warnings->push_back(fmt::format(
-        "{}: its floor slopes by {:.1f} degrees: taken as level (up to 2 degrees are followed)",
-        name, slope_rad * 180 / std::numbers::pi));
+    warnings->push_back(
+        fmt::format("{}: its floor slopes by {:.1f} degrees: treated as level (slopes of up to 2 "
+                    "degrees are followed)",
+                    name, slope_rad * 180 / std::numbers::pi));
   plane = {};
   plane.middle_m.z() = z_m;
   for (int i = 0; i < 3; ++i) plane = refitted(points, plane, 0.1, false);

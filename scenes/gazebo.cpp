@@ -61,7 +61,7 @@ class WorldReader {
     std::vector<std::string> collected;
     collected_.append_to(&collected);
     if (scene_.triangles.empty())
-      throw InputError(fmt::format("{}: has nothing to be seen{}", file_.string(),
+      throw InputError(fmt::format("{}: has nothing visible{}", file_.string(),
                                    collected.empty() ? "" : ": " + collected.front()));
     if (warnings != nullptr) warnings->insert(warnings->end(), collected.begin(), collected.end());
     meshes_.clear();
@@ -166,7 +166,7 @@ class WorldReader {
     } else if (const auto shape = gazebo::shape_of(geometry, look_of(visual))) {
       append_part(parts, *shape, world_from_visual, name, kVoid);
     } else {
-      collected_.add(fmt::format("{}: {}: its kind of shape is not shown", file_.string(), what));
+      collected_.add(fmt::format("{}: {}: this kind of shape is not shown", file_.string(), what));
     }
   }
 

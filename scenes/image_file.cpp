@@ -76,7 +76,7 @@ const char* png_fault(std::string_view bytes) {
     if (length > bytes.size() - at - 12) break;
     const auto* typed = reinterpret_cast<const Bytef*>(bytes.data() + at + 4);
     if (crc32(0, typed, static_cast<uInt>(length + 4)) != big_endian(bytes, at + 8 + length, 4))
-      return "is damaged: the sum of its bytes is wrong";
+      return "is damaged: its checksum is wrong";
     if (bytes.substr(at + 4, 4) == "IEND") return nullptr;
     at += 12 + length;
   }
@@ -162,7 +162,7 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form) {
   if (claims_too_much(bytes)) {
     const auto size = announced_size(bytes);
     throw InputError(
-        fmt::format("announces {} x {} pixels, more than its {} bytes can hold or anybody needs",
+        fmt::format("declares {} x {} pixels, more than its {} bytes can hold or the limit allows",
                     size->width, size->height, bytes.size()));
   }
   const std::string quiet = without_remarks(bytes);
@@ -174,7 +174,7 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form) {
     } catch (const cv::Exception&) {  // beyond OpenCV's own limits
     }
   if (image.empty() && form == ImageForm::kStored) image = decode_tga(bytes);
-  if (image.empty()) throw InputError("is not an image, or a damaged one");
+  if (image.empty()) throw InputError("is not an image, or is damaged");
   return image;
 }
 

@@ -111,7 +111,7 @@ void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_par
 
 void finish_parts(Scene& scene) {
   if (scene.triangles.empty())
-    throw InputError(fmt::format("scene {}: has nothing to be seen", scene.name));
+    throw InputError(fmt::format("scene {}: has nothing visible", scene.name));
   thin_images(scene);
   find_boxes(scene);
   rooms_from_floors(scene);

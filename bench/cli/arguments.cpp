@@ -122,11 +122,11 @@ void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
   std::error_code error;
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
-                                 fs::is_directory(file, error) ? "a folder" : "no file"));
+                                 fs::is_directory(file, error) ? "a folder" : "not a file"));
   for (const fs::path& input : read) require_other_file(file, input);
   if (!begins_with(file, head_of(file)))
-    throw InputError(
-        fmt::format("{}: is there already, and no file of this kind: name another", file.string()));
+    throw InputError(fmt::format("{}: already exists and is not a file of this kind: name another",
+                                 file.string()));
   make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 
@@ -141,8 +141,8 @@ void require_replaceable(const fs::path& file,
                          std::string_view kind, const std::vector<fs::path>& read) {
   if (!is_file(file)) return require_writable(file, read);
   if (const std::string text = read_file(file); !text.empty() && !is_ours(text))
-    throw InputError(
-        fmt::format("{}: is there already, and not from {}: name another", file.string(), kind));
+    throw InputError(fmt::format("{}: already exists and was not written by {}: name another",
+                                 file.string(), kind));
   require_writable(file, read);
 }
 
@@ -184,9 +184,9 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
   if (!ours)
     for (const std::string& name : names_)
       if (fs::exists(fs::symlink_status(folder / name, error)))
-        throw InputError(
-            fmt::format("{}: is there already, and not from `modelhouse {}`: name another folder",
-                        (folder / name).string(), command));
+        throw InputError(fmt::format(
+            "{}: already exists and was not written by `modelhouse {}`: name another folder",
+            (folder / name).string(), command));
   make_output_folder(folder);
   if (others == Others::kNone) hold_.take();
   if (ours) return;

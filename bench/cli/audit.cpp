@@ -82,7 +82,7 @@ void forget_other_audit(const std::filesystem::path& out) {
   for (const auto& [name, key] : *runs) same[name] = key;
   if (json.value("runs", nlohmann::ordered_json()) == same) return;
   for (const std::string& name : names_of_audit()) std::filesystem::remove(out / name);
-  fmt::print(stderr, "{}: removed audit.json, audit.csv and audit.txt: they are of other runs\n",
+  fmt::print(stderr, "{}: removed audit.json, audit.csv and audit.txt: they belong to other runs\n",
              out.string());
 }
 
@@ -93,10 +93,10 @@ WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
   how.cache = cache;
   how.planned = [&](const PlannedKeys& keys) {
     if (const auto runs = runs_of_results(out); runs && *runs != keys)
-      throw InputError(fmt::format(
-          "{}: holds results of other runs than {} has now: an audit goes beside its own results "
-          "(`bench --audit`), or into another --out",
-          out.string(), suite.file.string()));
+      throw InputError(
+          fmt::format("{}: holds results of runs that {} no longer has: an audit belongs beside "
+                      "its own results (`bench --audit`), or into another --out",
+                      out.string(), suite.file.string()));
   };
   how.say = [&](std::string_view stage) { progress.say(stage); };
   how.progress = [&](double share, std::string_view status) { progress.share(share, status); };

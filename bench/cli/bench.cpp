@@ -75,7 +75,8 @@ std::filesystem::path usual_folder(const Suite& suite, bool varied) {
 std::vector<std::string> words_in(const std::string& option, const std::string& text) {
   wordexp_t found{};
   if (wordexp(text.c_str(), &found, WRDE_NOCMD | WRDE_UNDEF) != 0)
-    throw InputError(fmt::format("{} '{}': are not words as a shell takes them", option, text));
+    throw InputError(
+        fmt::format("{} '{}': cannot be split into words as by a shell", option, text));
   std::vector<std::string> words(found.we_wordv, found.we_wordv + found.we_wordc);
   wordfree(&found);
   return words;
@@ -83,7 +84,7 @@ std::vector<std::string> words_in(const std::string& option, const std::string& 
 
 void run_shares(const Suite& suite, const SuiteOverrides& overrides, BenchOptions bench,
                 const BenchArguments& options) {
-  if (bench.shard.of > 1) throw InputError("--slurm: makes the shards itself, no --shard");
+  if (bench.shard.of > 1) throw InputError("--slurm: makes the shards itself: leave out --shard");
   if (options.audit) throw InputError("--slurm: audits nothing: run `audit` afterward");
   SlurmOptions slurm{.shares = *options.slurm,
                      .sbatch = words_in("--sbatch", options.sbatch),
@@ -98,7 +99,7 @@ void run_shares(const Suite& suite, const SuiteOverrides& overrides, BenchOption
   progress.end();
   std::string missing;
   if (!made.incomplete.empty())
-    missing = fmt::format("{} missing: of share {} of {}; see {}; the same command goes on",
+    missing = fmt::format("{} missing, from share {} of {}; see {}; the same command continues",
                           counted(made.results.missing.size(), "run"),
                           fmt::join(made.incomplete, ", "), *options.slurm,
                           share_folder(bench.out, made.incomplete.front()).string() + ".log");
@@ -132,7 +133,7 @@ void run(BenchArguments options) {
   if (options.slurm) return run_shares(suite, overrides, bench, options);
   std::vector<std::string> names = names_written(bench.out, suite);
   if (options.audit) {
-    if (bench.shard.of > 1) throw InputError("--audit: takes the whole suite, no --shard");
+    if (bench.shard.of > 1) throw InputError("--audit: needs the whole suite: leave out --shard");
     require_auditable(suite);
     if (!names.empty()) std::ranges::move(names_of_audit(), std::back_inserter(names));
   }

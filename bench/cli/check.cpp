@@ -134,7 +134,7 @@ void update(const CheckArguments& options, const Suite& suite, const Baseline& n
       const Baseline before = load_baseline(file);
       report(options, compare(before.runs, now.runs, suite.gate, false), suite.name);
     } catch (const InputError& error) {
-      fmt::print("cannot be compared with the baseline before: {}\n", error.what());
+      fmt::print("cannot be compared with the previous baseline: {}\n", error.what());
     }
   }
   save_baseline(now, file);

@@ -61,7 +61,8 @@ class Frames {
       return;
     }
     if (options.sources.size() != 1)
-      throw InputError("several sources: they must all be images (.png, .jpg), or one a recording");
+      throw InputError(
+          "several sources: they must all be images (.png, .jpg), or a single recording");
     Settings read;
     OpenedRecording opened =
         open_sequence(options.sources.front(), {.calibration = options.settings,
@@ -130,8 +131,8 @@ void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     for (const fs::path& place : {folder, file})  // boxes may be a folder
       if (fs::equivalent(place, options.out, error) && !error)
-        throw InputError(fmt::format("{}: lies in the folder to write, {}: name another",
-                                     file.string(), options.out));
+        throw InputError(fmt::format("{}: is in the output folder, {}: name another", file.string(),
+                                     options.out));
   }
 }
 
@@ -154,8 +155,8 @@ void require_no_other_images(const fs::path& out, const std::vector<std::size_t>
     if (const std::string name = image_name(i);
         is_there(out / name) && std::ranges::count(earlier, name) == 0)
       throw InputError(
-          fmt::format("{}: is there already, and not from `modelhouse detector run`: name another "
-                      "folder",
+          fmt::format("{}: already exists and was not written by `modelhouse detector run`: name "
+                      "another folder",
                       (out / name).string()));
 }
 
@@ -175,7 +176,7 @@ void replace_earlier(const fs::path& work, const fs::path& out, const std::strin
 void run(DetectorArguments options) {
   resolve(options.settings, Shipped::kSettings);
   const auto spec = options.detector.spec();
-  if (!spec) throw InputError("no detector is named: --network does");
+  if (!spec) throw InputError("no detector is given: name one with --network");
   const ReadScope reading;
   const Frames frames(options);
   const std::unique_ptr<Detector> detector = open_detector(*spec);

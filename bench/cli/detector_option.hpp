@@ -52,8 +52,7 @@ struct DetectorOption {
     const DetectorSpec named = spec;
     if (!settings.empty()) load_detector_settings(settings, spec);
     if (!file.empty() && (spec.network != named.network || spec.boxes != named.boxes))
-      throw InputError(fmt::format("{} is named, and {} names {}: one of them says what is run",
-                                   file, settings,
+      throw InputError(fmt::format("{} is given, but {} names {}: name only one", file, settings,
                                    (spec.network.empty() ? spec.boxes : spec.network).string()));
     return spec;
   }

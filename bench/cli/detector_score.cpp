@@ -238,7 +238,7 @@ void print_score(const Judged& judged) {
                return fmt::format("{} as {}", class_name(o.truth, "?"),
                                   class_name(o.found, "another of COCO's"));
              }));
-  fmt::print("of nothing: {}\n", most(s.false_alarms, [](const auto& key) {
+  fmt::print("found where there is no object: {}\n", most(s.false_alarms, [](const auto& key) {
                return fmt::format("{} on {}", class_name(key.first, "another of COCO's"),
                                   class_name(key.second, "void"));
              }));
@@ -298,10 +298,11 @@ DetectorSpec spec_of(DetectorScoreArguments& options) {
     if (std::find(options.scenes.begin(), name, *name) != name)
       throw InputError(fmt::format("--scenes: {} is named twice", *name));
   const auto spec = options.detector.spec();
-  if (!spec) throw InputError("no detector is named: --network does");
+  if (!spec) throw InputError("no detector is given: name one with --network");
   if (spec->network.empty())
-    throw InputError(fmt::format(
-        "{}: boxes of files are not of rendered rooms: a network is scored", spec->boxes.string()));
+    throw InputError(
+        fmt::format("{}: boxes from files do not belong to rendered rooms: name a network",
+                    spec->boxes.string()));
   return *spec;
 }
 
@@ -341,7 +342,7 @@ void fit(DetectorScoreArguments options) {
   require_unchanged(scope.record());
   require_not_read(options.out, scope.record());  // also the files of scenes and robot
   if (judged.real.mean.truths == 0)
-    throw InputError(fmt::format("no object of COCO's classes is in the {}: nothing is measured",
+    throw InputError(fmt::format("no object in the {} is of COCO's classes: nothing is measured",
                                  counted(judged.real.images, "image")));
   const DetectorConfig& measured = judged.real.dials;
   level.labels.detector = with_measured(level.labels.detector, measured);

@@ -55,7 +55,7 @@ void run(DriveArguments options) {
         std::pair(!options.pedestrian.empty(), "--pedestrian")})
     if (given && !driven)
       throw InputError(fmt::format(
-          "{}: motion '{}' moves a camera by hand, no robot drives along it", option, motion));
+          "{}: motion '{}' moves a handheld camera, no robot drives along it", option, motion));
   const std::filesystem::path out = options.out;
   std::optional<OutputFolder> folder;
   if (!options.out.empty()) {

@@ -68,7 +68,7 @@ void run(EpisodeArguments options) {
   overrides.set = options.set.values();
   const Suite suite = load_suite(options.suite, overrides);
   if (!suite.episodes)
-    throw InputError(fmt::format("{}: has no section `episodes`: nobody is kidnapped in it",
+    throw InputError(fmt::format("{}: has no section `episodes`: its robot is not kidnapped",
                                  suite.file.string()));
   const RunSpec chosen = chosen_run(suite, options);
   const std::filesystem::path out = options.out.empty()

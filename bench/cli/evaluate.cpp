@@ -119,7 +119,7 @@ Stamp parse_offset(const std::string& text) {
     return negative ? -offset_ns : offset_ns;
   } catch (const InputError&) {
     throw InputError(
-        fmt::format("--offset: '{}' is no time in seconds from -9.2e9 to 9.2e9", text));
+        fmt::format("--offset: '{}' is not a time in seconds from -9.2e9 to 9.2e9", text));
   }
 }
 
@@ -135,7 +135,7 @@ std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
     for (TimedPose& pose : both.second) {
       // Within these limits, differences of stamps fit into a Stamp.
       if (offset_ns > kLatest_ns - pose.stamp_ns || offset_ns < kEarliest_ns - pose.stamp_ns)
-        throw InputError("--offset: leads to stamps that are not from -1e7 to 9.2e9 s");
+        throw InputError("--offset: gives stamps that are not from -1e7 to 9.2e9 s");
       pose.stamp_ns += offset_ns;
     }
     return both;

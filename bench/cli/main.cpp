@@ -111,7 +111,7 @@ int run(int argc, char** argv) {
   mh::cli::add_reference(app);
   mh::cli::add_declarations(app);
   if (const char* word = option_without_value(argc, argv))
-    return fail(kBadInput, fmt::format("'{}': the value is missing behind it", word));
+    return fail(kBadInput, fmt::format("'{}': its value is missing", word));
   try {
     app.parse(argc, argv);
     return kGood;

@@ -88,7 +88,7 @@ OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
     throw InputError(file + ": no floor was found for it: heights and a grid mean nothing in it");
   OccupancyGrid grid = obstacle_grid(map, band);
   if (grid.cells.empty())
-    throw InputError(fmt::format("{}: knows nothing between {} m and {} m", file,
+    throw InputError(fmt::format("{}: knows nothing about heights from {} m to {} m", file,
                                  band.floor_z_m + band.ground_m,
                                  band.floor_z_m + band.robot_height_m));
   return grid;
@@ -98,7 +98,7 @@ OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
 GrayImage decode_gray_image(const std::string& bytes) {
   cv::Mat decoded = decode_image(bytes);
   if (decoded.depth() != CV_8U && decoded.depth() != CV_16U)
-    throw InputError("its pixels are neither of 8 nor of 16 bits");
+    throw InputError("its pixels have neither 8 nor 16 bits");
   if (decoded.depth() == CV_16U) decoded.convertTo(decoded, CV_8U, 1.0 / 257);
   const int channels = decoded.channels(), colors = std::min(channels, 3);
   GrayImage image{Grid2d<std::uint8_t>(decoded.cols, decoded.rows), {}};
@@ -184,8 +184,9 @@ void run(const MapMessagesArguments& options) {
   if (kind != ".mcap" && kind != ".bag")
     throw InputError(options.out + ": its name ends neither in .mcap (ROS 2) nor in .bag (ROS 1)");
   if (is_there(options.out) && !holds_map_messages(options.out))
-    throw InputError(options.out +
-                     ": is there already, and not from `modelhouse map messages`: name another");
+    throw InputError(
+        options.out +
+        ": already exists and was not written by `modelhouse map messages`: name another");
   const VoxelMap map = load_map(options.map);
   const MapStudy study{grid_of(map, options.map, options.band), find_objects(map)};
   write_map_messages(kind == ".mcap" ? *write_mcap(options.out) : *write_bag(options.out), map,
@@ -210,23 +211,24 @@ Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownM
       return *found;
     }
   }
-  throw InputError(fmt::format(
-      "goal '{}'{}: no free place within 1.5 m of it, no wall between, can be reached from {}",
-      meant.front().name,
-      meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
-      place(from_m)));
+  throw InputError(
+      fmt::format("goal '{}'{}: no free place within 1.5 m of it, without a wall between, can be "
+                  "reached from {}",
+                  meant.front().name,
+                  meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
+                  place(from_m)));
 }
 
 /// @throws InputError if a robot cannot stand at a place of the grid.
 void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& grid,
                    const FloorGrid& floor, double clearance_m) {
   const auto cell = grid.cell_of(at);
-  if (!cell) throw InputError(fmt::format("{} {} is outside of the map", what, place(at)));
+  if (!cell) throw InputError(fmt::format("{} {} is outside the map", what, place(at)));
   const std::int8_t state = grid.cells(cell->x(), cell->y());
   if (state == kUnknownCell)
     throw InputError(fmt::format("{} {} is in unknown space", what, place(at)));
   if (state == kOccupiedCell)
-    throw InputError(fmt::format("{} {} is inside of an obstacle", what, place(at)));
+    throw InputError(fmt::format("{} {} is inside an obstacle", what, place(at)));
   if (const double has_m = floor.clearance_at(at); has_m < clearance_m)
     throw InputError(
         fmt::format("{} {} has {:.2f} m to the nearest obstacle or unknown space, "
@@ -237,7 +239,7 @@ void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& gr
 void run(const MapPlanArguments& options) {
   const NewFolders made(std::filesystem::path(options.out).parent_path());
   if (options.to.empty() == options.thing.empty())
-    throw InputError("plan: the goal is either --to or --to-object");
+    throw InputError("plan: give the goal by either --to or --to-object");
   if (!options.out.empty())
     require_replaceable(options.out, kPathHead, "`modelhouse map plan`", {options.map});
   const VoxelMap map = load_map(options.map);

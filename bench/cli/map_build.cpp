@@ -174,7 +174,7 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
     }
   }
   if (!any_depth)
-    throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without",
+    throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without it",
                                  options.source, counted(keyframes.kept, "keyframe")));
   return keyframes;
 }
@@ -230,7 +230,7 @@ void remove_earlier(const fs::path& folder) {
 void check(const MapBuildArguments& options) {
   options.check();
   if (!options.map.empty() && !options.poses.empty())
-    throw InputError("--map and --poses: one of them says where the frames are");
+    throw InputError("--map and --poses: give only one, which says where the frames are");
   if (options.every != 1 && options.map.empty() && options.poses.empty())
     throw InputError("--every: is for --poses and --map: SLAM chooses its keyframes itself");
   if (options.score && !options.is_scene())

@@ -107,7 +107,7 @@ void refuse_older_sequence(const fs::path& folder) {
   if (!is_folder(folder) || fs::exists(folder / "render.json"))
     return;  // compared later, when all settings are known
   if (const fs::path part = part_of_sequence(folder); !part.empty())
-    throw InputError(fmt::format("{}: holds a sequence already ({}); name another folder",
+    throw InputError(fmt::format("{}: already holds a sequence ({}); name another folder",
                                  folder.string(), part.filename().string()));
 }
 
@@ -140,8 +140,8 @@ std::vector<std::string> names_written(const fs::path& out) {
 const MountedCamera* find_camera(const RenderArguments& options, const Robot& robot) {
   if (options.camera.empty()) return nullptr;
   if (!robot.equipment)
-    throw InputError(fmt::format("--camera {}: robot '{}' has no other cameras than its own",
-                                 options.camera, robot.name));
+    throw InputError(
+        fmt::format("--camera {}: robot '{}' has no further cameras", options.camera, robot.name));
   for (const MountedCamera& mounted : robot.equipment->cameras)
     if (mounted.name == options.camera) return &mounted;
   throw InputError(

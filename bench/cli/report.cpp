@@ -149,7 +149,7 @@ void add_plot(CLI::App& app) {
       "Needs gnuplot (Debian: gnuplot-nox).");
   command->callback([options, command, figure] {
     if (figure->empty() && command->get_option("--table")->empty())
-      throw InputError("plot: either --figure or --table says what to draw");
+      throw InputError("plot: give either --figure or --table");
     const int number = figure->empty() ? 0 : options->order.figure;
     if (!options->order.run.empty() && number != 2 && number != 5)
       throw InputError(fmt::format("--run {}: is for figures 2 and 5", options->order.run));

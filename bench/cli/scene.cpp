@@ -183,8 +183,8 @@ void require_mesh_writable(const fs::path& out, const std::vector<fs::path>& rea
   require_writable(out, read);
   const fs::path labels = labels_path(out);
   if (out.extension() == ".ply" && fs::exists(labels) && !is_labels_file(labels))
-    throw InputError(fmt::format(
-        "{}: is there already, and would be overwritten: name another --out", labels.string()));
+    throw InputError(fmt::format("{}: already exists and would be overwritten: name another --out",
+                                 labels.string()));
 }
 
 void require_ending(const SceneArguments& options, const std::vector<std::string>& endings) {
@@ -262,7 +262,7 @@ nlohmann::ordered_json facts_json(const GeneratedReference& reference, const Gen
 void make(const SceneArguments& options) {
   const GeneratedReference reference{options.scene, options.seed};
   if (options.scan_look && options.out.empty())
-    throw InputError("--scan-look writes a mesh: name its file by --out FILE.glb or FILE.ply");
+    throw InputError("--scan-look writes a mesh: name its file with --out FILE.glb or FILE.ply");
   if (options.scan_look)
     require_ending(options, {".glb", ".ply"});
   else if (!options.out.empty())
@@ -279,7 +279,7 @@ void make(const SceneArguments& options) {
     const std::string text = with_detail(plan);
     if (is_file(options.out) && read_file(options.out) != text)  // may have been edited by hand
       throw InputError(
-          fmt::format("{}: is there already, and differs: name another file", options.out));
+          fmt::format("{}: already exists and differs: name another file", options.out));
     write_atomically(options.out, text);
     return;
   }

@@ -98,8 +98,8 @@ void print_table(const std::vector<MeasuredPlace>& places, const std::vector<Rea
     std::vector<std::string> outside;
     for (const std::size_t i : row.outside)
       outside.push_back(fmt::format("{} ({})", places[i].name, shown(places[i].at(q, 0.5))));
-    fmt::print("  {} whose median leaves {}'s 5 to 95 %: {}\n", counted(outside.size(), "place"),
-               real.front().name, fmt::join(outside, ", "));
+    fmt::print("  {} whose median is outside {}'s 5 to 95 %: {}\n",
+               counted(outside.size(), "place"), real.front().name, fmt::join(outside, ", "));
   }
 }
 

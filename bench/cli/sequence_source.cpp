@@ -31,8 +31,8 @@ Settings settings_beside(const SourceOptions& options, const Sequence& frames,
     settings.slam = named.slam;
     settings.notes = std::move(named.notes);
     if (named.has_camera && named.camera != frames.camera())
-      settings.notes.push_back(
-          fmt::format("{}: its camera gives way to that of {}", options.settings, options.source));
+      settings.notes.push_back(fmt::format("{}: its camera is replaced by that of {}",
+                                           options.settings, options.source));
   }
   settings.notes.insert(settings.notes.end(), notes.begin(), notes.end());
   settings.camera = frames.camera();
@@ -88,7 +88,7 @@ void SourceOptions::check() const {
 std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,
                            std::size_t offered) {
   std::string text = fmt::format(
-      "{}: nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
+      "{}: nothing could be mapped: none of {} showed 100 keypoints with depth to start with",
       source, counted(offered, "frame"));
   if (offered == 0) return text;
   std::vector<double> depths_m;

@@ -50,7 +50,7 @@ void apply_settings(const SlamArguments& options, SlamConfig& of_map,
       list += fmt::format("{}{}.{}", list.empty() ? "" : ", ", section, line.substr(2));
   }
   if (!list.empty())
-    notes.push_back(fmt::format("{}: the map's own settings count: {}", options.settings, list));
+    notes.push_back(fmt::format("{}: the map's own settings are used: {}", options.settings, list));
 }
 
 /// Returns a new state, or that of the map file.
@@ -64,7 +64,7 @@ SlamState first_state(const SlamArguments& options,
     Camera made_by = state.camera;  // without the learned disparity_sigma_px
     if (!made_by.disparity_sigma_is_given) made_by.disparity_sigma_px = Camera{}.disparity_sigma_px;
     if (made_by != settings.camera)
-      throw InputError(fmt::format("{}: was made with another camera", options.map));
+      throw InputError(fmt::format("{}: was made with a different camera", options.map));
     if (!options.settings.empty()) apply_settings(options, state.config, settings.notes);
     if (!options.resume) {  // the map's frames are from another sequence
       rewind(state);
@@ -83,9 +83,9 @@ SlamState first_state(const SlamArguments& options,
 void check(const SlamArguments& options) {
   options.check();
   if (options.localize && options.map.empty())
-    throw InputError("--localize needs a map: name one by --map");
+    throw InputError("--localize needs a map: name one with --map");
   if (options.resume && options.map.empty())
-    throw InputError("--resume needs a map: name one by --map");
+    throw InputError("--resume needs a map: name one with --map");
   if (options.resume && options.protocol)
     throw InputError("--protocol and --resume: held-out frames need a whole run");
 }
@@ -105,7 +105,7 @@ std::size_t first_frame(const SlamArguments& options, const SlamState& state,
   }
   if (first == frames.size())
     throw InputError(fmt::format(
-        "{}: nothing is left to go on with: it ends at {} s, and the run of {} was fed until {} s",
+        "{}: nothing is left to resume: it ends at {} s, and the run in {} got as far as {} s",
         options.source, format_stamp(last_ns), options.map, format_stamp(*state.last_stamp_ns)));
   return first;
 }
@@ -181,8 +181,8 @@ void run(SlamArguments options) {
     require_writable(file);
     if (!options.save_map.empty() &&
         fs::absolute(file).lexically_normal() == fs::absolute(options.save_map).lexically_normal())
-      throw InputError(
-          fmt::format("--save-map {}: will hold a result of its own", options.save_map));
+      throw InputError(fmt::format(
+          "--save-map {}: is the name of another result: choose another name", options.save_map));
   }
   if (!options.save_map.empty()) {
     require_writable(options.save_map,

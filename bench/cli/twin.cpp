@@ -123,7 +123,7 @@ void print(const std::vector<TwinFrame>& frames, const std::vector<TwinRow>& row
   for (const TwinRow& row : rows)
     fmt::print("{:<48}{:>12}{:>12}\n", row.name, shown(row.recorded), shown(row.rendered));
   fmt::print(
-      "(of the last three, \"rendered\" is the bound: the same rendering with other noise)\n");
+      "(for the last three, \"rendered\" is a bound: the same rendering with different noise)\n");
   std::vector<double> differences;
   for (const TwinFrame& frame : frames)
     if (frame.depth_difference_m) differences.push_back(*frame.depth_difference_m);

@@ -135,7 +135,7 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
       for (const PageFile& file : kPage)
         if (target == file.target)
           return reply(http::status::ok, file.type, read_file(server_.page / file.file));
-    reply(http::status::not_found, "text/plain", "nothing is here\n");
+    reply(http::status::not_found, "text/plain", "nothing found here\n");
   }
 
   void reply(http::status status, const char* type, std::string body) {
@@ -239,7 +239,7 @@ std::string LiveServer::Impl::refusal(const http::request<http::string_body>& re
   }
   if (const std::string origin = text_of(request[http::field::origin]);
       !origin.empty() && origin != "http://" + host)
-    return "another page may not open this";
+    return "pages from other sites may not open this";
   return "";
 }
 
@@ -253,10 +253,9 @@ LiveServer::LiveServer(const LiveAddress& address, const std::filesystem::path& 
   impl_->heard = std::move(heard);
   Error error;
   const auto host = asio::ip::make_address(address.host, error);
-  if (error) throw InputError(fmt::format("host '{}': is no address", address.host));
+  if (error) throw InputError(fmt::format("host '{}': is not an address", address.host));
   if (address.token.empty() && !host.is_loopback())
-    throw InputError(
-        fmt::format("host {}: whoever is not on this machine needs a token", address.host));
+    throw InputError(fmt::format("host {}: viewers on other machines need a token", address.host));
   if (!std::ranges::all_of(address.token, [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '-' || c == '_';
       }))

@@ -57,7 +57,7 @@ std::vector<bool> increasing_stamps(const Sequence& sequence) {
 }
 
 std::string stamp_fault(const Sequence& sequence, std::size_t i) {
-  return fmt::format("frame {}: its stamp, {} s, does not increase among its neighbors'", i,
+  return fmt::format("frame {}: its stamp, {} s, is out of order with its neighbors'", i,
                      format_stamp(sequence.stamp_ns(i)));
 }
 

@@ -71,8 +71,7 @@ std::string heading(const Suite& suite, const SystemPair& systems, std::size_t l
 std::string zero_text(std::span<const Comparison> comparisons) {
   if (std::ranges::none_of(comparisons, ends_at_zero)) return "";
   return "  an interval ends at 0 where few differ: resamples without these show no difference; p "
-         "is "
-         "of the signs of these few\n";
+         "comes from the signs of these few\n";
 }
 
 }  // namespace

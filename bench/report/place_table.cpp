@@ -242,7 +242,7 @@ std::string block_text(const Block& block, Extent extent) {
   text += failing_stages(block) + mapping_details(block);
   if (block.detailed.size() < block.rows.size())
     text +=
-        "  plain: the same runs as above, since it looks at no labels; their details stand there\n";
+        "  plain: the same runs as above, since it ignores labels; their details are shown there\n";
   return text + common_ate(block) + penalties(block);
 }
 

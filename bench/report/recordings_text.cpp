@@ -87,7 +87,7 @@ std::string other_frame_text(const Runs& runs) {
 
 std::string recordings_text(const Suite& suite, std::span<const RunResult> runs) {
   if (std::ranges::none_of(suite.environments, &Environment::is_recorded)) return "";
-  std::string text = "\nrecordings have one noise: trials differ in RANSAC's draws alone\n";
+  std::string text = "\nrecordings have only one noise: trials differ only in RANSAC's draws\n";
   for (const Environment& environment : suite.environments)
     if (const Runs of_it = first_runs(runs, environment);
         environment.is_recorded() && !of_it.empty())

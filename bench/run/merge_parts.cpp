@@ -56,7 +56,7 @@ void merge_parts(const fs::path& out, const std::vector<fs::path>& parts,
   for (const fs::path& part : parts) {
     const bool itself = fs::equivalent(part, out);
     if (itself || store.merge(part / "results.sqlite") == 0)
-      say(fmt::format("{}: holds no result that is not here already", part.string()));
+      say(fmt::format("{}: holds no new results: all of them are here already", part.string()));
     if (!itself) copy_files(part, out);
   }
 }

@@ -68,7 +68,7 @@ void require_version(SQLite::Database& db, const fs::path& file) {
   const int version = version_of(db);
   if (version == kSchemaVersion) return;
   if (version == 0)
-    throw InputError(fmt::format("{}: is a database, but no results file", file.string()));
+    throw InputError(fmt::format("{}: is a database, but not a results file", file.string()));
   throw InputError(
       version > kSchemaVersion
           ? fmt::format("{}: has schema {}, this version of modelhouse reads {}: use a newer one",

@@ -107,7 +107,7 @@ void require_all_rows(SQLite::Database& db, const std::filesystem::path& file) {
       db, fmt::format("SELECT {} - (SELECT coalesce(sum(row_count), 0) FROM runs)", of_all));
   left.executeStep();
   if (left.getColumn(0).getInt64() != 0)
-    fail(fmt::format("{} are of a run that its table 'runs' has lost",
+    fail(fmt::format("{} belong to a run that its table 'runs' has lost",
                      counted(static_cast<std::size_t>(left.getColumn(0).getInt64()), "row")));
   SQLite::Statement plan(db,
                          "SELECT run_count, (SELECT count(*) FROM plan) AS found FROM suite "

@@ -179,7 +179,7 @@ Environments read_environments(const YamlReader& list, const SuitePaths& paths,
       Environment place = place_of(e, paths);
       if (const auto same = std::ranges::find(places, place); same != places.end())
         node.fail(fmt::format(
-            "'{}' is '{}' once more: statistics take environments for independent (`trials` "
+            "'{}' repeats '{}': statistics assume that environments are independent (`trials` "
             "repeats a run; `count` needs an {{i}} in the scene, the sequence or a tour)",
             e.name, all.list[static_cast<std::size_t>(same - places.begin())].name));
       places.push_back(std::move(place));

@@ -323,8 +323,8 @@ std::string unseen_program(const OutsideProgram& program) {
     if (std::ranges::any_of(seen, [&](const ProgramFile& f) { return f.word == word.token.raw; }))
       return {};
     return fmt::format(
-        "warning: outside program '{}': which file '{}' is cannot be seen: list it under `inputs`, "
-        "or its results stay when it changes",
+        "warning: outside program '{}': cannot tell which file '{}' is: list it under `inputs`, or "
+        "old results are kept when it changes",
         program.name, word.token.raw);
   }
   return {};

@@ -99,9 +99,9 @@ void validate(const OutsideProgram& program) {
     return std::string();
   });
   if (const std::string quoted = quoted_placeholder(program.command); !quoted.empty())
-    fail(fmt::format("{} stands within quotes: its value comes quoted", quoted));
+    fail(fmt::format("{} is inside quotes: its value is already quoted", quoted));
   if (dataset && !writes_trajectory)
-    fail("{trajectory} is missing: where is it to write its poses?");
+    fail("{trajectory} is missing: where should the program write its poses?");
 }
 
 std::string described(const OutsideProgram& program) {

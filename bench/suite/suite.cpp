@@ -66,7 +66,7 @@ Environment& only_environment(Suite& suite, const char* option) {
     throw InputError(fmt::format("{}: {} needs a suite of one environment, this has {}",
                                  suite.file.string(), option, suite.environments.size()));
   if (suite.environments.front().is_recorded())
-    throw InputError(fmt::format("{}: {} is of scenes, and '{}' is a recording",
+    throw InputError(fmt::format("{}: {} is for scenes, but '{}' is a recording",
                                  suite.file.string(), option, suite.environments.front().name));
   return suite.environments.front();
 }
@@ -81,7 +81,7 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
       levels.push_back(named_file(level, paths, Shipped::kLevel));
       const std::string name = level_name(levels.back());
       if (!names.insert(name).second) level.fail(fmt::format("'{}' is listed twice", name));
-      if (name == kRecordedLevel) level.fail("is what the level of recordings is called");
+      if (name == kRecordedLevel) level.fail("is reserved for the level of recordings");
     }
   } else if (const auto named = yaml.find("levels")) {
     named->fail("are settings of simulated sensors: a suite of recordings has none");
@@ -96,7 +96,8 @@ void check_boxes(const YamlReader& node, const Labels& labels, const Suite& suit
   for (const Environment& e : suite.environments)
     if (e.query_tour || e.queries)
       node.fail(fmt::format(
-          "boxes are of the frames of one sequence, and '{}' has a second to be queried", e.name));
+          "boxes belong to the frames of one sequence, but '{}' has a second one for queries",
+          e.name));
 }
 
 /// Reads the kinds of labels: each must fit some environment, and each environment needs at least
@@ -116,7 +117,7 @@ std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
       continue;
     node.fail(labels.mode == LabelMode::kRecorded
                   ? "'recorded' labels are a recording's (`sequence`), and no environment is one"
-                  : fmt::format("'{}' labels are drawn of a simulated scene; recordings have "
+                  : fmt::format("'{}' labels are rendered from a simulated scene; recordings have "
                                 "'recorded' ones, a detector's or 'none'",
                                 name(labels)));
   }
@@ -160,7 +161,7 @@ std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
   const auto value = overrides.set.find(name);
   if (value == overrides.set.end())
     throw InputError(fmt::format(
-        "'${{{0}}}' is not set: --set {0}=VALUE does{1}", name,
+        "'${{{0}}}' is not set: use --set {0}=VALUE{1}", name,
         overrides.set.empty() ? "" : fmt::format(" (set is '{}')", overrides.set.begin()->first)));
   return value->second;
 }
@@ -186,8 +187,8 @@ std::vector<Sense> read_senses(YamlReader& yaml, const std::vector<Environment>&
     for (const Environment& e : environments) {
       if (sense == Sense::kImu) continue;
       if (e.is_recorded() || !is_driven(e.mapping_tour))
-        node.fail(fmt::format("is of a robot that drives, and '{}' is {}", e.name,
-                              e.is_recorded() ? "a recording" : "mapped by hand"));
+        node.fail(fmt::format("is for a robot that drives, but '{}' is {}", e.name,
+                              e.is_recorded() ? "a recording" : "a handheld scan"));
     }
   }
   return senses;
@@ -232,7 +233,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     if (!asked.contains(name))
       throw InputError(
           fmt::format("{}: --set {}: nothing in it is called ${{{}}}{}", file.string(), name, name,
-                      is_setting(name) ? "; a setting of SLAM stands in the suite, under `slam:`"
+                      is_setting(name) ? "; SLAM settings go into the suite, under `slam:`"
                                        : did_you_mean(name, {asked.begin(), asked.end()})));
   const SuitePaths paths{file.parent_path(), files_must_exist, overrides.found};
 
@@ -284,8 +285,8 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
           "Sweep over tuning rooms, in a suite without 'study', and state the point chosen");
     if (!any_system_varies(suite))
       sweep->fail(
-          "no system of the suite uses what is varied: the plain one ignores what is of "
-          "labels, an outside one all settings of SLAM");
+          "no system of the suite uses what is varied: the plain one ignores settings of labels, "
+          "an outside one all SLAM settings");
   }
   if (yaml.has("episodes")) suite.protocol = live_feed();  // a driving robot cannot rewind
   SettingsReader protocol(yaml);
@@ -298,7 +299,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     for (const Environment& e : suite.environments)
       if (e.query_tour || e.queries) {
         suite.notes.push_back(
-            fmt::format("{}: protocol.test_interval is 0: no frame is queried, not even of the "
+            fmt::format("{}: protocol.test_interval is 0: no frame is queried, not even from the "
                         "second tour of '{}'",
                         file.string(), e.name));
         break;
@@ -309,13 +310,13 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     for (const Environment& e : suite.environments)
       if (e.is_recorded())
         graded->fail(
-            fmt::format("queries are drawn from a scene, and '{}' is a recording", e.name));
+            fmt::format("queries are drawn from a scene, but '{}' is a recording", e.name));
   }
   if (const auto episodes = yaml.find("episodes")) {
     suite.episodes = read_episodes(*episodes, paths);
     for (const Environment& e : suite.environments)
       if (e.is_recorded())
-        episodes->fail(fmt::format("a robot drives in a scene, and '{}' is a recording", e.name));
+        episodes->fail(fmt::format("a robot drives in a scene, but '{}' is a recording", e.name));
   }
   if (const auto check = yaml.find("check")) {
     std::vector<std::string> names_of_all;

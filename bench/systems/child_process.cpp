@@ -120,8 +120,9 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   if (talk == Talk::kOverPipes) {
     // A socket, not a pipe: writing to a program that has exited must return an error, not raise
     // SIGPIPE.
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in) != 0) machine("no socket");
-    if (pipe2(out, O_CLOEXEC) != 0) machine("no pipe");
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in) != 0)
+      machine("cannot create a socket");
+    if (pipe2(out, O_CLOEXEC) != 0) machine("cannot create a pipe");
   } else {
     in[1] = open("/dev/null", O_RDONLY | O_CLOEXEC);
   }

@@ -111,7 +111,7 @@ class Conversation {
     const auto id = reply.find("id");
     if (id == reply.end() || !id->is_number_integer())
       fail(fmt::format("gave no request number (\"id\") in '{}'", shortened(line)));
-    if (*id != number_) fail(fmt::format("replied to request {}, which was not asked", id->dump()));
+    if (*id != number_) fail(fmt::format("replied to request {}, which was not sent", id->dump()));
     for (const auto& [key, value] : reply.items())
       if (key != "id" && !known.contains(key))
         fail(fmt::format("gave an unknown key '{}'", shortened(key)));
@@ -197,7 +197,7 @@ class Conversation {
       fail(fmt::format("nested its reply more than {} levels deep: '{}'", kDeepestJson,
                        shortened(line)));
     if (line.find('\0') != std::string::npos)  // a parser would take it for the end
-      fail(fmt::format("wrote what is not a line of JSON: '{}'", shortened(line)));
+      fail(fmt::format("wrote something that is not a line of JSON: '{}'", shortened(line)));
     Json reply;
     std::vector<std::set<std::string>> keys;  // of the open objects, innermost last
     std::string doubled;
@@ -216,7 +216,7 @@ class Conversation {
       const bool nan = small.starts_with("{") && (small.find("nan") != std::string::npos ||
                                                   small.find("inf") != std::string::npos);
       fail(fmt::format("wrote {}: '{}'",
-                       nan ? "a number that is not finite" : "what is not a line of JSON",
+                       nan ? "a number that is not finite" : "something that is not a line of JSON",
                        shortened(line)));
     }
     if (!reply.is_object()) fail(fmt::format("wrote no JSON object: '{}'", shortened(line)));
@@ -235,7 +235,8 @@ class Conversation {
                        shortened(it->dump())));
     for (std::size_t k = 0; k < v.size(); ++k) {
       if (!(*it)[k].is_number())
-        fail(fmt::format("gave a pose that is not of numbers: {}", shortened(it->dump())));
+        fail(
+            fmt::format("gave a pose that does not consist of numbers: {}", shortened(it->dump())));
       v[k] = (*it)[k];
     }
     return told_pose(v, [this](const std::string& what) { fail(what); });

@@ -44,7 +44,7 @@ std::string written_text(const fs::path& home, ChildProcess& child) {
   require_readable(trajectory);
   const fs::path file = fs::canonical(trajectory, error);
   if (error || *file.lexically_relative(home).begin() == "..")
-    child.fail("made its trajectory a link out of its folder");
+    child.fail("made its trajectory a link to outside its folder");
   if (const auto bytes = fs::file_size(file, error); bytes > kLongest)
     child.fail(
         fmt::format("wrote a trajectory of {} MB, {} MB is the most", bytes >> 20, kLongest >> 20));
@@ -70,8 +70,8 @@ Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frame
     if (frame) pose.stamp_ns = *frame;
   }
   if (first_strange)
-    child.fail(fmt::format("wrote {} of {} poses at stamps of no frame, the first at {}", strange,
-                           trajectory.size(), format_stamp(*first_strange)));
+    child.fail(fmt::format("wrote {} of {} poses at stamps that match no frame, the first at {}",
+                           strange, trajectory.size(), format_stamp(*first_strange)));
   for (std::size_t i = 1; i < trajectory.size(); ++i)
     if (trajectory[i].stamp_ns == trajectory[i - 1].stamp_ns)
       child.fail(

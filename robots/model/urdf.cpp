@@ -136,7 +136,7 @@ class Places {
                          stub(parent) + (child == parent ? "" : stub(child)) + text_of(joint));
     const auto [other, first] = way_up_.emplace(child, Way{name, parent});
     if (!first)
-      fail_at_joint(name, fmt::format("link '{}' hangs on two joints, '{}' and '{}'", child,
+      fail_at_joint(name, fmt::format("link '{}' is the child of two joints, '{}' and '{}'", child,
                                       other->second.joint, name));
     hanging_.push_back(child);
   }
@@ -147,8 +147,7 @@ class Places {
          way = way_up_.find(way->second.parent))
       if (!passed.insert(way->first).second)
         fail_at_joint(way->second.joint,
-                      fmt::format("link '{}' hangs in a circle of joints, no way leads to it from "
-                                  "a root",
+                      fmt::format("link '{}' is part of a cycle of joints, which no root leads to",
                                   way->first));
     leads_up_.merge(passed);
   }

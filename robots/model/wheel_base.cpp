@@ -67,7 +67,7 @@ std::string find_kind(WheelBase& base) {
     return "the axles of these wheels are parallel, but not to the base's y: it would not drive "
            "ahead";
   if (wheels.size() > kMostWheels)
-    return fmt::format("has {} joints: at most {} drive a base", wheels.size(), kMostWheels);
+    return fmt::format("has {} joints: a base may have at most {}", wheels.size(), kMostWheels);
   base.kind = WheelBase::Kind::kDifferential;
   base.middle_m.setZero();
   for (const WheelBase::Wheel& wheel : wheels)
@@ -82,7 +82,7 @@ std::string find_kind(WheelBase& base) {
       left != right || 2 * left != std::ssize(wheels))
     return fmt::format(
         "has {} joints on parallel axles, {} on the left and {} on the right: a differential base "
-        "has as many on either side",
+        "has the same number on each side",
         wheels.size(), left, right);
   return "";
 }

@@ -243,7 +243,7 @@ Twist2d Navigator::explore(const Perception& now) {
     progress_s_ = now.time_s;
   }
   if (steering.arrived || now.time_s - progress_s_ > 0.5 * config_.patience_s) {
-    say(steering.arrived ? "looks around" : "something is in its way: looks around here");
+    say(steering.arrived ? "looks around" : "something is in its path: looks around here");
     enter(NavigatorState::kLooking, now.time_s);
     return Twist2d::Zero();
   }
@@ -310,7 +310,7 @@ Twist2d Navigator::drive(const Perception& now) {
   if (now.time_s - planned_s_ >= kReplan_s) {
     planned_s_ = now.time_s;
     if (!find_way(at)) {
-      recover(now, "its way is blocked");
+      recover(now, "its path is blocked");
       return Twist2d::Zero();
     }
   }

@@ -186,7 +186,7 @@ class Expander {
       std::string chain;
       for (const fs::path& step : open_) chain += step.string() + " includes ";
       if (!circle) fail(from, include, fmt::format("more than {} includes deep", kDeepest));
-      throw InputError(fmt::format("{}{}: the includes lead in a circle", chain, own.string()));
+      throw InputError(fmt::format("{}{}: the includes form a cycle", chain, own.string()));
     }
     const Source* source = readable(file, include, from);
     if (source == nullptr) return;

@@ -90,7 +90,7 @@ std::optional<OgreMaterial> LookWriter::material_of(const XMLElement& script,
   }
   if (!found) found = stock_material(name);
   if (!found) {
-    collected_.add(fmt::format("{}: material {}: no script has it", file.string(), name));
+    collected_.add(fmt::format("{}: material {}: no script defines it", file.string(), name));
     return std::nullopt;
   }
   if (found->texture.empty()) return found;

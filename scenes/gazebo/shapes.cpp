@@ -101,7 +101,7 @@ std::optional<std::string> fault_of(const sdf::Geometry& geometry) {
                         std::initializer_list<double> numbers) -> std::optional<std::string> {
     const auto sound = [](double v) { return std::isfinite(v) && v > 0.0; };
     if (std::ranges::all_of(numbers, sound)) return std::nullopt;
-    return fmt::format("a {} of {}: its measures must be above 0", shape,
+    return fmt::format("a {} of {}: its dimensions must be above 0", shape,
                        fmt::join(numbers, " x "));
   };
   if (const auto* box = geometry.BoxShape())

@@ -57,7 +57,7 @@ std::unique_ptr<Source> parse_source(const fs::path& file, std::string text) {
   const XMLElement* root = source.document.RootElement();
   if (root == nullptr ||
       (std::strcmp(root->Name(), "sdf") != 0 && std::strcmp(root->Name(), "gazebo") != 0))
-    throw InputError(fmt::format("{}: is not SDF: its root is no <sdf>", file.string()));
+    throw InputError(fmt::format("{}: is not SDF: its root is not <sdf>", file.string()));
   const char* version = root->Attribute("version");
   int major = 1, minor = 0;
   std::sscanf(version == nullptr ? "1.9" : version, "%d.%d", &major, &minor);

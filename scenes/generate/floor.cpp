@@ -161,8 +161,8 @@ template <class Try>
 Draft first_that_fits(const std::string& name, const char* what, const Try& attempt) {
   for (std::uint64_t k = 1; k <= kTriedDrafts; ++k)
     if (std::optional<Draft> draft = attempt(k)) return std::move(*draft);
-  throw MachineError(
-      fmt::format("{}: no {} of {} drafts holds what it needs", name, what, kTriedDrafts));
+  throw MachineError(fmt::format("{}: no {} in {} drafts had room for all that it needs", name,
+                                 what, kTriedDrafts));
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ GeneratedPlan generate_plan(const GeneratedReference& reference) {
     Draft drawn = draw_shape(room, Dice(stream.fork(draft)), group);
     if (furnish(drawn)) return plan_of(drawn, fmt::format("{}-{}", category.name, reference.seed));
   }
-  throw MachineError(fmt::format("{}: no room of {} drafts holds what a {} of density {} needs",
+  throw MachineError(fmt::format("{}: none of {} drafts had room for what a {} of density {} needs",
                                  to_string(reference), kDrafts, room.name,
                                  density_group_name(group)));
 }

@@ -133,7 +133,7 @@ void check_in_room(const YamlReader& yaml, const HousePlan& house, const ItemPla
     const double depth =
         overlap_m(item.footprint(), {{{c.x0, c.y0}, {c.x1, c.y0}, {c.x1, c.y1}, {c.x0, c.y1}}});
     if (depth > kTouch)
-      yaml.fail(fmt::format("'{}' stands {:.2f} m in the corner that room '{}' lacks", item.name,
+      yaml.fail(fmt::format("'{}' reaches {:.2f} m into the corner cut out of room '{}'", item.name,
                             depth, room.name));
   }
   // Walls fill the space between the rooms' rectangles: a footprint that leaves its room intersects

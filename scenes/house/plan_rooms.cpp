@@ -22,8 +22,7 @@ FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
   const std::vector<double> n = size.as_numbers(2);
   if (n[0] <= 0 || n[1] <= 0 || n[0] > rect.x1 - rect.x0 - kLeft ||
       n[1] > rect.y1 - rect.y0 - kLeft)
-    size.fail(fmt::format("[{}, {}] is not part of the room that leaves {} m beside it", n[0], n[1],
-                          kLeft));
+    size.fail(fmt::format("[{}, {}] does not leave {} m of the room beside it", n[0], n[1], kLeft));
   yaml.finish();
   return {west ? rect.x0 : rect.x1 - n[0], south ? rect.y0 : rect.y1 - n[1],
           west ? rect.x0 + n[0] : rect.x1, south ? rect.y0 + n[1] : rect.y1};

@@ -114,7 +114,7 @@ std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::fil
   try {
     repaired.decoded = mend(gltf, file, body_of(chunks), lines);
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not sound glTF: {}", file.string(), error.what()));
+    throw InputError(fmt::format("{}: is not valid glTF: {}", file.string(), error.what()));
   }
   if (warnings != nullptr)
     for (const std::string& line : lines)

@@ -116,8 +116,8 @@ void warn_of_face_colors(std::string_view bytes, const fs::path& file,
     return element != header.elements.end() && element->find("red") != nullptr;
   };
   if (warnings != nullptr && has_colors("face") && !has_colors("vertex"))
-    warnings->push_back(fmt::format(
-        "{}: the colors of its faces are not read, those of vertices would be", file.string()));
+    warnings->push_back(
+        fmt::format("{}: its face colors are not read; vertex colors would be", file.string()));
 }
 
 /// assimp assigns a gray material to a mesh without one; vertex colors should show unchanged.
@@ -147,7 +147,7 @@ Scene scene_of(PlyMesh mesh, const fs::path& file, std::vector<std::string>* war
 /// Final steps common to all kinds of files.
 Scene finished(Scene scene, const fs::path& file) {
   if (scene.triangles.empty())
-    throw InputError(fmt::format("{}: has no faces to be seen", file.string()));
+    throw InputError(fmt::format("{}: has no visible faces", file.string()));
   if (format_of(file).ply && is_there(labels_path(file))) load_labels(scene, labels_path(file));
   find_boxes(scene);
   if (scene.rooms.empty()) rooms_from_floors(scene);

@@ -133,7 +133,7 @@ class Reader {
     for (const std::string_view option : texture.lost)
       warn(fmt::format("{}'s {} is left out", key, option));
     if (!is_base && base_ && texture.uvs != *base_)
-      warn(fmt::format("{} lies otherwise than map_kd: it is moved there", key));
+      warn(fmt::format("{} is placed differently from map_kd: it is drawn where map_kd is", key));
     if (is_base) base_ = texture.uvs;
     if (!is_base && base_) return;
     if (texture.uvs == MtlUvs())

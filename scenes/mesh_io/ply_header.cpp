@@ -109,7 +109,7 @@ class HeaderParser {
     if (words.size() == 5 && words[1] == "list") {
       const Type count_type = type_of(words[2]);
       if (count_type == Type::kFloat || count_type == Type::kDouble)
-        fail("a list counts in whole numbers");
+        fail("a list's count must be of an integer type");
       element.has_list = true;
       element.properties.push_back({std::string(words[4]), type_of(words[3]), count_type});
     } else if (words.size() == 3) {

@@ -57,7 +57,7 @@ class Labeler {
     const NamesById names =
         read_names({folder / "info_semantic.json", folder / "habitat" / "info_semantic.json"},
                    "objects", "id", "class_name");
-    if (names.empty()) warn("has objects, but no info_semantic.json beside it tells their classes");
+    if (names.empty()) warn("has objects, but no info_semantic.json beside it gives their classes");
     for (std::size_t face = 0; face < scene_.triangles.size(); ++face) {
       if (objects[face] == kNoObject) continue;
       scene_.instance_of[face] = object(objects[face]);

@@ -236,7 +236,7 @@ class GlbBuilder {
     const std::uint64_t size = 12 + 8 + text.size() + 8 + binary_.size();
     if (size > std::numeric_limits<std::uint32_t>::max())
       throw InputError(
-          fmt::format("scene {}: is too large for a GLB file, which ends at 4 GiB", scene_.name));
+          fmt::format("scene {}: is too large for a GLB file, which can hold 4 GiB", scene_.name));
     std::string file;
     file.reserve(static_cast<std::size_t>(size));
     const auto number = [&](std::uint64_t value) {

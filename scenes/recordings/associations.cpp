@@ -41,8 +41,8 @@ void refuse_poses(const std::string& text, const std::string& name) {
     if (all.empty()) continue;
     if (all.size() > 4 && is_number(all[1]))
       throw InputError(
-          fmt::format("{}:{}: '{}' is no file: a line is 'stamp file stamp file', and this one has "
-                      "{} words, a pose among them; pair the two lists of images alone",
+          fmt::format("{}:{}: '{}' is not a file: a line is 'stamp file stamp file', but this one "
+                      "has {} words, a pose among them; pair only the two lists of images",
                       name, number, all[1], all.size()));
     return;
   }
@@ -106,8 +106,7 @@ void sort_frames(std::vector<RecordedFrame>& frames, const fs::path& list,
   std::ranges::stable_sort(frames, {}, &RecordedFrame::stamp_ns);
   if (notes != nullptr)
     notes->push_back(
-        fmt::format("{}: its images are not in the order of their stamps: they are sorted by them",
-                    list.string()));
+        fmt::format("{}: its images are not ordered by timestamp: they are sorted", list.string()));
 }
 
 }  // namespace mh

@@ -113,10 +113,10 @@ RecordedCamera camera_of(const fs::path& folder, const std::vector<RecordedFrame
   for (const char* name : {"camera.yaml", "camera_info.yaml"})
     if (is_file(folder / name)) return config.read_camera(folder / name);
   if (is_file(folder / "calibration.txt")) return eth3d_camera(folder / "calibration.txt", frames);
-  throw InputError(
-      fmt::format("{}: holds neither camera.yaml nor camera_info.yaml nor ETH3D's "
-                  "calibration.txt; name a settings file by --settings, in a suite by `settings:`",
-                  folder.string()));
+  throw InputError(fmt::format(
+      "{}: holds neither camera.yaml nor camera_info.yaml nor ETH3D's "
+      "calibration.txt; name a settings file with --settings, in a suite with `settings:`",
+      folder.string()));
 }
 
 OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) {
@@ -141,7 +141,7 @@ void note_depth_scale(double depth_per_meter, const RecordingConfig& config,
   const std::optional<double> stated = config.depth_per_meter(config.calibration);
   if (stated && *stated != depth_per_meter)
     notes.push_back(
-        fmt::format("{}: its depth per meter, {:g}, gives way to {:g}, the recording's own",
+        fmt::format("{}: its depth per meter, {:g}, is replaced by {:g}, the recording's own",
                     config.calibration.string(), *stated, depth_per_meter));
 }
 

@@ -72,7 +72,7 @@ void note_frames_without_pose(const ListedFrames& listed, const std::string& tru
     return !std::ranges::binary_search(*listed.truth, frame.stamp_ns, {}, &TimedPose::stamp_ns);
   });
   if (without > 0)
-    notes.push_back(fmt::format("{}: {} of {} frames have no pose: they are offered, not scored",
+    notes.push_back(fmt::format("{}: {} of {} frames have no pose: they are used, but not scored",
                                 truth, without, listed.frames.size()));
 }
 

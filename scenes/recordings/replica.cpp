@@ -71,7 +71,7 @@ RecordedCamera camera_of(const fs::path& folder, const RecordingConfig& config) 
     if (file.empty())
       throw InputError(
           fmt::format("{}: cam_params.json is neither here nor beside this folder; "
-                      "name a settings file by --settings, in a suite by `settings:`",
+                      "name a settings file with --settings, in a suite with `settings:`",
                       folder.string()));
     return read_camera_file(file);
   }

@@ -117,7 +117,7 @@ OpenedRecording open_seven_scenes(const fs::path& path, const RecordingConfig& c
   if (camera.camera.width_px != depth.camera.width_px ||
       camera.camera.height_px != depth.camera.height_px)
     throw InputError(
-        fmt::format("{}: is of {} x {}; the depth camera of 7-Scenes, from which depth is "
+        fmt::format("{}: has {} x {} pixels; the depth camera of 7-Scenes, from which depth is "
                     "registered, has {} x {}",
                     config.calibration.string(), camera.camera.width_px, camera.camera.height_px,
                     depth.camera.width_px, depth.camera.height_px));

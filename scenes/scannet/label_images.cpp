@@ -23,7 +23,7 @@ constexpr zip_uint64_t kLargestEntry = 1U << 28;
 Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
   if (const char* fault = image_fault(bytes)) throw InputError(fmt::format("{}: {}", name, fault));
   if (!bytes.starts_with("\x89PNG"))
-    throw InputError(fmt::format("{}: is no PNG image, whose ids are exact", name));
+    throw InputError(fmt::format("{}: is not a PNG image: only PNG keeps ids exact", name));
   auto image = decode_gray16(bytes);
   if (!image) throw InputError(fmt::format("{}: is not an image of one channel", name));
   return std::move(*image);
@@ -60,7 +60,7 @@ class LabelZip : public LabelImages {
  public:
   LabelZip(HeldBytes bytes, const std::string& name) : held_(std::move(bytes)), name_(name) {
     // libzip rejects an empty buffer.
-    if (held_.view.empty()) throw InputError(fmt::format("{}: is empty: no zip", name_));
+    if (held_.view.empty()) throw InputError(fmt::format("{}: is empty, not a zip", name_));
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* source =

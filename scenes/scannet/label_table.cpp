@@ -113,7 +113,7 @@ class TableParser {
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-      fail(line, fmt::format("'{}' is no {}", text.substr(0, 40), what));
+      fail(line, fmt::format("'{}' is not a valid {}", text.substr(0, 40), what));
     return value;
   }
 

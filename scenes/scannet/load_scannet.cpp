@@ -56,7 +56,7 @@ class Loader {
     PlyMesh mesh = read_ply(files_.mesh);
     warn_of_bytes_left(mesh, files_.mesh, warnings_);
     if (mesh.triangles.empty())
-      throw InputError(fmt::format("{}: has no faces to be seen", files_.mesh.string()));
+      throw InputError(fmt::format("{}: has no visible faces", files_.mesh.string()));
     scene_.name = files_.scene_id;
     scene_.positions_m = std::move(mesh.positions_m);
     scene_.colors = std::move(mesh.colors);
@@ -246,8 +246,8 @@ class Loader {
         if (!claims.at(segment).in_mesh) absent.insert(segment);
     if (!absent.empty())
       warn(
-          fmt::format("{}: {} of the {} segments of its objects are no vertex's (such as segment "
-                      "{}): passed over",
+          fmt::format("{}: {} of the {} segments of its objects belong to no vertex (such as "
+                      "segment {}): ignored",
                       files_.aggregation.string(), absent.size(), claims.size(), *absent.begin()));
   }
 
@@ -270,7 +270,7 @@ class Loader {
     if (categories.size() > kTold) names += ", ...";
     warn(fmt::format("{}: {} of {} objects are of {} categories that {} lacks ({}): unlabeled",
                      files_.aggregation.string(), count, all, categories.size(),
-                     table_ ? table_->file : "the list of classes, for want of a label table,",
+                     table_ ? table_->file : "the list of classes, used without a label table,",
                      names));
   }
 

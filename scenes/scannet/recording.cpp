@@ -39,7 +39,7 @@ class ExtractedFolder : public Recording {
     for (const std::uint32_t number : color_.numbers())
       if (depth_.contains(number)) numbers_.push_back(number);
     if (numbers_.empty())
-      throw InputError(fmt::format("{}: no image of color/ has one of the same number in depth/",
+      throw InputError(fmt::format("{}: no image in color/ has one with the same number in depth/",
                                    folder.string()));
     info_.sensor = "extracted";
     info_.color = read_lens("color", announced(color_));
@@ -119,9 +119,8 @@ class ExtractedFolder : public Recording {
     const fs::path intrinsics = folder_ / "intrinsic" / ("intrinsic_" + which + ".txt");
     const fs::path extrinsics = folder_ / "intrinsic" / ("extrinsic_" + which + ".txt");
     if (!is_there(extrinsics))
-      notes_.push_back(
-          fmt::format("{}: is absent: the {} camera is taken to be the device's origin",
-                      extrinsics.string(), which));
+      notes_.push_back(fmt::format("{}: is missing: the {} camera is taken as the device's origin",
+                                   extrinsics.string(), which));
     const Eigen::Matrix4d placed =
         is_there(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity();
     if (!pose_of(placed, extrinsics.string()))
@@ -155,7 +154,7 @@ class ExtractedFolder : public Recording {
       return !color_.contains(number) && !depth_.contains(number);
     };
     note_alone("pose", NumberedFiles(folder_ / "pose", {".txt"}).numbers(), without_image,
-               "poses are of no image");
+               "poses belong to no image");
   }
 
   std::optional<SE3> read_pose(std::uint32_t number) {
@@ -221,12 +220,13 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
                     lens.cy_px >= 0 && lens.cx_px <= width_px - 1 && lens.cy_px <= height_px - 1;
   if (!good)
     throw InputError(
-        fmt::format("{}: fx {} fy {} cx {} cy {} are no intrinsics of an image of {} x {}", what,
+        fmt::format("{}: fx {} fy {} cx {} cy {} are not intrinsics of an image of {} x {}", what,
                     lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, width_px, height_px));
   for (const auto& [row, column] : {std::pair{0, 1}, {1, 0}, {2, 0}, {2, 1}})
     if (std::abs(intrinsics(row, column)) > 1e-6)
-      throw InputError(fmt::format("{}: row {}, column {} of the intrinsics is {}, a pinhole has 0",
-                                   what, row + 1, column + 1, intrinsics(row, column)));
+      throw InputError(fmt::format(
+          "{}: row {}, column {} of the intrinsics is {}, but a pinhole camera has 0 there", what,
+          row + 1, column + 1, intrinsics(row, column)));
   const auto placed = pose_of(extrinsics, what);
   if (!placed) throw InputError(fmt::format("{}: the extrinsics are not finite", what));
   RecordedLens result = lens;

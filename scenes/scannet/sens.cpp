@@ -121,8 +121,8 @@ class SensFile : public Recording {
   std::uint64_t read_header(Cursor& cursor) {
     const auto version = cursor.take<std::uint32_t>("the version");
     if (version != kVersion)
-      throw InputError(
-          fmt::format("{}: is of version {}; version {} is read", name_, version, kVersion));
+      throw InputError(fmt::format("{}: has version {}, but only version {} is supported", name_,
+                                   version, kVersion));
     const auto length = cursor.take<std::uint64_t>("the length of the sensor's name");
     if (length > kLongestName) cursor.fail(fmt::format("a sensor's name of {} bytes", length));
     info_.sensor = cursor.take_bytes(length, "the sensor's name");
@@ -166,7 +166,7 @@ class SensFile : public Recording {
         frames_.push_back(read_record(cursor, i));
       } catch (const Truncated& error) {
         if (frames_.empty()) throw;
-        notes_.push_back(fmt::format("{}; {} of {} frames are whole", error.what(), i, frames));
+        notes_.push_back(fmt::format("{}; {} of {} frames are complete", error.what(), i, frames));
         cursor.end();
         return;
       }
@@ -210,8 +210,7 @@ class SensFile : public Recording {
         frames_, [](Stamp a, Stamp b) { return a >= b; }, &FrameRecord::stamp_ns);
     if (back == frames_.end()) return;
     notes_.push_back(
-        fmt::format("{}: frame {} has no later stamp than the one before: frames "
-                    "count at 30 Hz",
+        fmt::format("{}: the stamp of frame {} is not later than the one before: 30 Hz is assumed",
                     name_, back - frames_.begin() + 1));
     for (std::size_t i = 0; i < frames_.size(); ++i)
       frames_[i].stamp_ns = static_cast<Stamp>(i) * 1'000'000'000 / 30;
@@ -228,8 +227,8 @@ class SensFile : public Recording {
     if (counted && cursor.left() % kMeasurement == 0 && cursor.left() / kMeasurement == count)
       return;
     notes_.push_back(
-        fmt::format("{}: the {} bytes behind frame {}, the last, are no whole number of inertial "
-                    "measurements and not read",
+        fmt::format("{}: the {} bytes after frame {}, the last, are not a whole number of inertial "
+                    "measurements and are not read",
                     name_, left, frames_.size() - 1));
   }
 
@@ -256,7 +255,7 @@ class SensFile : public Recording {
     if (const char* fault = image_fault(record.color))
       fail(index, fmt::format("the color image {}", fault));
     auto image = decode_color(record.color);
-    if (!image) fail(index, "the color image is not one of 3 x 8 bits, or damaged");
+    if (!image) fail(index, "the color image does not have 3 x 8 bits, or is damaged");
     if (image->width() != lens.width_px || image->height() != lens.height_px)
       fail_size(static_cast<std::uint64_t>(image->width()),
                 static_cast<std::uint64_t>(image->height()));
@@ -381,7 +380,8 @@ void save_sens(const fs::path& file, const RecordingInfo& info, std::size_t fram
     for (std::size_t i = 0; i < frames; ++i) {
       const RecordedMoment moment = frame_at(i);
       if (!fits(moment.color, info.color) || !fits(moment.depth, info.depth))
-        throw InputError(fmt::format("{}: frame {} has not the cameras' size", file.string(), i));
+        throw InputError(
+            fmt::format("{}: frame {} does not have the cameras' size", file.string(), i));
       const std::string color = encode_jpeg(moment.color, kRecordedJpegQuality);
       const std::string depth = compressed(moment.depth);
       const double lost = -std::numeric_limits<double>::infinity();

@@ -112,8 +112,8 @@ Tour planned(const Scene& scene, const Robot& robot, const Tour& tour) {
       if (!way) {
         const std::string outside = outside_rooms(scene, goal.position_m);
         throw InputError(fmt::format(
-            "{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached{}: no way from [{:.2f}, {:.2f}] "
-            "has room for a robot of {:.2f} m radius",
+            "{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached{}: no path from [{:.2f}, {:.2f}] "
+            "is wide enough for a robot of {:.2f} m radius",
             file_and_line(tour.file, goal.line), i + 1, goal.position_m.x(), goal.position_m.y(),
             !outside.empty()
                 ? outside

@@ -47,7 +47,7 @@ void validate(const HandheldConfig& config) {
   const auto check = [](const char* field, double value, double low, double high) {
     if (!(value >= low && value <= high))
       throw InputError(
-          fmt::format("hand-held motion: {}: {} is outside {} to {}", field, value, low, high));
+          fmt::format("handheld motion: {}: {} is outside {} to {}", field, value, low, high));
   };
   if (config.frames) check("frames", static_cast<double>(*config.frames), 30, 1e5);
   check("height_m", config.height_m, 0.3, kHead_m);

@@ -90,7 +90,7 @@ class OsmesaRenderer final : public Renderer {
     if (linked == 0) {
       std::array<char, 512> log{};
       gl_.GetProgramInfoLog(program_, static_cast<GLsizei>(log.size()) - 1, nullptr, log.data());
-      throw MachineError(fmt::format("OSMesa refuses the shaders: {}", log.data()));
+      throw MachineError(fmt::format("OSMesa rejects the shaders: {}", log.data()));
     }
     gl_.UseProgram(program_);
     gl_.Uniform1i(place("picture"), 0);

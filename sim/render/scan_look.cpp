@@ -207,11 +207,11 @@ void measure(const Scene& source, Scene& out) {
 Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& camera,
                 std::span<const SE3> world_from_camera, const ScanLookConfig& config) {
   if (config.voxel_m < 0.005 || config.voxel_m > 0.1 || config.band_m < 2 * config.voxel_m)
-    throw InputError(fmt::format(
-        "scan look: voxels of {} m in a band of {} m: wanted are 0.005 to 0.1 m and at least twice "
-        "that",
-        config.voxel_m, config.band_m));
-  if (world_from_camera.empty()) throw InputError("scan look: there is no view");
+    throw InputError(
+        fmt::format("scan look: voxels of {} m in a band of {} m: voxels must be 0.005 to 0.1 m, "
+                    "the band at least twice that",
+                    config.voxel_m, config.band_m));
+  if (world_from_camera.empty()) throw InputError("scan look: there are no views");
   const auto each_point = [&](const RenderedFrame& frame, const SE3& pose, const auto& use) {
     for (int y = 0; y < camera.height_px; y += 4)
       for (int x = 0; x < camera.width_px; x += 4)

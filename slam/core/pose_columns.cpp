@@ -124,7 +124,7 @@ void find_stamp(std::span<const Name> names, PoseColumns& columns) {
     });
   // If a single column is left and it is the first, it is the time, whatever its name.
   if (stamp == others.end() && (others.empty() || others.size() > 1 || others[0] != 0))
-    throw InputError("its columns are named, but none as a time");
+    throw InputError("its columns have names, but none of them is a time");
   columns.stamp = stamp == others.end() ? others[0] : *stamp;
   columns.unit = unit_of(names[columns.stamp]);
 }

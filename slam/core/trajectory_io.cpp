@@ -214,7 +214,7 @@ TimedPose pose_in(const Words& words, const PoseColumns& columns, const LinePlac
 Trajectory parse(const std::string& text, const std::string& name, std::vector<std::string>* notes,
                  bool may_be_empty) {
   if (text.find('\0') != std::string::npos)
-    throw InputError(name + ": is not text, as files of poses are");
+    throw InputError(name + ": is not text, and a file of poses must be");
   Layout layout = layout_of(text, name);
   if (!layout.columns.unit) {
     const StampRange range = range_of_stamps(text, layout);
@@ -222,7 +222,7 @@ Trajectory parse(const std::string& text, const std::string& name, std::vector<s
     const bool usual = *layout.columns.unit == (layout.is_table && range.whole ? -9 : 0);
     if (!usual && notes != nullptr)
       notes->push_back(
-          fmt::format("{}: its stamps are taken for {}", name, unit_name(*layout.columns.unit)));
+          fmt::format("{}: its stamps are taken as {}", name, unit_name(*layout.columns.unit)));
   }
   PoseCollector collector(name, notes == nullptr);
   for_each_line(text, [&](std::string_view line, int number) {
@@ -282,7 +282,7 @@ Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp p
     if (words.empty()) return true;
     const LinePlace place{name, number};
     if (words.size() != 12)
-      place.fail(fmt::format("pose: {}, expected 12 (3x4 matrix by rows)",
+      place.fail(fmt::format("pose: {}, expected 12 (3x4 matrix, row by row)",
                              counted(words.size(), "value")));
     Eigen::Matrix<double, 3, 4> matrix;
     for (int row = 0; row < 3; ++row)

@@ -101,7 +101,7 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
     throw InputError(fmt::format("{}: score {} is outside [0, 1]", place, box.score));
   if (box.network_class < 0 || static_cast<std::size_t>(box.network_class) >= names.size())
     throw InputError(
-        fmt::format("{}: class {} is none of the {} that are named, which count from {}", place,
+        fmt::format("{}: class {} is not one of the {} named classes, which count from {}", place,
                     box.network_class + first_class, names.size(), first_class));
 }
 
@@ -168,8 +168,9 @@ void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxe
       check(box, names, place);
       if (std::ranges::any_of(std::span(v).subspan(1, 4),
                               [](double share) { return std::abs(share) > kLargestShare; }))
-        throw InputError(fmt::format("{}: box {} {} {} {} is not in shares of the image", place,
-                                     v[1], v[2], v[3], v[4]));
+        throw InputError(
+            fmt::format("{}: box {} {} {} {} is not given as fractions of the image size", place,
+                        v[1], v[2], v[3], v[4]));
       boxes.push_back(box);
     });
   }
@@ -183,7 +184,7 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
     if (v.size() < 8)
       throw InputError(fmt::format("{}: {}, not {}", place, counted(v.size(), "number"), kColumns));
     const int frame = whole(v[0], "frame", place);
-    if (frame < 1) throw InputError(fmt::format("{}: frame {}: they count from 1", place, frame));
+    if (frame < 1) throw InputError(fmt::format("{}: frame {}: frames count from 1", place, frame));
     FiledBox box{.left = v[2] - 1,  // in MOT, the upper left pixel is (1, 1)
                  .top = v[3] - 1,
                  .width = v[4],
@@ -203,23 +204,22 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
   using Json = nlohmann::json;
   const std::string text = read_text(file);
   if (is_nested_too_deep(text))
-    throw InputError(fmt::format("{}: is nested too deep", file.string()));
+    throw InputError(fmt::format("{}: is nested too deeply", file.string()));
   Json json;
   try {
     json = Json::parse(text);
   } catch (const Json::out_of_range&) {
-    throw InputError(
-        fmt::format("{}: holds a number that is beyond a double's range", file.string()));
+    throw InputError(fmt::format("{}: holds a number beyond the range of a double", file.string()));
   } catch (const Json::parse_error& error) {
     const std::string_view before = std::string_view(text).substr(0, error.byte);
     throw InputError(fmt::format("{}:{}: is not JSON (which has no NaN and no comments)",
                                  file.string(), 1 + std::ranges::count(before, '\n')));
   }
   if (json.is_object() && json.contains("annotations"))
-    throw InputError(
-        fmt::format("{}: holds COCO's annotations; its results are needed, a list of {{image_id, "
-                    "category_id, bbox, score}}",
-                    file.string()));
+    throw InputError(fmt::format(
+        "{}: holds COCO annotations, but COCO results are needed, a list of {{image_id, "
+        "category_id, bbox, score}}",
+        file.string()));
   if (!json.is_array())
     throw InputError(fmt::format("{}: is not a list of COCO's results", file.string()));
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -236,7 +236,7 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
                              std::ranges::all_of(bbox, [](const Json& v) { return v.is_number(); });
     if (!box_is_good || !score.is_number() || !category.is_number_integer())
       throw InputError(fmt::format(
-          "{}: bbox must be four numbers, score a number, category_id a whole one", place));
+          "{}: bbox must be four numbers, score a number, category_id an integer", place));
     const double id = category.get<double>();
     FiledBox box{.left = bbox[0],
                  .top = bbox[1],
@@ -247,7 +247,7 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
     const int number = whole(id, "category_id", place);
     box.network_class = own_names ? number - 1 : coco80_of_category(number);
     if (box.network_class < 0)
-      throw InputError(fmt::format("{}: category_id {} is none of {}", place, number,
+      throw InputError(fmt::format("{}: category_id {} is not one of {}", place, number,
                                    own_names ? "the named classes, which count from 1" : "COCO's"));
     check(box, names, place);
     std::string frame = image.is_string() ? image.get<std::string>() : image.dump();
@@ -274,7 +274,7 @@ void require_no_network_settings(const DetectorSpec& spec) {
                       : asked.height_px != usual.height_px ? "height_px"
                                                            : nullptr;
   if (which != nullptr)
-    throw InputError(fmt::format("{}: `{}` is a setting of networks, and this holds boxes",
+    throw InputError(fmt::format("{}: `{}` is a setting for networks, but this holds boxes",
                                  spec.boxes.string(), which));
 }
 
@@ -302,7 +302,7 @@ class BoxesFromFiles : public Detector {
     }
     move_stamps(filed_);
     if (is_folder(spec.boxes) && frame_count() == 0)
-      throw InputError(fmt::format("{}: holds no .txt of a frame", spec.boxes.string()));
+      throw InputError(fmt::format("{}: holds no .txt file of a frame", spec.boxes.string()));
   }
 
   Detected detect(const Grid2d<Rgb8>& color, std::size_t index, Stamp stamp_ns) const override {
@@ -353,11 +353,12 @@ class BoxesFromFiles : public Detector {
     for (const auto& [index, boxes] : filed_.by_index) look(boxes);
     for (const auto& [stamp_ns, boxes] : filed_.by_stamp) look(boxes);
     if (found.empty())
-      throw InputError(fmt::format(
-          "{}: none of its {} is one of the sequence's {}, the first is '{}': they are named by {}",
-          file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
-          kind_ == kMot ? "number from 1" : "index from 0 or by stamp"));
-    return fmt::format("{}: {} of its {} are none of the sequence's {}, the first is '{}'{}",
+      throw InputError(
+          fmt::format("{}: none of its {} is one of the sequence's {}, the first is '{}': frames "
+                      "are named by {}",
+                      file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
+                      kind_ == kMot ? "number from 1" : "index from 0 or by stamp"));
+    return fmt::format("{}: {} of its {} are not among the sequence's {}, the first is '{}'{}",
                        file_.string(), frame_count() - found.size(),
                        counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
                        unknown.empty() ? "" : "; " + unknown);

@@ -143,7 +143,7 @@ std::vector<std::string> names_in_yaml(const std::filesystem::path& file) {
 
 std::string ClassNames::unknown_note(const std::filesystem::path& of) const {
   if (std::ranges::any_of(ids, [](ClassId id) { return id != kVoid; })) return "";
-  return fmt::format("{}: none of its {} has the name of a class of ours: all labels stay void",
+  return fmt::format("{}: none of its {} has the name of one of our classes: all labels stay void",
                      of.string(), counted(size(), "class", "classes"));
 }
 

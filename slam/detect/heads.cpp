@@ -165,7 +165,7 @@ void decode_rows(Head head, const Matrix& m, const InputSize& input, double conf
     if (best > kMostScore)
       throw InputError(
           fmt::format("gives a score of {:.4g}, and scores are at most 1: its export lacks the "
-                      "sigmoid, or its head is another",
+                      "sigmoid, or it has a different head",
                       best));
     box.scores.reserve(static_cast<std::size_t>(m.columns - first));
     for (int c = first; c < m.columns; ++c) {

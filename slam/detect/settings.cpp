@@ -40,8 +40,7 @@ void read_detector(YamlReader& mapping, const fs::path& folder, DetectorSpec& sp
   if (spec.network.empty() == spec.boxes.empty())
     mapping.fail(spec.boxes.empty()
                      ? "names neither `network` nor `boxes`"
-                     : fmt::format("`network` ({}) and `boxes` ({}) are both named: one of them "
-                                   "says what is run",
+                     : fmt::format("`network` ({}) and `boxes` ({}) are both given: name only one",
                                    spec.network.string(), spec.boxes.string()));
   if (spec.network.extension() == ".weights" && spec.config.empty())
     spec.config = fs::path(spec.network).replace_extension(".cfg");

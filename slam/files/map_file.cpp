@@ -136,7 +136,7 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
                                  std::uint64_t vocabulary_digest) {
   const std::string_view start = bytes.substr(0, kMagic.size());
   if (start.empty() || start != kMagic.substr(0, start.size()))
-    throw InputError(fmt::format("{}: is not a map of Modelhouse's", name));
+    throw InputError(fmt::format("{}: is not a Modelhouse map", name));
   const auto cut_short = [&](std::uint64_t needed) {
     throw InputError(fmt::format("{}: is {}: has {} bytes, needs {}", name,
                                  bytes.size() < needed ? "truncated" : "too long", bytes.size(),
@@ -219,7 +219,7 @@ SlamState decode_slam(const std::string& bytes, const std::string& name,
         "a keyframe of a piece's place");
   state.tracked_frames = read_tracked_frames(content, state.map);
   content(state.last_stamp_ns);
-  content.require(content.at_end(), "it goes on after its end");
+  content.require(content.at_end(), "it has data after its end");
   return state;
 }
 

@@ -182,10 +182,10 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   if (settings.depth_per_meter == 0) settings.depth_per_meter = 1;
   settings.exchange_red_blue = yaml.integer_or("Camera.RGB", 0, 0, 1) == 1;
   if (settings.exchange_red_blue)
-    settings.notes.push_back(fmt::format(
-        "{}: Camera.RGB: 1: the first channel is taken for red where OpenCV reads blue, as "
-        "{} does; write 0 if colors matter and the files are ordinary ones",
-        yaml.file(), keys.program));
+    settings.notes.push_back(
+        fmt::format("{}: Camera.RGB: 1: OpenCV's first channel, blue, is taken as red, as {} does; "
+                    "write 0 if colors matter and the files are ordinary ones",
+                    yaml.file(), keys.program));
 
   FeatureConfig& f = settings.slam.features;
   f.count = static_cast<int>(yaml.integer_or("ORBextractor.nFeatures", f.count, 10, 20000));
@@ -202,7 +202,7 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
 
   const std::string passed_over = unread_keys(yaml, keys);
   if (!passed_over.empty())
-    settings.notes.push_back(fmt::format("{}: passed over: {}", yaml.file(), passed_over));
+    settings.notes.push_back(fmt::format("{}: ignored: {}", yaml.file(), passed_over));
   return settings;
 }
 
@@ -277,7 +277,7 @@ Settings parse_settings(std::string text, const std::string& name, const SlamCon
   settings.has_camera = read_calibration(yaml, settings.camera);
   if (settings.has_camera)
     if (const auto ours = yaml.find("camera"))
-      ours->fail("states a camera, as the calibration around it does: which one is meant?");
+      ours->fail("describes a camera, but so does the calibration around it: keep only one");
   return read_own(std::move(yaml), std::move(settings));
 }
 

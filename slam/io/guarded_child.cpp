@@ -195,7 +195,7 @@ void* run_child(void* argument) {
   } catch (const std::exception& error) {
     say(out, Word::kOther, error.what());
   } catch (...) {
-    say(out, Word::kOther, "it does not say why");
+    say(out, Word::kOther, "unknown error");
   }
   out.flush();
   return nullptr;
@@ -243,7 +243,7 @@ class Child {
 };
 
 std::string why_it_ended(std::optional<int> status, const SharedNote& note) {
-  if (!status || !WIFSIGNALED(*status)) return "its reader ended without a word";
+  if (!status || !WIFSIGNALED(*status)) return "its reader ended without a message";
   const int number = WTERMSIG(*status);
   if (number == SIGXCPU)
     return fmt::format("its reader took more than {} s of processor time", note->processor_s);

@@ -44,7 +44,7 @@ const char* reason_of(int error) {
     case EACCES:
       return "no permission";
     default:
-      return "the system refuses";
+      return "the system denies access";
   }
 }
 

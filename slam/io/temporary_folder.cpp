@@ -123,8 +123,8 @@ void FolderHold::join(const std::function<void()>& begin, const std::function<bo
     ::poll(nullptr, 0, kPoll_ms);
   }
   throw InputError(
-      fmt::format("{}: another command is at work in this folder, with something else than this "
-                  "one: wait for it, or name another folder",
+      fmt::format("{}: another command is at work in this folder, on something different: wait for "
+                  "it, or name another folder",
                   folder_.string()));
 }
 

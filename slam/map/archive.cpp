@@ -14,7 +14,7 @@ namespace mh {
 namespace archive {
 
 void Reader::bytes(void* data, std::size_t size) {
-  require(size <= bytes_.size(), "it ends too soon");
+  require(size <= bytes_.size(), "it ends too early");
   std::memcpy(data, bytes_.data(), size);
   bytes_.remove_prefix(size);
 }

@@ -92,7 +92,7 @@ class Reader {
     if constexpr (std::is_same_v<T, bool>) {
       std::uint8_t byte = 0;
       get(byte);
-      require(byte <= 1, "a yes or no is neither");
+      require(byte <= 1, "a boolean is neither 0 nor 1");
       value = byte == 1;
     } else if constexpr (Number<T> || std::is_same_v<T, Descriptor>) {
       bytes(&value, sizeof value);

@@ -66,7 +66,9 @@ PgmHeader read_pgm_header(const std::string& content, const std::string& file) {
     in >> *number;
   }
   if (!in || header.brightest < 1 || header.brightest > 65535)
-    throw InputError(file + ": is no PGM image: width, height and a maximum of 1 to 65535 lead it");
+    throw InputError(
+        file +
+        ": is not a PGM image: it must begin with width, height and a maximum of 1 to 65535");
   if (header.width < 1 || header.height < 1 || header.width > 65536 || header.height > 65536)
     throw InputError(
         fmt::format("{}: {} x {} pixels, not 1 to 65536 each", file, header.width, header.height));
@@ -114,7 +116,7 @@ std::vector<int> binary_pixels(const std::string& content, const PgmHeader& head
     bytes.remove_prefix(1);
   const std::size_t left = bytes.size() - width * size;
   if (left > 0 && warnings != nullptr)
-    warnings->push_back(fmt::format("{}: {} behind its {} x {} pixels {} ignored", file,
+    warnings->push_back(fmt::format("{}: {} after its {} x {} pixels {} ignored", file,
                                     counted(left, "byte"), header.width, header.height,
                                     left == 1 ? "is" : "are"));
   std::vector<int> pixels(size);
@@ -150,7 +152,7 @@ GrayImage read_image_levels(const std::filesystem::path& file, std::vector<std::
   const std::string content = read_file(file);
   if (content.starts_with("P5") || content.starts_with("P2"))
     return read_pgm(content, file.string(), warnings);
-  if (!decode) throw InputError(file.string() + ": is no PGM image (P5 or P2)");
+  if (!decode) throw InputError(file.string() + ": is not a PGM image (P5 or P2)");
   try {
     return decode(content);
   } catch (const InputError& error) {
@@ -167,12 +169,12 @@ std::vector<double> read_origin(const YamlReader& node, const std::filesystem::p
   };
   const std::vector<YamlReader> items = node.items();
   if (items.size() == 3 && items[2].is_scalar() && items[2].as_string().ends_with("nan")) {
-    warn(fmt::format("its turn '{}' is taken for 0", items[2].as_string()));
+    warn(fmt::format("its yaw '{}' is taken as 0", items[2].as_string()));
     return {items[0].as_double(), items[1].as_double(), 0};
   }
   std::vector<double> origin = node.as_numbers(3);
   if (std::abs(origin[2]) > 2 * std::numbers::pi)
-    warn(fmt::format("its turn of {} is read in radians", origin[2]));
+    warn(fmt::format("its yaw of {} is read in radians", origin[2]));
   return origin;
 }
 
@@ -221,7 +223,7 @@ void require_replaceable_map_image(const std::filesystem::path& stem) {
   const auto [pgm, yaml] = map_image_files(stem);
   if (is_file(yaml) ? read_file(yaml).starts_with(kOurs) : !is_there(pgm) && !is_there(yaml))
     return;
-  throw InputError(fmt::format("{}: is there already, and not from modelhouse: name another",
+  throw InputError(fmt::format("{}: already exists and was not written by modelhouse: name another",
                                (is_there(yaml) ? yaml : pgm).string()));
 }
 
@@ -269,7 +271,7 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
   YamlReader yaml = YamlReader::load(yaml_file);
   for (const auto& [key, value] : yaml.entries())
     if (warnings != nullptr && std::ranges::find(kKeys, key) == kKeys.end())
-      warnings->push_back(fmt::format("{}:{}: key '{}' is none of map_server's and is ignored{}",
+      warnings->push_back(fmt::format("{}:{}: key '{}' is not one of map_server's and is ignored{}",
                                       yaml_file.string(), value.line(), key,
                                       did_you_mean(key, words_of(kKeys))));
   const std::string mode = lower_case(yaml.string("mode", "trinary"));  // as in nav2_map_server
@@ -310,7 +312,7 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
     }
   if (out_of_range > 0 && warnings != nullptr)
     warnings->push_back(
-        fmt::format("{}: {} from 101 to 254, which mode raw takes for unknown (a cost map? "
+        fmt::format("{}: {} from 101 to 254, which mode raw reads as unknown (a cost map? "
                     "`map cost` writes what can be read as NAME_published)",
                     yaml_file.string(), counted(out_of_range, "cell is", "cells are")));
   return grid;

@@ -271,7 +271,7 @@ std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
     }
     const char* why = !class_id             ? "no class and no object has this name"
                       : is_thing(*class_id) ? "the map holds none"
-                                            : "is never an object of a map";
+                                            : "is never an object in a map";
     throw InputError(fmt::format("object '{}': {}{}", name, why, hint(plain, there)));
   }
   std::ranges::stable_sort(meant, std::ranges::greater(),

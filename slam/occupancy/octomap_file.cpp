@@ -84,7 +84,7 @@ OctomapHeader read_octomap_header(std::istream& in, const std::string& name) {
     if (key == "id") in >> header.type;
     if (key == "size") in >> header.size;
     if (key == "res" && in >> word && (std::istringstream(word) >> header.resolution_m).fail())
-      throw InputError(fmt::format("{}: its resolution '{}' is no number", name, word));
+      throw InputError(fmt::format("{}: its resolution '{}' is not a number", name, word));
     if (key[0] == '#') std::getline(in, line);
   }
   in.get();  // the end of the line "data"

@@ -185,7 +185,7 @@ void read_block(CountsReader& in, VoxelTree& tree) {
   for (unsigned place = 0; place < 512; ++place) {
     if ((known[place / 64] >> place % 64U & 1U) == 0) continue;
     VoxelNode& node = tree.voxel(block, place);
-    if (node.is_known()) in.fail("a block is there twice");
+    if (node.is_known()) in.fail("a block appears twice");
     node.hits = in.number();
     node.misses = in.number();
     if (!node.is_known()) in.fail("a voxel without views");
@@ -270,10 +270,11 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
   const std::string bytes = std::move(whole).str();
   CountsReader reader(std::string_view(bytes).substr(header_size), name);
   if (read_octomap_nodes(reader, header, [](const OctomapLeaf&) {}) != header.size)
-    reader.fail(fmt::format("its tree has not the {} nodes that it says", header.size));
+    reader.fail(fmt::format("its tree does not have the {} nodes that it declares", header.size));
   if (reader.at_end())
     throw InputError(fmt::format(
-        "{}: has no counts after its tree: it is from another program, or was edited", name));
+        "{}: has no counts after its tree: it was written by another program, or was edited",
+        name));
   const std::string_view magic = reader.take(kCountsMagic.size());
   const bool old = magic == kSecondCountsMagic || magic == kFirstCountsMagic;
   if (magic != kCountsMagic && magic != kFloorlessMagic && !old)
@@ -283,11 +284,11 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
       old ? content : std::string_view(bytes.data(), content.data() + content.size());
   if (XXH3_64bits(summed.data(), summed.size()) != reader.get<std::uint64_t>())
     reader.fail("its checksum is wrong");
-  if (!reader.at_end()) reader.fail("it goes on after its end");
+  if (!reader.at_end()) reader.fail("it has data after its end");
   CountsReader counts(content, name);
   const auto resolution_m = counts.get<double>();  // the header's is rounded
   if (!(std::abs(resolution_m - header.resolution_m) <= 1e-4 * header.resolution_m))
-    counts.fail("its counts have another resolution");
+    counts.fail("its counts have a different resolution");
   VoxelMap map(resolution_m);
   map.set_on_floor(magic != kFloorlessMagic);
   if (magic != kFirstCountsMagic) map.set_detected(read_detected(counts));
@@ -334,10 +335,9 @@ VoxelMap VoxelMap::load_octree(const std::filesystem::path& file, std::vector<st
                                  header.resolution_m, kMostForeignVoxels));
   read_octomap_nodes(reader, header,
                      [&](const OctomapLeaf& leaf) { add_leaf(map.impl_->tree, leaf); });
-  notes.push_back(
-      fmt::format("{}: is of another program: it knows no classes, and its z is taken "
-                  "for up",
-                  name));
+  notes.push_back(fmt::format(
+      "{}: was written by another program: it has no classes, and its z axis is taken as up",
+      name));
   return map;
 }
 

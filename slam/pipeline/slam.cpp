@@ -14,7 +14,7 @@ namespace mh {
 
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns) {
   if (last_ns && stamp_ns <= *last_ns)
-    throw InputError(fmt::format("frame at {:.6f} s: stamps must grow, the last was {:.6f} s",
+    throw InputError(fmt::format("frame at {:.6f} s: stamps must increase, the last was {:.6f} s",
                                  static_cast<double>(stamp_ns) * 1e-9,
                                  static_cast<double>(*last_ns) * 1e-9));
 }

@@ -110,7 +110,7 @@ class RecordingTest(unittest.TestCase):
                 (frame.color, (5000 * frame.depth).astype(np.uint16), None, "depth: expected meters"),
                 (frame.color, -frame.depth, None, "negative"),
                 (frame.color, frame.depth, frame.labels + 0.5, "labels: expected integers"),
-                (frame.color, frame.depth, np.full(frame.labels.shape, 300), "300 is no class")):
+                (frame.color, frame.depth, np.full(frame.labels.shape, 300), "300 is not a class")):
             with self.assertRaisesRegex(ValueError, part):
                 mh.Frame(color, depth, labels=labels)
 
@@ -140,7 +140,7 @@ class SemanticsTest(unittest.TestCase):
         self.assertEqual(weighed.words, {0: 0.75, 1: 0.25})
         with self.assertRaisesRegex(ValueError, "gamma"):
             mh.semantics.augmented_vector([1], [1], gamma=-1)
-        for arguments, part in ((([], [2], 1, [3, 1]), "no word 2"), (([-1], [1], 1), "-1 is no id"),
+        for arguments, part in ((([], [2], 1, [3, 1]), "no word 2"), (([-1], [1], 1), "-1 is not an id"),
                                 (([1.5], [1], 1), "expected integers"), (([1], [1], np.inf), "gamma"),
                                 (([1], [1], 1, [1, np.nan]), "eta")):
             with self.assertRaisesRegex(ValueError, part):
@@ -222,7 +222,7 @@ serve(Mine())
         with tempfile.TemporaryDirectory(suffix="?a#b%41") as folder:
             file = pathlib.Path(folder) / "results.sqlite"
             file.write_text("this is text")
-            with self.assertRaisesRegex(ValueError, "no results file"):
+            with self.assertRaisesRegex(ValueError, "not a results file"):
                 mh.Results(folder)
             self.assertEqual(file.read_text(), "this is text")
 
@@ -235,7 +235,7 @@ class SystemTest(unittest.TestCase):
         row[3, 3] = 2
         for pose in (np.zeros((4, 4)), 5 * np.eye(4), mirrored, row, np.zeros(7), np.eye(3),
                      np.full((4, 4), np.nan)):
-            with self.assertRaisesRegex(ValueError, "no pose"):
+            with self.assertRaisesRegex(ValueError, "not a pose"):
                 numbers(pose)
 
     def test_what_it_says_is_passed_on_or_refused(self):
@@ -257,7 +257,7 @@ class SystemTest(unittest.TestCase):
                          {"id": 2, "pose": [0, 0, 0, 0, 0, 0, 1], "keypoints": 3, "keyframe": True})
         self.assertEqual(said("return None"), {"id": 2, "pose": None})
         for reply, part in (("return Reply(None, keypoints=2.5)", "TypeError"),
-                            ("return np.zeros((4, 4))", "ValueError: no pose"),
+                            ("return np.zeros((4, 4))", "ValueError: not a pose"),
                             ("raise SystemExit('enough')", "SystemExit: enough"),
                             ("raise ValueError('two\\nlines')", "ValueError: two lines")):
             self.assertIn(part, said(reply)["error"])

@@ -165,19 +165,19 @@ TEST(LoadRobot, WheelsThatDoNotRollOnTheFloorAreNamed) {
   EXPECT_EQ(verdict_on_wheels("", "", "[l, r]", ground), "no error");
   expect_in("warning: ", verdict_on_wheels("", ""));
   expect_in("would stand 0.100 m below the floor", verdict_on_wheels("", ""));
-  expect_in("'l' stands here twice", verdict_on_wheels("", "", "[l, l]", ground));
+  expect_in("'l' is listed twice", verdict_on_wheels("", "", "[l, l]", ground));
   expect_in("has no joint 'x'", verdict_on_wheels("", "", "[l, x]", ground));
   expect_in("has no link 'x'", verdict_on_wheels("", "", "[l, r]", "base_link: x\n  "));
-  expect_in("joint 'g' is no wheel's: it does not turn",
+  expect_in("joint 'g' is not a wheel joint: it does not turn",
             verdict_on_wheels("", "", "[l, g]", ground));
-  expect_in("joint 'l' is no wheel's: it turns about an upright axis",
+  expect_in("joint 'l' is not a wheel joint: it turns about an upright axis",
             verdict_on_wheels("0 1 0", "0 0 1", "[l, r]", ground));
   const std::string on_body = "<joint name=\"l\" type=\"continuous\"><parent link=\"body\"/>",
                     on_knuckle =
                         "<link name=\"knuckle\"/><joint name=\"s\" type=\"continuous\"><parent "
                         "link=\"body\"/><child link=\"knuckle\"/><axis xyz=\"0 0 1\"/></joint>"
                         "<joint name=\"l\" type=\"continuous\"><parent link=\"knuckle\"/>";
-  expect_in("joint 'l' hangs on joint 's', which steers it",
+  expect_in("joint 'l' is steered by joint 's'",
             verdict_on_wheels(on_body, on_knuckle, "[l, r]", ground));
   expect_in("warning: ",
             verdict_on_wheels(on_body, on_knuckle, "[l, r]", "base_link: knuckle\n  "));

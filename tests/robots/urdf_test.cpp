@@ -184,15 +184,15 @@ TEST(LoadUrdf, RefusesJointsInACircle) {
   };
   EXPECT_EQ(robot(joint("1", "a", "b") + joint("2", "b", "c")), "no error");
   // All joints form one circle: there is no root.
-  expect_in("urdf_test.urdf:3: joint '1': link 'b' hangs in a circle",
+  expect_in("urdf_test.urdf:3: joint '1': link 'b' is part of a cycle",
             robot(joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a")));
   // A circle next to a root.
-  expect_in("urdf_test.urdf:3: joint '2': link 'c' hangs in a circle",
+  expect_in("urdf_test.urdf:3: joint '2': link 'c' is part of a cycle",
             robot(joint("2", "b", "c") + joint("3", "c", "b")));
   // A link attached to itself.
-  expect_in("urdf_test.urdf:4: joint '2': link 'c' hangs in a circle",
+  expect_in("urdf_test.urdf:4: joint '2': link 'c' is part of a cycle",
             robot(joint("1", "a", "b") + joint("2", "c", "c")));
-  expect_in("urdf_test.urdf:5: joint '3': link 'c' hangs on two joints, '2' and '3'",
+  expect_in("urdf_test.urdf:5: joint '3': link 'c' is the child of two joints, '2' and '3'",
             robot(joint("1", "a", "b") + joint("2", "a", "c") + joint("3", "b", "c")));
 }
 

@@ -124,7 +124,7 @@ TEST_F(Guard, ACrashIsOneLineWithTheFileAndTheCause) {
   const auto crash = [](Warnings*) -> Scene { std::abort(); };
   EXPECT_TRUE(names(error_of_load(crash), {"a/b.dae: ", "crashed on it", "Aborted"}));
   EXPECT_TRUE(names(error_of_load([](Warnings*) -> Scene { std::_Exit(0); }),
-                    {"a/b.dae: ", "without a word"}));
+                    {"a/b.dae: ", "without a message"}));
 }
 
 TEST_F(Guard, TheInnermostFileIsNamed) {

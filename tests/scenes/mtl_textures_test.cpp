@@ -47,7 +47,7 @@ TEST(MtlTextures, OptionsThatAreNotHonoredAreNamed) {
   ASSERT_EQ(textures.warnings.size(), 3U);
   EXPECT_TRUE(names(textures.warnings[0], {"a.mtl:2: material m: ", "map_kd's -mm"}));
   EXPECT_TRUE(names(textures.warnings[1], {"a.mtl:3: ", "map_d's -t"}));
-  EXPECT_TRUE(names(textures.warnings[2], {"a.mtl:3: ", "map_d lies otherwise"}));
+  EXPECT_TRUE(names(textures.warnings[2], {"a.mtl:3: ", "map_d is placed differently"}));
 }
 
 class MtlTexturesOf : public TemporaryFolder {};

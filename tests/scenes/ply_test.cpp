@@ -341,7 +341,7 @@ TEST_F(PlyFile, ColorsOfFacesAreWarnedOf) {
                                "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9 9\n"),
             &warnings);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_TRUE(names(warnings[0], {"a.ply", "colors of its faces are not read"}));
+  EXPECT_TRUE(names(warnings[0], {"a.ply", "its face colors are not read"}));
 }
 
 }  // namespace

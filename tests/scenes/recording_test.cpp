@@ -250,7 +250,7 @@ TEST_F(SensFile, BytesBehindTheFramesThatAreNoMeasurementsAreNoted) {
         with(whole, kCount, std::uint64_t{2})}) {
     const auto found = notes(odd);
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_TRUE(names(found[0], {"a.sens", "bytes behind frame"}));
+    EXPECT_TRUE(names(found[0], {"a.sens", "bytes after frame"}));
   }
 }
 
@@ -286,7 +286,7 @@ TEST_F(Extracted, ALensWithoutAPlaceIsToldToBeTheDevices) {
   fs::remove(folder_ / "intrinsic/extrinsic_color.txt");
   const auto recording = open_recording(folder_);
   ASSERT_EQ(recording->notes().size(), 1U);
-  EXPECT_TRUE(names(recording->notes()[0], {"extrinsic_color.txt", "absent", "color camera"}));
+  EXPECT_TRUE(names(recording->notes()[0], {"extrinsic_color.txt", "missing", "color camera"}));
   EXPECT_TRUE(recording->info().color.device_from_camera.translation().isZero());
 }
 

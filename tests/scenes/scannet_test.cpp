@@ -260,7 +260,7 @@ TEST_F(Scannet, FilesThatDoNotFitTheMeshAreNamed) {
   PlyMesh empty = strip();
   empty.triangles.clear();
   write("s/s_vh_clean_2.ply", ply_bytes(empty));
-  EXPECT_TRUE(names(error(), {"s_vh_clean_2.ply", "no faces"}));
+  EXPECT_TRUE(names(error(), {"s_vh_clean_2.ply", "no visible faces"}));
 }
 
 TEST_F(Scannet, DamagedFilesAreNamedWithTheirPlace) {

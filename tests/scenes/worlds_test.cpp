@@ -112,7 +112,7 @@ TEST_F(Worlds, BadYamlIsNamedByLineAndValue) {
   EXPECT_TRUE(names(error("  - {file: meshes/a.obj, color: red}\n"), {"room.yaml", "color"}));
   EXPECT_TRUE(
       names(error("  - {file: meshes/a.obj}\n  - {file: meshes/a.obj}\n"), {"room.yaml:3", "'a'"}));
-  EXPECT_TRUE(names(error("  []\n"), {"nothing to be seen"}));
+  EXPECT_TRUE(names(error("  []\n"), {"nothing visible"}));
 }
 
 TEST_F(Worlds, GazeboModelsAreFoundPlacedAndNamed) {
@@ -179,7 +179,7 @@ TEST_F(Worlds, IncludesThatLeadInACircleAreAnError) {
   testing::internal::CaptureStderr();
   const std::string error = error_of([&] { load_gazebo_world(world); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libsdformat prints nothing
-  EXPECT_TRUE(names(error, {"w.sdf includes", "a/model.sdf", "b/model.sdf", "circle"}));
+  EXPECT_TRUE(names(error, {"w.sdf includes", "a/model.sdf", "b/model.sdf", "cycle"}));
 }
 
 TEST_F(Worlds, BadWorldsAreNamedWithTheirPlace) {
@@ -209,7 +209,7 @@ TEST_F(Worlds, BadWorldsAreNamedWithTheirPlace) {
   EXPECT_TRUE(names(shape("<box><size>-1 1 1</size></box>"), {"a box of -1 x 1 x 1"}));
   EXPECT_TRUE(names(error("<model name='m'><link name='l'/></model></sdf>"), {"nothing"}));
   const auto world = write("e.world", "<sdf version='1.7'><world name='w'/></sdf>");
-  EXPECT_TRUE(names(error_of([&] { load_scene(world); }), {"e.world", "nothing to be seen"}));
+  EXPECT_TRUE(names(error_of([&] { load_scene(world); }), {"e.world", "nothing visible"}));
   EXPECT_TRUE(names(error("<model name='m'><link name='l'><pose>1 2 x</pose></link></model></sdf>"),
                     {"w.sdf"}));
 }

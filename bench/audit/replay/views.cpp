@@ -76,8 +76,9 @@ class ViewsOf {
     RgbdFrame frame = usable_frame(*world_.mapping, call.index,
                                    mapping_noise(mapping_stream(run_.spec), call.restart));
     if (digest(frame) != call.image_digest)
-      throw MachineError(fmt::format("{}: mapping frame {}: the replay's image is not the run's",
-                                     run_.spec.name, call.index));
+      throw MachineError(
+          fmt::format("{}: mapping frame {}: the replay's image differs from the run's",
+                      run_.spec.name, call.index));
     return frame;
   }
 

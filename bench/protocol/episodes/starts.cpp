@@ -111,7 +111,7 @@ std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& sce
   }
   if (goals.empty())
     throw InputError(fmt::format(
-        "{}: has none of the goals where the robot can reach it and has {} m to drive: {}",
+        "{}: has none of the goals where the robot can reach it and must drive at least {} m: {}",
         scene.name, kLeast_m, fmt::join(spec.goals, ", ")));
 
   std::vector<EpisodeStart> starts;

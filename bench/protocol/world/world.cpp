@@ -154,7 +154,7 @@ World open_recordings(const RunSpec& spec) {
     if (const double readout_s = calibration.slam.track.readout_s;
         readout_s > 0 && !e.suite_states_readout && !world.readout_s) {
       world.readout_s = readout_s;
-      world.notes.push_back(fmt::format("track.readout_s: {:g}, of its calibration", readout_s));
+      world.notes.push_back(fmt::format("track.readout_s: {:g}, from its calibration", readout_s));
     }
     for (const std::string& note : opened.notes)
       world.notes.push_back(without_place(note, sequence));
@@ -162,10 +162,8 @@ World open_recordings(const RunSpec& spec) {
     world.cut = world.cut || (spec.max_frames && *spec.max_frames < all);
     const bool gives_imu = std::ranges::count(spec.senses, Sense::kImu) > 0;
     if (gives_imu && opened.sequence->imu().empty())
-      throw InputError(
-          fmt::format("{}: has no inertial sensor (imu.csv), and the suite gives one "
-                      "(`senses`)",
-                      sequence));
+      throw InputError(fmt::format(
+          "{}: has no inertial sensor (imu.csv), but the suite uses one (`senses`)", sequence));
     return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all), std::nullopt,
                         gives_imu);
   };
@@ -198,7 +196,7 @@ std::vector<SE3> odometry_along(const DrivenPath& path, const Robot& robot,
                                 const std::filesystem::path& file) {
   if (robot.wheels() == nullptr)
     throw InputError(
-        fmt::format("{}: has no wheels, and the suite gives odometry (`senses`)", file.string()));
+        fmt::format("{}: has no wheels, but the suite uses odometry (`senses`)", file.string()));
   WheelOdometer odometer(*robot.wheels(), robot.equipment->odometry, seed);
   std::vector<SE3> odom_from_camera;
   for (std::size_t i = 0; i < path.camera.size(); ++i) {

@@ -35,8 +35,8 @@ std::string plot_by_density(const PagesSource& source, const PlotOrder& order,
   const Json json = density_json(*source.suite, rows);
   if (json.is_null())
     throw InputError(
-        fmt::format("{}: no environment was generated, so that the number of its "
-                    "objects is unknown: figure 3 cannot be drawn",
+        fmt::format("{}: no environment was generated, so the number of its objects is unknown: "
+                    "figure 3 cannot be drawn",
                     source.name));
   const PlotTable table(json.at("table"));
   const Json* column = table.column(order.measure);

@@ -157,7 +157,7 @@ cv::Mat draw_against_truth(const OccupancyGrid& grid, const OccupancyGrid& plan)
             {"obstacle invented", kInventedObstacle},
             {"floor not seen", kNotSeen},
             {"obstacle not seen", Rgb8{200, 200, 200}},
-            {"free where nobody gets", kFreeElsewhere}});
+            {"free but unreachable", kFreeElsewhere}});
   return canvas.finish();
 }
 

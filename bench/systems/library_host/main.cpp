@@ -54,7 +54,7 @@ class Image {
   explicit Image(const std::string& file) : bytes_(mh::read_file(file)) {
     int kind = 0, most = 0, end = 0;
     if (std::sscanf(bytes_.c_str(), "P%d %d %d %d%n", &kind, &width, &height, &most, &end) != 4)
-      throw Fault(file + ": is no image");
+      throw Fault(file + ": is not an image");
     first_ = static_cast<std::size_t>(end) + 1;
   }
   const std::uint8_t* bytes() const {
@@ -192,7 +192,7 @@ class HostedSystem {
       : setup_(hello, seed, std::move(settings)) {
     const MakeSystem make = load(library);
     system_ = guarded([&] { return make(&setup_.told); });
-    if (system_ == nullptr) throw Fault("made no system" + setup_.message());
+    if (system_ == nullptr) throw Fault("created no system" + setup_.message());
     if (system_->version != MH_SYSTEM_VERSION)
       throw Fault(
           fmt::format("was built with version {} of modelhouse/system.h, the bench has version {}",

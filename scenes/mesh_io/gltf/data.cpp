@@ -158,7 +158,7 @@ void Data::fail(const std::string& what) const {
 std::string_view Data::buffer(std::size_t index) {
   if (index == new_buffer_) return added_;
   const std::span<Json> buffers = list_of(gltf_, "buffers");
-  if (index >= buffers.size()) fail(fmt::format("buffers[{}]: there is none", index));
+  if (index >= buffers.size()) fail(fmt::format("buffers[{}]: does not exist", index));
   const std::string uri = buffers[index].value("uri", "");
   if (uri.empty()) return index == 0 ? body_ : std::string_view();
   HeldBytes& held = buffers_[index];
@@ -173,7 +173,7 @@ std::string_view Data::buffer(std::size_t index) {
 
 std::string_view Data::view(std::size_t index) {
   const std::span<Json> views = list_of(gltf_, "bufferViews");
-  if (index >= views.size()) fail(fmt::format("bufferViews[{}]: there is none", index));
+  if (index >= views.size()) fail(fmt::format("bufferViews[{}]: does not exist", index));
   const std::string_view bytes = buffer(index_in(views[index], "buffer", kNone));
   const std::size_t offset = index_in(views[index], "byteOffset", 0);
   const std::size_t length = index_in(views[index], "byteLength", 0);
@@ -204,7 +204,7 @@ Data::Place Data::place_of(std::size_t view_index, std::size_t offset, std::size
 
 Values Data::values(std::size_t index, bool shares) {
   const std::span<Json> accessors = list_of(gltf_, "accessors");
-  if (index >= accessors.size()) fail(fmt::format("accessors[{}]: there is none", index));
+  if (index >= accessors.size()) fail(fmt::format("accessors[{}]: does not exist", index));
   const Json& accessor = accessors[index];
   const Kind kind = kind_of(accessor);
   const bool normalized = shares || accessor.value("normalized", false);

@@ -66,7 +66,7 @@ void decompress(Json& primitive, const Json& packed, Json& gltf, Data& data) {
     const draco::PointAttribute* from = mesh.GetAttributeByUniqueId(id.get<std::uint32_t>());
     const std::size_t accessor = index_in(attributes, name.c_str(), kNone);
     if (from == nullptr || accessor >= list_of(gltf, "accessors").size())
-      data.fail(fmt::format("Draco compression: attribute {}: there is none", name));
+      data.fail(fmt::format("Draco compression: attribute {}: does not exist", name));
     const Json like = list_of(gltf, "accessors")[accessor];
     attributes[name] = add_attribute(mesh, *from, like, data);
   }

@@ -112,7 +112,7 @@ void check_extensions(Json& gltf, const std::filesystem::path& file,
           file.string(), name));
     if (is_known && known->loss.empty()) continue;
     warnings.push_back(fmt::format("glTF extension {}: {}", name,
-                                   is_known ? known->loss : "is not known, and left out"));
+                                   is_known ? known->loss : "is unknown and left out"));
   }
 }
 

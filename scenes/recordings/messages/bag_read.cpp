@@ -63,7 +63,7 @@ class BagFile : public MessageFile {
     if (!all.starts_with(bag::kMagic)) refuse(all);
     read_records({all, bag::kMagic.size(), MessagePlace::kFile, 0});
     if (index_at_ == 0 && !leaves_out(kCut))
-      leave_out("ends", all.size(), "it was not closed: its messages are used as far as it goes");
+      leave_out("ends", all.size(), "it was not closed: its messages are used up to its end");
   }
 
  private:
@@ -138,7 +138,7 @@ class BagFile : public MessageFile {
           read_bag_header(fields);
         else if (op != Op::kIndex && op != Op::kChunkInfo)
           throw InputError(
-              fmt::format("'op' is {}, a record of no known kind", static_cast<int>(op)));
+              fmt::format("'op' is {}, an unknown kind of record", static_cast<int>(op)));
       } catch (const Encrypted&) {
         throw InputError(fmt::format("{}: is an encrypted bag, which is not read", name()));
       } catch (const InputError& error) {
@@ -184,7 +184,7 @@ class BagFile : public MessageFile {
     if (!channels_by_id_.contains(id)) read_connections_from(file_at);
     const auto channel = channels_by_id_.find(id);
     if (channel == channels_by_id_.end())
-      return leave_out("messages left out", file_at, "a message is of no connection");
+      return leave_out("messages left out", file_at, "a message belongs to no connection");
     count_message();
     visit_(channels()[channel->second], data, place);
   }

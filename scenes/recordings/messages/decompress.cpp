@@ -102,7 +102,7 @@ std::string decompress(std::string_view stored, const std::string& compression,
   else if (compression == "bz2")
     out = from_bz2(stored, size);
   else
-    throw InputError(fmt::format("is compressed by '{}', which is not read", compression));
+    throw InputError(fmt::format("is compressed with '{}', which is not supported", compression));
   if (out.size() != size)
     throw InputError(fmt::format("is damaged: it holds {} bytes, not {}",
                                  out.size() > size ? "more" : std::to_string(out.size()), size));

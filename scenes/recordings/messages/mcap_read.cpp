@@ -120,7 +120,7 @@ class McapFile : public MessageFile {
       at = record->end();
     }
     if (all.substr(at, mcap::kMagic.size()) != mcap::kMagic)
-      return leave_out("ends", at, "its footer is not followed by MCAP's last bytes");
+      return leave_out("ends", at, "its footer is not followed by MCAP's closing bytes");
     at += mcap::kMagic.size();
     if (at < all.size())
       leave_out("ends", at, fmt::format("{} bytes after its end are left out", all.size() - at));
@@ -134,7 +134,7 @@ class McapFile : public MessageFile {
     if (!channels_by_id_.contains(id)) read_channels_from(file_at);
     const auto channel = channels_by_id_.find(id);
     if (channel == channels_by_id_.end())
-      return leave_out("messages left out", file_at, "a message is of no channel");
+      return leave_out("messages left out", file_at, "a message belongs to no channel");
     from.number<std::uint32_t>();  // its number in the sequence
     place.received_ns = from.number<std::int64_t>();
     place.at += kHead;
@@ -170,7 +170,7 @@ class McapFile : public MessageFile {
       const auto crc = ByteReader(record.content).number<std::uint32_t>();
       // Damage that was already reported would explain a wrong checksum.
       if (crc != 0 && notes().empty() && libdeflate_crc32(0, data.data(), data.size()) != crc)
-        leave_out("checksums", data.size(), "its data's CRC is another: some of it is damaged");
+        leave_out("checksums", data.size(), "its data's CRC does not match: some of it is damaged");
     } else if (!in_chunk && opcode == Opcode::kFooter) {
       ended_ = footer_ = true;
     }

@@ -108,14 +108,12 @@ Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
     return config.read_camera(config.calibration).camera;
   if (chosen.info == nullptr)
     throw InputError(
-        fmt::format("{}: holds no sensor_msgs/CameraInfo for {}; name its topic "
-                    "(info=TOPIC) or a settings file by --settings, in a suite by "
-                    "`settings:`",
+        fmt::format("{}: holds no sensor_msgs/CameraInfo for {}; name its topic (info=TOPIC) or a "
+                    "settings file with --settings, in a suite with `settings:`",
                     file, chosen.color->name));
   if (chosen.info->other_at_ns)
     notes.push_back(
-        fmt::format("{}: the calibration of {} is another from {} ns on: the first is "
-                    "used for all frames",
+        fmt::format("{}: the calibration of {} changes at {} ns: the first is used for all frames",
                     file, chosen.info->topic, *chosen.info->other_at_ns));
   try {
     return color_camera(chosen, topics);
@@ -216,8 +214,8 @@ std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTop
         file, depth.name, depth.width_px, depth.height_px, color.name, color.width_px,
         color.height_px, has_own ? "neither tf nor extrinsics" : "no CameraInfo of depth"));
   notes.push_back(fmt::format(
-      "{}: depth of {} has another {} than color of {}: it is used as if it were registered", file,
-      depth.name, differ(chosen) ? "calibration" : "frame", color.name));
+      "{}: depth of {} has a different {} from color of {}: it is used as if it were registered",
+      file, depth.name, differ(chosen) ? "calibration" : "frame", color.name));
   return std::nullopt;
 }
 
@@ -240,7 +238,7 @@ double depth_per_meter(const ImageTopic& depth, const RosTopics& topics,
                                           : std::nullopt;
   if (is_in_meters(depth)) {
     if (named && *named != 1)
-      notes.push_back(fmt::format("{}: its depth per meter, {:g}, has no use: {} is in meters",
+      notes.push_back(fmt::format("{}: its depth per meter, {:g}, is not used: {} is in meters",
                                   config.calibration.string(), *named, depth.name));
     return kRosDepthPerMeter;
   }

@@ -79,7 +79,7 @@ std::string all_topics(const std::vector<MessageChannel>& channels) {
   std::string text;
   for (const MessageChannel& channel : channels)
     text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", channel.topic,
-                        channel.type.empty() ? "of no type" : channel.type,
+                        channel.type.empty() ? "without a type" : channel.type,
                         channel.wire ? "" : ", not encoded as ROS 1 or CDR");
   return text.empty() ? "it has no topics" : "its topics: " + text;
 }

@@ -26,7 +26,7 @@ constexpr std::uint32_t kLargestSide_px = 65535;
 void check_size(const ros::Image& image, std::size_t bytes_per_pixel, std::uint64_t rows) {
   if (image.width == 0 || image.height == 0 || image.width > kLargestSide_px ||
       image.height > kLargestSide_px)
-    throw InputError(fmt::format("is of {} x {} pixels", image.width, image.height));
+    throw InputError(fmt::format("has {} x {} pixels", image.width, image.height));
   const std::uint64_t row = bytes_per_pixel * image.width;
   if (image.step < row || std::uint64_t{image.step} * (rows - 1) + row > image.data.size())
     throw InputError(fmt::format("holds {} bytes, too few for {} x {} pixels of {} in rows of {}",
@@ -101,8 +101,8 @@ const Conversion* conversion_of(const std::string& encoding) {
 Grid2d<Rgb8> converted(const cv::Mat& stored, const Conversion& conversion, int width, int height) {
   const bool mosaic = std::string_view(conversion.encoding).starts_with("bayer");
   if (mosaic ? width < 3 || height < 3 : width % 2 != 0 || height % (conversion.rows_of_2 - 1) != 0)
-    throw InputError(
-        fmt::format("is of {} x {} pixels, which no {} has", width, height, conversion.encoding));
+    throw InputError(fmt::format("has {} x {} pixels, which {} does not allow", width, height,
+                                 conversion.encoding));
   Grid2d<Rgb8> color(width, height);
   cv::Mat rgb(height, width, CV_8UC3, color.data());
   cv::cvtColor(stored, rgb, conversion.code);
@@ -159,7 +159,7 @@ Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire, double 
   std::string_view png = image.data;
   DepthHead head;
   if (has_head) {
-    if (png.size() < sizeof(head)) throw InputError("is shorter than its head");
+    if (png.size() < sizeof(head)) throw InputError("is shorter than its header");
     std::memcpy(&head, png.data(), sizeof(head));
     png.remove_prefix(sizeof(head));
   }

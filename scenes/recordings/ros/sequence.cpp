@@ -136,10 +136,8 @@ std::vector<StoredFrame> paired(const ChosenTopics& chosen, const std::string& f
   };
   if (!std::ranges::is_sorted(all_color, is_earlier)) {
     std::ranges::stable_sort(all_color, is_earlier);
-    notes.push_back(
-        fmt::format("{}: images of {} are not in the order of their stamps: they are "
-                    "sorted by them",
-                    file, chosen.color->name));
+    notes.push_back(fmt::format("{}: images of {} are not ordered by timestamp: they are sorted",
+                                file, chosen.color->name));
   }
   const StampIndex depth_at = index_of(*chosen.depth);
   const StampIndex labels_at = chosen.labels ? index_of(*chosen.labels) : StampIndex({});

@@ -26,7 +26,7 @@ std::string frame_name(const std::string& name) {
 SE3 rigid(const ros::Quaternion& q, const SE3& pose) {
   const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(std::abs(norm - 1) < 0.1) || !pose.translation().allFinite())
-    throw InputError("holds a pose that is no rigid transform");
+    throw InputError("holds a pose that is not a rigid transform");
   return pose;
 }
 SE3 rigid(const ros::Pose& pose) {
@@ -143,7 +143,7 @@ void RosTopics::add_depth_units(const std::string& topic, float meters) {
   for (const std::string_view end : {"/option/Depth_Units/value", "/option/Depth Units/value"}) {
     if (!topic.ends_with(end)) continue;
     if (!(meters > 1e-9F && meters < 1e3F))
-      throw InputError(fmt::format("holds {}, which is no depth unit in meters", meters));
+      throw InputError(fmt::format("holds {}, which is not a depth unit in meters", meters));
     std::vector<float>& units = depth_units[topic.substr(0, topic.size() - end.size()) + "/"];
     if (std::ranges::find(units, meters) == units.end()) units.push_back(meters);
   }

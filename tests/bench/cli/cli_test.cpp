@@ -429,7 +429,7 @@ TEST_F(CommandLine, AVocabularyInText) {
   EXPECT_EQ(run("vocabulary convert " + own + " --out " + back), 0) << err_;
   EXPECT_EQ(read_file(back), "10 6 0 0\n" + node + " 1.25");
   const std::string bad = write("bad.txt", "10 6 0 0\n" + node + " 1.25 3\n").string();
-  expect_refused("vocabulary info " + bad, "bad.txt:2: line goes on where it should end: '3'");
+  expect_refused("vocabulary info " + bad, "bad.txt:2: line continues where it should end: '3'");
   expect_refused("vocabulary info " + text + " --frames here --settings s.yaml", "s.yaml");
   expect_refused("vocabulary train --images " + (folder_ / "none.txt").string() + " --out " + own,
                  "none.txt");
@@ -454,7 +454,7 @@ TEST_F(CommandLine, ImagesAndSequencesGoWhereTheyCanBeRead) {
   expect_refused(render + folder_.string() + " --frames 0", "--frames");
   expect_refused(render + folder_.string() + " --frames -1", "--frames");
   write("rgb.txt", "");
-  expect_refused(render + folder_.string(), "holds a sequence already");
+  expect_refused(render + folder_.string(), "already holds a sequence");
 }
 
 TEST_F(CommandLine, ARecordingInScannetsFormatEndsAtAHundredPerCent) {
@@ -491,12 +491,12 @@ TEST_F(CommandLine, ARenderingThatWroteNothingDoesNotBindTheNext) {
   write("foreign/a.mcap", "mine");
   expect_refused("render " + mesh.string() + " --motion handheld:0 --frames 1 --robot " + robot_ +
                      " --format mcap --out " + (folder_ / "foreign").string(),
-                 "holds a sequence already (a.mcap)");
+                 "already holds a sequence (a.mcap)");
   fs::create_directories(folder_ / "theirs");
   for (const char* name : {"theirs/render.json", "theirs/groundtruth.txt"}) write(name, "mine");
   expect_refused("render " + mesh.string() + " --motion handheld:0 --frames 1 --robot " + robot_ +
                      " --out " + (folder_ / "theirs").string(),
-                 "render.json: is there already, and not from `modelhouse render`");
+                 "render.json: already exists and was not written by `modelhouse render`");
   for (const char* name : {"theirs/render.json", "theirs/groundtruth.txt"})
     EXPECT_EQ(content(folder_ / name), "mine") << name;
 }
@@ -513,7 +513,7 @@ TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
   EXPECT_NE(err_.find("3 poses of " + poses.string() + ", exactly as they are: of the camera"),
             std::string::npos)
       << err_;
-  EXPECT_NE(err_.find("3 of 3 poses stand outside of the scene"), std::string::npos)
+  EXPECT_NE(err_.find("3 of 3 poses are outside the scene"), std::string::npos)
       << err_ << "2 m above all there is";
   EXPECT_NE(err_.find("every camera looks straight up or down"), std::string::npos) << err_;
   std::istringstream truth(content(folder_ / "out/groundtruth.txt"));
@@ -523,7 +523,7 @@ TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_TRUE(lines[0].starts_with("1305031229.528700000 1 1 2 ")) << lines[0];
   EXPECT_TRUE(lines[1].starts_with("1305031229.700000000 2.25 1.5 2 ")) << lines[1];
-  expect_refused(render + " --motion auto:0", "stands in place of a motion");
+  expect_refused(render + " --motion auto:0", "takes the place of a motion");
   expect_refused("render " + mesh.string() + " --poses-of robot --motion auto --out x", "--poses");
   expect_refused("render " + mesh.string() + " --poses none.tum --out " + (folder_ / "x").string(),
                  "none.tum");
@@ -599,7 +599,7 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
     write(out + "/" + name, "mine");
     write(out + "/" + name + ".bak", "mine");
     expect_refused(command + " --out " + f + out,
-                   out + "/" + name.substr(0, name.find('/')) + ": is there already");
+                   out + "/" + name.substr(0, name.find('/')) + ": already exists");
     EXPECT_EQ(content(folder_ / out / name), "mine");
     EXPECT_EQ(content(folder_ / out / (name + ".bak")), "mine");
     EXPECT_FALSE(fs::exists(folder_ / out / ".modelhouse"));
@@ -623,13 +623,13 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   const fs::path here = fs::current_path();
   fs::current_path(folder_);
   expect_refused("bench model_house --frames 5",
-                 "out/model_house-first-5/table.txt: is there already");
+                 "out/model_house-first-5/table.txt: already exists");
   fs::current_path(here);
   // A ScanNet scene that the conversion would replace.
   write("scene0000_00.txt", "mine");
   fs::create_directory(folder_ / "scene0000_00");
   write("scene0000_00/scene0000_00_vh_clean_2.ply", "mine");
-  expect_refused("scene convert " + m + " --out " + f + "scene0000_00", "is there already");
+  expect_refused("scene convert " + m + " --out " + f + "scene0000_00", "already exists");
   EXPECT_EQ(content(folder_ / "scene0000_00/scene0000_00_vh_clean_2.ply"), "mine");
   // The command's own input.
   ASSERT_EQ(run("scene convert " + m + " --out " + f + "m.glb"), 0) << err_;
@@ -655,7 +655,8 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   expect_refused("scene convert " + f + "scan --out " + f + "scan", "is read by this command");
   EXPECT_EQ(content(folder_ / "scan/scan.txt"), edited);
   write("scan.labels.json", "mine");
-  expect_refused("scene convert " + m + " --out " + f + "scan.ply", "scan.labels.json: is there");
+  expect_refused("scene convert " + m + " --out " + f + "scan.ply",
+                 "scan.labels.json: already exists");
   EXPECT_FALSE(fs::exists(folder_ / "scan.ply"));
   EXPECT_EQ(content(folder_ / "scan.labels.json"), "mine");
   ASSERT_EQ(run("scene convert " + m + " --out " + f + "own.ply"), 0) << err_;
@@ -670,7 +671,7 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   // not a marker.
   expect_refused("render " + m + " --motion handheld:0 --frames 1 --format scannet --robot " +
                      robot_ + " --out " + f + "converted",
-                 "is there already");
+                 "already exists");
   write("converted/.modelhouse", "mine");
   expect_refused(again, "was not written by modelhouse");
 }
@@ -810,7 +811,7 @@ TEST_F(CommandLine, ATourFasterThanTheRobotIsTold) {
                                               "waypoints: [{to: [3, 2]}]\n");
     ASSERT_EQ(run("drive " + mesh.string() + " " + tour.string() + " --robot " + robot_), 0)
         << err_;
-    EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' does: 0.55") !=
+    EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' can do: 0.55") !=
                   std::string::npos,
               reported)
         << err_;
@@ -870,8 +871,8 @@ TEST_F(CommandLine, EvaluateShiftsStampsAndTellsBothSpansOfTime) {
             0)
       << err_;
   EXPECT_EQ(nlohmann::json::parse(out_)["pairs"], 3);
-  expect_refused(command + " --offset 1s", "--offset: '1s' is no time in seconds");
-  expect_refused(command + " --offset 9.2e9", "--offset: leads to stamps that are not");
+  expect_refused(command + " --offset 1s", "--offset: '1s' is not a time in seconds");
+  expect_refused(command + " --offset 9.2e9", "--offset: gives stamps that are not");
   expect_refused("evaluate --format kitti --offset 1 a b",
                  "--offset: KITTI's poses have no stamps");
 }
@@ -1018,9 +1019,9 @@ TEST_F(CommandLine, CheckReplacesNoFileOfAnothers) {
   const fs::path mine = write("mine.json", R"({"format": "of another"})"),
                  xml = write("mine.xml", "<?xml version=\"1.0\"?>\n<testsuites/>\n");
   expect_refused(check + "--update --baseline " + mine.string(),
-                 "mine.json: is there already, and not from `modelhouse check --update`");
+                 "mine.json: already exists and was not written by `modelhouse check --update`");
   expect_refused(check + "--junit " + xml.string(),
-                 "mine.xml: is there already, and not from `modelhouse check --junit`");
+                 "mine.xml: already exists and was not written by `modelhouse check --junit`");
   EXPECT_EQ(content(mine), R"({"format": "of another"})");
   EXPECT_EQ(content(xml), "<?xml version=\"1.0\"?>\n<testsuites/>\n");
 }
@@ -1105,9 +1106,9 @@ TEST_F(CommandLine, FilesOfOthersAreNotReplacedByObjectsAndPaths) {
       << err_;
   const std::string objects = "map objects " + map + "/map.ot --out ";
   write("file", "a thesis");
-  expect_refused(objects + file, "is there already, and not from `modelhouse map`");
+  expect_refused(objects + file, "already exists and was not written by `modelhouse map`");
   expect_refused("map plan " + map + "/map.ot --from 1 1 --to 1 1 --out " + file,
-                 "is there already, and not from `modelhouse map plan`");
+                 "already exists and was not written by `modelhouse map plan`");
   EXPECT_EQ(content(file), "a thesis");
   ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;
   ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;

@@ -165,12 +165,12 @@ TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
   const std::string episode = "episode " + suite().string() + " --out " + out("none");
   refused(episode + " --system semantik", "'semantik' is not in");
   refused(episode + " --start x", "--start");
-  refused(episode + " --variant= --start 1", "'--variant=': the value is missing");
+  refused(episode + " --variant= --start 1", "'--variant=': its value is missing");
   refused(episode + " one two", "unexpected argument 'one'");
   refused("episode " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --out " + out("none"),
           "episodes");
   for (const std::string command : {"audit ", "bench --audit "})
-    refused(command + suite().string() + " --out " + out("none"), "an audit is of queries");
+    refused(command + suite().string() + " --out " + out("none"), "an audit examines queries");
   write_suite("toilet");  // a room without a toilet: no episode is left there
   refused("bench " + suite().string() + " --out " + out("none"), "toilet");
   EXPECT_FALSE(fs::exists(out("none")));

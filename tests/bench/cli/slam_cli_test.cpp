@@ -133,7 +133,7 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
 
   const std::string again = path("room") + " --out " + path("no") + " --map ";
   expect_refused(again + path("whole.mhmap") + " --resume",
-                 "nothing is left to go on with: it ends at 1.633333317 s");
+                 "nothing is left to resume: it ends at 1.633333317 s");
   EXPECT_NE(err_.find("whole.mhmap"), std::string::npos) << err_;
   EXPECT_NE(run(again + path("whole.mhmap") + " --resume --localize"), 0);
 
@@ -145,7 +145,7 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
                 " --resume --frames 2 --settings " + path("other.yaml")),
             0)
       << err_;
-  EXPECT_NE(err_.find("other.yaml: the map's own settings count: features.count: 1000\n"),
+  EXPECT_NE(err_.find("other.yaml: the map's own settings are used: features.count: 1000\n"),
             std::string::npos)
       << err_;
 }
@@ -169,7 +169,7 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
   };
   EXPECT_EQ(localized("mapped.mhmap", "by_map", ""), 5);
   EXPECT_EQ(localized("mapped.mhmap", "strictly", " --settings " + path("strict.yaml")), 0);
-  EXPECT_EQ(err_.find("the map's own settings count"), std::string::npos) << err_;
+  EXPECT_EQ(err_.find("the map's own settings are used"), std::string::npos) << err_;
   EXPECT_EQ(load_settings(folder_ / "strictly/settings.yaml").slam.relocalize.min_inliers, 1000);
   // Settings that the file does not mention stay those of the map.
   EXPECT_EQ(
@@ -240,10 +240,11 @@ TEST_F(SlamCommand, FindsBadFilesBeforeTheWork) {
   refused_at_once(" --truth " + path("nowhere.txt"), "nowhere.txt: cannot be read: no such file");
   refused_at_once(" --truth " + path("room/camera.yaml"), "camera.yaml:");
   refused_at_once(" --save-map " + path("room"), "room: cannot be written: it is a folder");
-  refused_at_once(" --save-map " + path("no/../no/summary.json"), "will hold a result of its own");
+  refused_at_once(" --save-map " + path("no/../no/summary.json"), "is the name of another result");
   fs::create_directories(folder_ / "taken/frames.csv");
-  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: is there already");
-  refused_at_once(" --save-map " + path("words.mhvoc/map"), "words.mhvoc: cannot be made a folder");
+  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: already exists");
+  refused_at_once(" --save-map " + path("words.mhvoc/map"),
+                  "words.mhvoc: cannot be created as a folder");
 }
 
 TEST_F(SlamCommand, WithoutDepthNothingIsMappedAndThatIsReported) {
@@ -256,7 +257,7 @@ TEST_F(SlamCommand, WithoutDepthNothingIsMappedAndThatIsReported) {
   writer.finish();
   expect_refused(path("flat") + " --out " + path("no"),
                  "nothing could be mapped: none of 5 frames showed 100 keypoints with depth to "
-                 "begin with (the first image has no depth)");
+                 "start with (the first image has no depth)");
   EXPECT_FALSE(fs::exists(folder_ / "no/summary.json"));
 }
 

@@ -321,7 +321,7 @@ TEST(SlurmProcess, AShareWhoseScriptIsKilledIsNamedAndTheSameCommandFinishesIt) 
   };
   const fs::path out = folder_of("two shares");
   EXPECT_EQ(run_and_kill(command, out / "slurm/1", kill_script), 3) << errors() << cluster.log();
-  EXPECT_NE(errors().find("missing: of share 1 of 2"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("missing, from share 1 of 2"), std::string::npos) << errors();
   EXPECT_NE(content(out / "table.txt").find("missing"), std::string::npos);
   EXPECT_EQ(run(command), 0) << errors() << cluster.log();
   EXPECT_NE(errors().find(", 1 unfinished"), std::string::npos) << errors();

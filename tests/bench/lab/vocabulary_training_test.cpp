@@ -115,7 +115,7 @@ TEST_F(ImageList, FaultsAreNamed) {
   EXPECT_EQ(fault_of("# nothing\n"), list + ": names no image");
   write_atomically(folder_ / "text.png", "no image");
   EXPECT_EQ(fault_of("text.png"),
-            (folder_ / "text.png").string() + ": is not an image, or a damaged one");
+            (folder_ / "text.png").string() + ": is not an image, or is damaged");
 }
 
 // A plane 2 m in front of the camera, seen from two places.

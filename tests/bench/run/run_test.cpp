@@ -567,7 +567,7 @@ TEST(Results, FailedRunsAreToldInTheirRows) {
       place.run(), {"semantic-exact-fake-1", "plain-fake-0", "plain-fake-1", "plain-fake-2"});
   const std::string table = results_table(place.suite, runs, failed);
   for (const char* part : {"   2 of 3 trials, 1 failed\n", "   failed: 3 of 3 trials\n",
-                           "failed, so that the figures above are without 4 runs:\n",
+                           "failed, so the figures above do not include 4 runs:\n",
                            "  semantic-exact-fake-1: ended by signal 11\n"})
     EXPECT_NE(table.find(part), std::string::npos) << part << table;
   EXPECT_EQ(table.find("semantic minus plain"), std::string::npos) << "with what? " << table;
@@ -592,7 +592,7 @@ TEST(Results, RunsThatNobodyHasMadeYetAreTold) {
   const std::vector<std::string> missing = {runs.back().spec.name};
   runs.pop_back();
   const std::string table = results_table(place.suite, runs, {}, missing);
-  EXPECT_TRUE(table.ends_with("\nmissing, so that the figures above are without 1 run:\n  " +
+  EXPECT_TRUE(table.ends_with("\nmissing, so the figures above do not include 1 run:\n  " +
                               missing[0] + "\n"))
       << table;
   EXPECT_EQ(results_json(place.suite, runs, {}, missing)["missing"][0], missing[0]);

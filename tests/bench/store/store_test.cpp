@@ -257,15 +257,15 @@ TEST_F(StoreFile, AChangedValueOfAnyTableIsNamed) {
 
 TEST_F(StoreFile, ALostRowOfAnyTableIsNamed) {
   const fs::path file = folder_ / "r.sqlite";
-  for (const auto& [table, named] :
-       std::map<std::string, std::string>{{"plan", "its table 'plan' has 0 of 3 rows"},
-                                          {"runs", "are of a run that its table 'runs' has lost"},
-                                          {"points", "run '"},
-                                          {"metrics", "run '"},
-                                          {"calls", "run '"},
-                                          {"frames", "run '"},
-                                          {"queries", "run '"},
-                                          {"times", "run '"}}) {
+  for (const auto& [table, named] : std::map<std::string, std::string>{
+           {"plan", "its table 'plan' has 0 of 3 rows"},
+           {"runs", "belong to a run that its table 'runs' has lost"},
+           {"points", "run '"},
+           {"metrics", "run '"},
+           {"calls", "run '"},
+           {"frames", "run '"},
+           {"queries", "run '"},
+           {"times", "run '"}}) {
     fs::remove(file);
     write_results(file);
     SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("DELETE FROM " + table);
@@ -541,7 +541,7 @@ TEST_F(StoreFile, ADamagedOrForeignFileIsRefusedWithAdvice) {
   fs::remove(file);
   SQLite::Database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
       .exec("CREATE TABLE cats (name TEXT)");
-  EXPECT_NE(error_of_opening(file).find("no results file"), std::string::npos);
+  EXPECT_NE(error_of_opening(file).find("not a results file"), std::string::npos);
   fs::remove(file);
   {
     Store store(file);
@@ -680,7 +680,8 @@ TEST_F(StoreFile, MergingRefusesRunsOfOtherSettings) {
     a.merge(b.file());
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("run 'x' was made with other settings"), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("run 'x' was made with settings, input or code different"),
+              std::string::npos)
         << e.what();
   }
 }

@@ -116,7 +116,7 @@ TEST_F(SuiteFile, SensesAreOfARobotThatDrives) {
     by_hand("odometry");
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("'house' is mapped by hand"), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("'house' is a handheld scan"), std::string::npos)
         << e.what();
   }
 }
@@ -243,7 +243,7 @@ TEST_F(SuiteFile, AMotionThatCannotBeIsNamedWithItsPlace) {
     load_suite(folder_ / "suite.yaml");
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("suite.yaml:2: environments[0].mapping_tour: hand-held "
+    EXPECT_NE(std::string(e.what()).find("suite.yaml:2: environments[0].mapping_tour: handheld "
                                          "motion: frames: 10 is outside 30 to 100000"),
               std::string::npos)
         << e.what();
@@ -371,7 +371,7 @@ TEST_F(SuiteFile, ASweepOverGammaOrMassThatWouldNotActIsRefused) {
       return error.what();
     }
   };
-  const std::string none = "semantics.label_mass: 0 is no mass";
+  const std::string none = "semantics.label_mass: 0 is not a mass";
   EXPECT_NE(message("map: fixed, semantics.label_mass: [0, 0.1]", "0").find(none),
             std::string::npos);
   EXPECT_EQ(message("map: fixed, semantics.label_mass: [0.01, 0.1]", "0"), "");
@@ -679,9 +679,9 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
                  "outside library 'vo' (libgone.so) cannot be loaded: no such file; has it been "
                  "built?");
   expect_refused("library: libvo.so, command: slam",
-                 "systems[0].command: is of a command: this is a library");
+                 "systems[0].command: is for a command, but this is a library");
   expect_refused("library: libvo.so, protocol: conversation",
-                 "systems[0].protocol: is of a command");
+                 "systems[0].protocol: is for a command");
   expect_refused("library: libvo.so, settings: gone.yaml",
                  "gone.yaml' cannot be read: no such file");
   expect_refused("library: ''", "library: is empty");
@@ -852,8 +852,7 @@ TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
     const std::string text = error("", "[pepper.yaml]", labels);
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  says("[{network: a.onnx, boxes: b.json}]",
-       "b.json) are both named: one of them says what is run");
+  says("[{network: a.onnx, boxes: b.json}]", "b.json) are both given: name only one");
   says("[{fill: box}]", "names neither `network` nor `boxes`");
   says("[{network: a.onnx, fil: box}]", "fil");
   says("[{network: a.onnx, fill: boxes}]", "'boxes' is not one of box, foreground");
@@ -922,7 +921,7 @@ TEST_F(SuiteFile, RefusesBadGradedQueries) {
   EXPECT_NE(complaint("{distance_m: [0, 1]}").find("angle_deg"), std::string::npos);
   EXPECT_NE(complaint("{distance_m: [1], angle_deg: [0, 9]}").find("at least two"),
             std::string::npos);
-  EXPECT_NE(complaint("{distance_m: [0, 2, 1], angle_deg: [0, 9]}").find("edges must grow"),
+  EXPECT_NE(complaint("{distance_m: [0, 2, 1], angle_deg: [0, 9]}").find("edges must increase"),
             std::string::npos);
   EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 200]}").find("outside [0, 180]"),
             std::string::npos);

@@ -155,7 +155,7 @@ TEST_F(LibrarySystems, PosesInAMapThatWasGivenUpAreVoid) {
   ASSERT_EQ(system->trajectory().size(), 1U);
   EXPECT_EQ(system->trajectory()[0].stamp_ns, 5);
   EXPECT_EQ(error("anew"),
-            "gave up a map that must not change any more, replying to relocalize (request 5)");
+            "dropped a map that must not change any more, replying to relocalize (request 5)");
 }
 
 TEST_F(LibrarySystems, MayTellTheFinishedTrajectory) {
@@ -184,8 +184,8 @@ TEST_F(LibrarySystems, ThatCannotBeLoadedSayWhy) {
   const std::string what = error_of([&] { make(text); });
   EXPECT_TRUE(what.starts_with("reported an error: \"cannot be loaded: ")) << what;
   EXPECT_EQ(what.find(folder_.string()), std::string::npos) << "the same in any folder: " << what;
-  EXPECT_EQ(error("null"),
-            hello(fmt::format("made no system: no vocabulary for {} classes", classes().size())));
+  EXPECT_EQ(error("null"), hello(fmt::format("created no system: no vocabulary for {} classes",
+                                             classes().size())));
   EXPECT_EQ(error("empty"), hello("left the function relocalize empty"));
 }
 

@@ -195,7 +195,7 @@ TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 nan 0 0 0 0 0 1\\n")),
                "trajectory.txt:2: tx: 'nan' is not finite");
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2.5 0 0 0 0 0 0 1\\n")),
-               "wrote 1 of 2 poses at stamps of no frame, the first at 2.500000000");
+               "wrote 1 of 2 poses at stamps that match no frame, the first at 2.500000000");
   EXPECT_HOLDS(trajectory_error(writes("2.9995 0 0 0 0 0 0 1\\n3 0 0 0 0 0 0 1\\n")),
                "wrote two poses for the frame at 3.000000000");
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 0 -1e200 0 0 0 0 1\\n")),
@@ -342,7 +342,7 @@ TEST_F(OutsideFaults, NothingThatAProgramPutsInThePlaceOfAnImageIsOpened) {
       EXPECT_FALSE(fs::exists(fs::symlink_status(scratch + moved))) << scratch + moved << work;
     return error;
   };
-  EXPECT_HOLDS(after("rm $color; mkdir $color"), "put a folder in the place of its color.ppm");
+  EXPECT_HOLDS(after("rm $color; mkdir $color"), "replaced its color.ppm with a folder");
   EXPECT_EQ(after("rm $color"), "no error");
   EXPECT_EQ(after("rm $color; mkfifo $color"), "no error");
   EXPECT_EQ(after("ln -sf " + mine.string() + " $color"), "no error");
@@ -396,10 +396,10 @@ TEST_F(OutsideFaults, ATrajectoryIsAFileOfItsFolderOfABearableSize) {
         program(OutsideMode::kTrajectory, "cd $(dirname {trajectory}); " + command));
   };
   EXPECT_HOLDS(error("ln -s " + truth.string() + " {trajectory}"),
-               "made its trajectory a link out of its folder");
+               "made its trajectory a link to outside its folder");
   EXPECT_HOLDS(error("mv $PWD $PWD.moved; mkdir elsewhere; ln -s " + truth.string() +
                      " elsewhere/trajectory.txt; ln -s $PWD.moved/elsewhere $PWD"),
-               "made its trajectory a link out of its folder");
+               "made its trajectory a link to outside its folder");
   EXPECT_EQ(run(program(OutsideMode::kTrajectory,
                         "cd $(dirname {trajectory}); "
                         "echo 1 0 0 0 0 0 0 1 > mine; "
@@ -648,11 +648,11 @@ TEST_F(OutsideFaults, AConversationIsGivenTimeToEndWell) {
 
 TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
   EXPECT_HOLDS(hello_error("exit 4"), "exited with code 4");
-  EXPECT_HOLDS(
-      hello_error("echo Welcome to my SLAM; sleep 60"),
-      "wrote what is not a line of JSON: 'Welcome to my SLAM', replying to hello (request 1)");
+  EXPECT_HOLDS(hello_error("echo Welcome to my SLAM; sleep 60"),
+               "wrote something that is not a line of JSON: 'Welcome to my SLAM', replying to "
+               "hello (request 1)");
   EXPECT_HOLDS(hello_error(R"(printf '{"id":1,"protocol":1}\0\n'; sleep 60)"),
-               "wrote what is not a line of JSON");
+               "wrote something that is not a line of JSON");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "named no \"protocol\": expected 1");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
                "speaks protocol 2, not 1");
@@ -677,16 +677,18 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   const auto replies = [&](const std::string& json) {
     return track_error(says("echo '" + json + "'; sleep 60"));
   };
-  EXPECT_HOLDS(replies("garbage"), "wrote what is not a line of JSON: 'garbage'");
+  EXPECT_HOLDS(replies("garbage"), "wrote something that is not a line of JSON: 'garbage'");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
-  EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
-  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"),
+               "pose that does not consist of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"),
+               "pose that does not consist of numbers");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,-1e9,0,0,0,0,1]})"), "a pose more than 1e+08 m away");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
   EXPECT_HOLDS(replies(R"({"id":2})"), "neither a pose nor");
-  EXPECT_HOLDS(replies(R"({"id":3,"pose":null})"), "replied to request 3, which was not asked");
+  EXPECT_HOLDS(replies(R"({"id":3,"pose":null})"), "replied to request 3, which was not sent");
   EXPECT_HOLDS(replies(R"({"pose":null})"), "gave no request number");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
@@ -744,7 +746,7 @@ TEST_F(OutsideFaults, PosesInAMapThatWasGivenUpAreVoid) {
   system->freeze();
   const auto session = system->open_session();
   EXPECT_HOLDS(error_of(p, [&] { session->feed(fake_frame(9, RandomStream(1)), RandomStream(2)); }),
-               "gave up a map that must not change any more");
+               "dropped a map that must not change any more");
 }
 
 TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
@@ -766,7 +768,7 @@ TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
   for (const char* quoted : {"'{dataset}'", "\"{dataset}\"", "\"--data={dataset}\"",
                              "sh -c 'slam {dataset}'", "'{dataset}"})
     EXPECT_HOLDS(refused(OutsideMode::kTrajectory, quoted + std::string(" {trajectory}")),
-                 "stands within quotes: its value comes quoted");
+                 "is inside quotes: its value is already quoted");
   EXPECT_EQ(refused(OutsideMode::kTrajectory, R"(sh -c "slam {dataset} it's" 'a b' {trajectory})"),
             "no error");
   OutsideProgram p = program(OutsideMode::kConversation, "slam");

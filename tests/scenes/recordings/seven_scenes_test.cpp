@@ -106,7 +106,7 @@ TEST_F(SevenScenes, ACameraOfAnotherSizeIsRefused) {
     open_sequence((folder_ / "seq-01").string(), config);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("half.yaml: is of 320 x 240"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("half.yaml: has 320 x 240"), std::string::npos)
         << error.what();
   }
 }

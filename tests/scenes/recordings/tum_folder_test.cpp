@@ -150,7 +150,7 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   };
   refused("a.png: cannot be read: no such file");
   std::ofstream(folder_ / "a.png") << "no image";
-  refused("a.png: is not an image, or a damaged one");
+  refused("a.png: is not an image, or is damaged");
   const std::string whole = encode_png(Grid2d<std::uint8_t>(8, 6));
   std::ofstream(folder_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 12);
   refused("a.png: is truncated");
@@ -187,7 +187,7 @@ TEST_F(TumFolder, WhatHasNoUseIsTold) {
   EXPECT_NE(notes("").find("label.txt: 1 of 1 frames have no label image"), std::string::npos);
   EXPECT_NE(notes("").find("no frame has a true pose at its time"), std::string::npos) << notes("");
   const fs::path classes = folder_ / "classes.yaml";
-  EXPECT_NE(notes(classes).find("has no use: the recording has no labels"), std::string::npos);
+  EXPECT_NE(notes(classes).find("is not used: the recording has no labels"), std::string::npos);
   std::ofstream(folder_ / "label.txt") << "0.1 c.png\n";
   EXPECT_NE(notes(classes).find("c.png: none of its ids has a class"), std::string::npos)
       << notes(classes);
@@ -226,8 +226,7 @@ TEST_F(TumFolder, ListsInNoOrderAreSortedByTheirStamps) {
   EXPECT_EQ(frames[2].color, folder_ / "d.png") << "of one stamp: as listed";
   EXPECT_EQ(frames[3].depth, folder_ / "3.png");
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("rgb.txt: its images are not in the order of their stamps"),
-            std::string::npos);
+  EXPECT_NE(notes[0].find("rgb.txt: its images are not ordered by timestamp"), std::string::npos);
   std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.2 c.png\n0.2 d.png\n0.3 b.png\n";
   notes.clear();
   load_tum_folder(folder_, &notes);
@@ -320,8 +319,8 @@ TEST_F(TumFolder, AssociationsOfThreeListsAreRefusedByTheirWords) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("associations.txt:2: '-0.68' is no file: a line is "
-                        "'stamp file stamp file', and this one has 12 words"),
+                  .find("associations.txt:2: '-0.68' is not a file: a line is 'stamp file stamp "
+                        "file', but this one has 12 words"),
               std::string::npos)
         << error.what();
   }
@@ -395,7 +394,8 @@ TEST_F(TumFolder, AScaleOfDepthThatGivesWayIsTold) {
   const auto has_note = [&](const std::string& layout) {
     const auto opened = open_sequence(layout + (folder_ / "rgbd_bonn_x").string(), config);
     return std::ranges::any_of(opened.notes, [](const std::string& note) {
-      return note == "mine.yaml: its depth per meter, 4000, gives way to 5000, the recording's own";
+      return note ==
+             "mine.yaml: its depth per meter, 4000, is replaced by 5000, the recording's own";
     });
   };
   EXPECT_TRUE(has_note("bonn:"));

@@ -132,9 +132,10 @@ TEST(Planned, AWaypointThatCannotBeReachedIsNamed) {
     }
     return "no error";
   };
-  EXPECT_NE(refusal({8, 2}).find("test.yaml:7: waypoint 1: [8.00, 2.00] cannot be reached: no way "
-                                 "from [3.00, 2.00]"),
-            std::string::npos)
+  EXPECT_NE(
+      refusal({8, 2}).find(
+          "test.yaml:7: waypoint 1: [8.00, 2.00] cannot be reached: no path from [3.00, 2.00]"),
+      std::string::npos)
       << refusal({8, 2});
   EXPECT_NE(refusal({5.1, 2}).find("cannot be reached against sofa"), std::string::npos);
 }

@@ -253,7 +253,7 @@ TEST(Commands, WhatTheRobotLacksIsToldWithFileAndLine) {
   EXPECT_EQ(refusal(robot, script), "no error");  // it has neither reflex nor jerk limits
   script.reflex = true;
   EXPECT_EQ(refusal(robot, script),
-            "test.yaml: robot 'turtlebot3' has no reflex to be awake (its file: "
+            "test.yaml: robot 'turtlebot3' has no reflex to enable (its file: "
             "equipment.collision_reflex)");
   // Without wheels, or without equipment, any direction is possible.
   auto equipment = std::make_shared<Equipment>(*robot.equipment);

@@ -168,7 +168,7 @@ TEST(Drive, SaysThatAWaypointLiesOutsideTheRooms) {
   for (const bool plan : {false, true}) {
     tour.plan = plan;
     const std::string error = refusal(empty_room(), tour);
-    EXPECT_NE(error.find("test.yaml:9: waypoint 2: [18.00, 2.00] cannot be reached, as it lies in "
+    EXPECT_NE(error.find("test.yaml:9: waypoint 2: [18.00, 2.00] cannot be reached, since it is in "
                          "no room of empty room: "),
               std::string::npos)
         << error;
@@ -212,8 +212,7 @@ TEST(Drive, RefusesAStartInsideSomethingOrOutsideTheHouse) {
   EXPECT_NE(error.find("mm inside sofa"), std::string::npos) << error;
   Tour outside = tour_of({to(2, 5)});
   outside.start_m = {-3, 0};
-  EXPECT_NE(refusal(empty_room(), outside).find("lies in no room of empty room"),
-            std::string::npos);
+  EXPECT_NE(refusal(empty_room(), outside).find("is in no room of empty room"), std::string::npos);
 }
 
 }  // namespace

@@ -166,8 +166,8 @@ TEST(NoteOn, APlaceToFaceIsNotForADifferentialDrive) {
   EXPECT_EQ(note_on(file, test::pepper()), "");
   EXPECT_EQ(note_on(file, test::turtlebot()),
             file +
-                ":5: robot 'turtlebot3' has a differential drive: it faces its way, not the "
-                "place of 'face'");
+                ":5: robot 'turtlebot3' has a differential drive: it faces its direction of "
+                "travel, not the place in 'face'");
 }
 
 }  // namespace

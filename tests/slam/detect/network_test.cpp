@@ -158,11 +158,11 @@ TEST_F(Networks, WhoseMetadataSayThatTheyAreNotReadAreRefused) {
   };
   for (const char* task : {"segment", "pose", "obb", "classify"})
     EXPECT_SAYS(says(test::metadata("task", task)),
-                std::string("v8.onnx: is of the task '") + task + "'");
+                std::string("v8.onnx: is for the task '") + task + "'");
   EXPECT_SAYS(says(test::metadata("names", "{0: 'chair'}")),
               "has 2 classes, and its metadata names 1");
   EXPECT_SAYS(says(test::metadata("names", "chair, table")),
-              "its metadata's `names` is no list of classes: 'chair, table'");
+              "its metadata's `names` is not a list of classes: 'chair, table'");
 }
 
 TEST_F(Networks, ThatOpencvLacksAnOperatorForSayWhatToExport) {
@@ -283,8 +283,7 @@ TEST_F(Networks, WithFewerWeightsThanTheirShapeStatesAreRefused) {
   const std::size_t shape = less.find(std::string("\x08\x02\x08\x03\x08\x01\x08\x01", 8));
   ASSERT_NE(shape, less.npos);
   less[shape + 1] = '\x40';  // 64 x 3 x 1 x 1, although there are only the weights of 2 x 3
-  EXPECT_SAYS(refusal(two_classes("less.onnx", less)),
-              "hold 6 values where their shape states 192");
+  EXPECT_SAYS(refusal(two_classes("less.onnx", less)), "hold 6 values, but their shape needs 192");
 }
 
 TEST(OnnxWeights, AreCountedByTheSizeOfTheirType) {
@@ -295,7 +294,7 @@ TEST(OnnxWeights, AreCountedByTheSizeOfTheirType) {
   EXPECT_EQ(fault(test::floats("w", {2}, {1, 2})), "");
   EXPECT_EQ(fault(test::integers("w", {1, 2})), "");
   EXPECT_SAYS(fault(test::halves("w", {4}, {0x3c00, 0x3c00})),
-              "hold 2 values where their shape states 4");
+              "hold 2 values, but their shape needs 4");
 }
 
 TEST_F(Networks, WhoseValuesAreNoNumbersAreRefused) {
@@ -328,7 +327,7 @@ TEST_F(Networks, CutShortAnywhereNeverCrash) {
     EXPECT_SAYS(refusal(spec), "cut.weights: ");
   }
   write("cut.weights", weights + "more");
-  EXPECT_SAYS(refusal(spec), "it is of another one");
+  EXPECT_SAYS(refusal(spec), "it belongs to another network");
   write("cut.weights", weights);
   const std::string config = test::darknet_config(64, 32);
   for (std::size_t size = 0; size + 30 < config.size(); size += 7) {
@@ -351,7 +350,7 @@ TEST_F(Networks, OfDarknetAreRefusedByTheConfigurationsLine) {
   spec.config = write("a.cfg", "\xef\xbb\xbf" + good);
   EXPECT_EQ(open_detector(spec)->description(), "darknet, 2 classes, input 64 x 32");
   EXPECT_SAYS(with("width=64", "width=9000"), "a.cfg:2: width = 9000: a side is a whole number");
-  EXPECT_SAYS(with("width=64", "Width=64"), "a.cfg: section [net] states no width");
+  EXPECT_SAYS(with("width=64", "Width=64"), "a.cfg: section [net] has no width");
   EXPECT_SAYS(with("mask=0,1,2", "mask=0,1,3"), "mask = 0,1,3: there is no anchor 3 among 3");
   EXPECT_SAYS(with("mask=0,1,2", "mask=-3,1,2"), "there is no anchor -3 among 3");
   EXPECT_SAYS(with("[yolo]", "[route]\nlayers=-9\n[yolo]"),

@@ -358,7 +358,7 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   EXPECT_NE(said([](Parts& p) { p.seen->observations.pop_back(); }), "");
   EXPECT_NE(said([](Parts& p) { p.standing->covisible.pop_back(); }), "");
   EXPECT_EQ(refusal_of(framed(Layout(midway()).bytes() + "x")),
-            "room.mhmap: is not a consistent map: it goes on after its end");
+            "room.mhmap: is not a consistent map: it has data after its end");
 }
 
 TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
@@ -432,8 +432,8 @@ TEST(MapFile, DigestsTellEveryPartOfAMapApart) {
 }
 
 TEST(MapFile, SaysWhatIsWrong) {
-  EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
-  EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
+  EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a Modelhouse map");
+  EXPECT_EQ(refusal_of(""), "room.mhmap: is not a Modelhouse map");
   std::string other = midway_bytes();
   other[8] = 13;
   EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 13, but this program reads 12");
@@ -454,7 +454,7 @@ TEST(MapFile, EveryCutIsNoticed) {
     const std::size_t length = draws.below(i, i % 2 ? 200 : midway_bytes().size());
     const std::string said = refusal_of(midway_bytes().substr(0, length));
     EXPECT_TRUE(said.find("truncated") != std::string::npos ||
-                (length == 0 && said.find("not a map") != std::string::npos))
+                (length == 0 && said.find("not a Modelhouse map") != std::string::npos))
         << length << ": " << said;
   }
 }

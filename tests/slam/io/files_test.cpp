@@ -47,7 +47,7 @@ TEST(ReadFile, MoreThanFourGigabytesAreNotReadAtOnce) {
       ADD_FAILURE();
     } catch (const InputError& error) {
       EXPECT_EQ(error.what(),
-                file.string() + ": cannot be read: it has 4.3 GB, 4.3 GB is the most");
+                file.string() + ": cannot be read: it has 4.3 GB, at most 4.3 GB can be read");
     }
   }
   EXPECT_EQ(map_file(file, MapPages::kAsTouched).view.size(), kMostReadAtOnce_bytes + 1);

@@ -309,7 +309,7 @@ TEST(MapServer, RefusesWhatItCannotRead) {
     expect_map_refused(good, "pixels, not 1 to 65536 each");
   }
   for (const auto& [image, message] : std::vector<std::pair<std::string, std::string>>{
-           {"P6\n1 1\n255\nabc", "is no PGM image (P5 or P2)"},
+           {"P6\n1 1\n255\nabc", "is not a PGM image (P5 or P2)"},
            {"P2\n2 1\n255\n7\n", "is truncated"},
            {"P2\n2 1\n255\n7 # 8\n", "is truncated"},
            {"P2\n2 1\n255\n7 8x", "pixel 2 is '8x', not a number"},
@@ -438,20 +438,21 @@ TEST(MapServer, DirtyFilesAreReadWithAWarning) {
   write("P5\r\n2 1\r\n255\r\n" + pixels, "mode: Trinary\n");
   EXPECT_EQ(read({}), right);
   write("P5\n2 1\n255\n" + pixels + "\n", "");
-  EXPECT_EQ(read({"1 byte behind its 2 x 1 pixels is ignored"}), right);
+  EXPECT_EQ(read({"1 byte after its 2 x 1 pixels is ignored"}), right);
   write("P5\n2 1\n255\n" + pixels, "mdoe: raw\n");
-  EXPECT_EQ(read({"dirty.yaml:7: key 'mdoe' is none of map_server's and is ignored; did you mean "
-                  "'mode'?"}),
-            right);
+  EXPECT_EQ(
+      read({"dirty.yaml:7: key 'mdoe' is not one of map_server's and is ignored; did you mean "
+            "'mode'?"}),
+      right);
   write("P5\n2 1\n255\n" + pixels, "");
   const auto turn = [&](const std::string& yaw) {
     write_atomically(file, "image: dirty.pgm\nresolution: 1\norigin: [0, 0, " + yaw +
                                "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   };
   turn("-nan");  // written by map_saver if a mapper sent no valid quaternion
-  EXPECT_EQ(read({"dirty.yaml:3: origin: its turn '-nan' is taken for 0"}), right);
+  EXPECT_EQ(read({"dirty.yaml:3: origin: its yaw '-nan' is taken as 0"}), right);
   turn("90");
-  EXPECT_EQ(read({"its turn of 90 is read in radians"}), right);
+  EXPECT_EQ(read({"its yaw of 90 is read in radians"}), right);
   write("P5\n2 1\n255\n" + pixels, "mode: raw\n");
   EXPECT_EQ(read({"1 cell is from 101 to 254"}), std::pair(-1, 0));
 }

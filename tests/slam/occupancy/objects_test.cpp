@@ -76,7 +76,7 @@ TEST(ObjectsNamed, FindsByClassSynonymAndName) {
   EXPECT_NE(why_not(objects, "sofa").find("the map holds none"), std::string::npos);
   EXPECT_EQ(objects_named(objects, "FRIDGE"), std::vector<std::size_t>{3});
   EXPECT_EQ(objects_named(objects, "Chair_2"), std::vector<std::size_t>{1});
-  EXPECT_NE(why_not(objects, "wall").find("is never an object of a map"), std::string::npos);
+  EXPECT_NE(why_not(objects, "wall").find("is never an object in a map"), std::string::npos);
   EXPECT_NE(objects_json(objects, 0.05).find("\"name\": \"chair 2\""), std::string::npos);
 }
 

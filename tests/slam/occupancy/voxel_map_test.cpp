@@ -242,8 +242,8 @@ TEST(VoxelMap, DamagedFilesAreRefused) {
     const std::size_t at = good.find("\n" + key + " ") + key.size() + 2;
     return good.substr(0, at) + value + good.substr(good.find('\n', at));
   };
-  expect_refused(with_header("size", "1"), "its tree has not the 1 nodes that it says");
-  expect_refused(with_header("res", "nan"), "its resolution 'nan' is no number");
+  expect_refused(with_header("size", "1"), "its tree does not have the 1 nodes that it declares");
+  expect_refused(with_header("res", "nan"), "its resolution 'nan' is not a number");
   std::ostringstream binary;
   mapped_room().map().write_bt(binary);
   expect_refused(binary.str(), "without classes");
@@ -280,7 +280,7 @@ void expect_alike(const std::string& file, const Tree& tree) {
   std::vector<std::string> notes;
   const VoxelMap map = VoxelMap::load_octree(file, notes);
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("knows no classes"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("it has no classes"), std::string::npos) << notes[0];
   EXPECT_EQ(map.voxel_count(), 24U * 16 * 21 + 16 * 16 * 16);
   map.for_each([&](const Voxel& voxel) {
     const Vector3d c = voxel.center_m(0.05);

@@ -184,16 +184,16 @@ TEST(Dbow2Text, FaultsAreToldWithTheirLine) {
   const std::string leaf = "0 1" + d + "32 0.5\n", inner = "0 0" + d + "32 0\n";
   ASSERT_EQ(fault_of("2 2 0 0\n" + leaf), "no error");
 
-  EXPECT_EQ(fault_of(" \n"), "t.txt: holds nothing");
+  EXPECT_EQ(fault_of(" \n"), "t.txt: is empty");
   EXPECT_EQ(fault_of("10 6 0 0\n"), "t.txt:1: holds no node");
-  EXPECT_EQ(fault_of("10 6 0\n" + leaf), "t.txt:1: line ends where weighting should stand");
-  EXPECT_EQ(fault_of("10 6 0 0 9\n" + leaf), "t.txt:1: line goes on where it should end: '9'");
+  EXPECT_EQ(fault_of("10 6 0\n" + leaf), "t.txt:1: line ends where weighting is expected");
+  EXPECT_EQ(fault_of("10 6 0 0 9\n" + leaf), "t.txt:1: line continues where it should end: '9'");
   EXPECT_EQ(fault_of("1 6 0 0\n" + leaf), "t.txt:1: k: 1 is not from 2 to 20");
   EXPECT_EQ(fault_of("99999999999 6 0 0\n" + leaf), "t.txt:1: k: 99999999999 is not from 2 to 20");
   EXPECT_EQ(fault_of("10 11 0 0\n" + leaf), "t.txt:1: L: 11 is not from 1 to 10");
   EXPECT_EQ(fault_of("10 6 7 0\n" + leaf), "t.txt:1: scoring: 7 is not from 0 to 5");
   EXPECT_EQ(fault_of("10 6 0 4\n" + leaf), "t.txt:1: weighting: 4 is not from 0 to 3");
-  EXPECT_EQ(fault_of("ten 6 0 0\n" + leaf), "t.txt:1: k: 'ten' is not a number of this kind");
+  EXPECT_EQ(fault_of("ten 6 0 0\n" + leaf), "t.txt:1: k: 'ten' is not a valid number here");
 
   const std::string head = "2 2 0 0\n" + leaf;
   EXPECT_EQ(fault_of(head + "3 1" + d + "32 0.5\n"),
@@ -211,18 +211,17 @@ TEST(Dbow2Text, FaultsAreToldWithTheirLine) {
   EXPECT_EQ(fault_of(head + "0 1" + d + "256 0.5\n"),
             "t.txt:3: a byte of the descriptor: 256 is not from 0 to 255");
   EXPECT_EQ(fault_of(head + "0 1" + d + "3.5 0.5\n"),
-            "t.txt:3: a byte of the descriptor: '3.5' is not a number of this kind");
+            "t.txt:3: a byte of the descriptor: '3.5' is not a valid number here");
   EXPECT_EQ(fault_of(head + "0 1" + d + "\n"),
-            "t.txt:3: line ends where a byte of the descriptor should stand");
-  EXPECT_EQ(fault_of(head + "0 1" + d + "32\n"),
-            "t.txt:3: line ends where the weight should stand");
+            "t.txt:3: line ends where a byte of the descriptor is expected");
+  EXPECT_EQ(fault_of(head + "0 1" + d + "32\n"), "t.txt:3: line ends where the weight is expected");
   EXPECT_EQ(fault_of(head + "0 1" + d + "32 0.5 7\n"),
-            "t.txt:3: line goes on where it should end: '7'");
+            "t.txt:3: line continues where it should end: '7'");
   EXPECT_EQ(fault_of(head + "0 1" + d + "32 nan\n"),
             "t.txt:3: the weight: nan is not a number from 0");
   EXPECT_EQ(fault_of(head + "0 1" + d + "32 -0.5\n"),
             "t.txt:3: the weight: -0.5 is not a number from 0");
-  EXPECT_EQ(fault_of("2 2 0 0\n\n" + leaf), "t.txt:2: line ends where the parent should stand");
+  EXPECT_EQ(fault_of("2 2 0 0\n\n" + leaf), "t.txt:2: line ends where the parent is expected");
 }
 
 TEST(Dbow2Text, CutShortAnywhereIsRefusedOrHoldsFewerWords) {

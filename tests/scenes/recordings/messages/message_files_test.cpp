@@ -261,10 +261,10 @@ TEST(McapByHand, AnEndThatIsAnotherIsTold) {
   expect_told(Mcap(file).record(mcap::Opcode::kDataEnd, std::string(4, '\0')).bytes(),
               "it has no footer");
   expect_told(whole.substr(0, whole.size() - 20), "it has no footer");
-  expect_told(whole.substr(0, whole.size() - 1), "is not followed by MCAP's last bytes");
+  expect_told(whole.substr(0, whole.size() - 1), "is not followed by MCAP's closing bytes");
   expect_told(whole + whole,
               fmt::format("{} bytes after its end are left out", whole.size()).c_str());
-  expect_told(Mcap(file).end(1).bytes(), "its data's CRC is another");
+  expect_told(Mcap(file).end(1).bytes(), "its data's CRC does not match");
   const std::string data = file.bytes();
   EXPECT_EQ(
       note_of(read_all(Mcap(file).end(libdeflate_crc32(0, data.data(), data.size())).bytes())), "");
@@ -279,15 +279,15 @@ TEST(McapByHand, LiesAreCounted) {
     EXPECT_TRUE(read.messages.empty());
     EXPECT_NE(note_of(read).find(part), std::string::npos) << note_of(read);
   };
-  expect_left_out(Mcap().chunk(records, "", records.size(), 1), "its CRC is another");
+  expect_left_out(Mcap().chunk(records, "", records.size(), 1), "its CRC does not match");
   expect_left_out(Mcap().chunk(records, "", 5, 0), "claims 5 bytes");
   expect_left_out(Mcap().chunk(zstd, "zstd", 1, 0), "it holds more bytes, not 1");
   expect_left_out(Mcap().chunk(zstd, "zstd", records.size() + 1, 0), "bytes, not");
   expect_left_out(Mcap().chunk(zstd, "zstd", std::uint64_t{1} << 50, 0), "claims 1125899906842624");
   expect_left_out(Mcap().chunk(zstd, "lz4", records.size(), 0), "its lz4 data");
   expect_left_out(Mcap().chunk(zstd, "snappy", records.size(), 0),
-                  "by 'snappy', which is not read");
-  expect_left_out(Mcap().message(7, "m"), "a message is of no channel");
+                  "with 'snappy', which is not supported");
+  expect_left_out(Mcap().message(7, "m"), "a message belongs to no channel");
   expect_left_out(Mcap().record(mcap::Opcode::kChannel, "x"), "ends too early");
 }
 
@@ -300,7 +300,7 @@ TEST(Bag, OfWhichSomethingFollowsOrARecordIsOfNoKindSaysSo) {
       << note_of(longer);
   std::string unknown = whole;
   unknown[unknown.find("op=\x07", unknown.find("op=\x05")) + 3] = '\x1f';
-  EXPECT_NE(note_of(read_all(unknown)).find("'op' is 31, a record of no known kind"),
+  EXPECT_NE(note_of(read_all(unknown)).find("'op' is 31, an unknown kind of record"),
             std::string::npos)
       << note_of(read_all(unknown));
 }
