@@ -75,7 +75,8 @@ TEST_F(BoxFiles, OfMotCountFromOne) {
 }
 
 TEST_F(BoxFiles, MayHaveTheLineEndsOfOldMacs) {
-  const auto boxes = open("a.csv", "4,-1,11,21,30,20,0.8,57,1\r5,-1,11,21,30,20,0.8,57,1\r");
+  const auto boxes =
+      open("a.csv", "# of an old Mac\r4,-1,11,21,30,20,0.8,57,1\r5,-1,11,21,30,20,0.8,57,1\r");
   expect_chair(boxes->detect(image_, 3, 0));
   expect_chair(boxes->detect(image_, 4, 0));
 }

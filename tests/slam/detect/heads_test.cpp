@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/detect/heads.hpp"
+#include "slam/detect/fit_image.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 
@@ -7,6 +8,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <opencv2/core.hpp>
+
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -180,6 +184,16 @@ TEST(Decode, ValuesThatAreNotFiniteMakeNoBox) {
   EXPECT_EQ(decode(Head::kYolox, {&tensor, 1}, kInput, 0.3).size(), 1U);
 }
 
+TEST(Decode, OfEqualScoresTheFirstClassWins) {
+  Made made({1, 126, 7});
+  const std::vector<float> values = {10, 12, 4, 6, 1, 0.75F, 0.75F};
+  std::copy(values.begin(), values.end(), made.values.begin());
+  const Tensor tensor = made.tensor();
+  const auto found = decode(Head::kYolov5, {&tensor, 1}, kInput, 0.3);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].best, 0);
+}
+
 TEST(Decode, BoxesMayBeNarrowerThanAPixelButHaveASize) {
   Made made({1, 126, 7});
   const auto put = [&](std::ptrdiff_t i, float width, float height) {
@@ -278,6 +292,26 @@ TEST(PlaceImage, RoundsInTheCenterAndCutsInTheCorner) {
   EXPECT_EQ(place(335, Letterbox::kCenter).height, 279);
   EXPECT_EQ(place(335, Letterbox::kCenter).top, 68);  // half of the 137 rows that remain
   EXPECT_EQ(place_image(1000, 1, {416, 416}, Letterbox::kCorner).height, 1);
+}
+
+TEST(NetworkInput, IsNormalizedAsTheNetworkWasTrained) {
+  const Grid2d<Rgb8> color(2, 2, {100, 150, 200});
+  const InputSize size{2, 2};
+  const auto planes = [&](Normalize normalize, Channels channels) {
+    DetectorSettings settings;
+    settings.normalize = normalize, settings.channels = channels;
+    settings.letterbox = Letterbox::kStretch;
+    const cv::Mat blob =
+        network_input(color, size, place_image(2, 2, size, Letterbox::kStretch), settings);
+    return std::array{*blob.ptr<float>(0, 0), *blob.ptr<float>(0, 1), *blob.ptr<float>(0, 2)};
+  };
+  EXPECT_EQ(planes(Normalize::kNone, Channels::kBgr), (std::array{200.0F, 150.0F, 100.0F}));
+  EXPECT_NEAR(planes(Normalize::kUnit, Channels::kRgb)[0], 100 / 255.0, 1e-6);
+  // Mean and deviation of ImageNet, as torchvision documents them.
+  const auto imagenet = planes(Normalize::kImagenet, Channels::kRgb);
+  EXPECT_NEAR(imagenet[0], (100 / 255.0 - 0.485) / 0.229, 1e-5);
+  EXPECT_NEAR(imagenet[1], (150 / 255.0 - 0.456) / 0.224, 1e-5);
+  EXPECT_NEAR(imagenet[2], (200 / 255.0 - 0.406) / 0.225, 1e-5);
 }
 
 TEST(ReadClassNames, TakesWhatPythonPrints) {

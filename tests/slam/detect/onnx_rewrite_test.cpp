@@ -124,6 +124,9 @@ TEST(RewriteOnnx, CutsAnyAxes) {
       result(integers("s", {1, 1}) + integers("e", {end, end}) + integers("a", {1, 3}) +
              integers("by", {1, 2}) + node("Slice", {"image", "s", "e", "a", "by"}, {"output"})),
       {10, 12, 14, 16, 18, 20, 22, 24});
+  expect_near(result(integers("s", {1, 1}) + integers("e", {2, 3}) + integers("a", {2, 3}) +
+                     node("Slice", {"image", "s", "e", "a"}, {"output"})),
+              {6, 7, 14, 15, 22, 23});  // by steps of one, if none are given
   expect_near(
       result(integers("i", {-2}) + node("Gather", {"image", "i"}, {"output"}, integer("axis", 3))),
       {3, 7, 11, 15, 19, 23});
@@ -157,6 +160,16 @@ TEST(RewriteOnnx, ComputesWhatDependsOnSizesAlone) {
   for (const bool open : {false, true})
     expect_near(result(graph + repeat, 17, open),
                 each([](double v, int, int, int x) { return v + x + 0.5; }));
+}
+
+// The second part of a constant that is split begins where the first ends.
+TEST(RewriteOnnx, SplitsConstants) {
+  const std::string parts =
+      floats("all", {8}, {1, 2, 4, 8, 10, 20, 30, 40}) + integers("sizes", {4, 4}) +
+      node("Split", {"all", "sizes"}, {"first", "second"}, integer("axis", 0)) +
+      node("Mul", {"image", "first"}, {"scaled"}) + node("Add", {"scaled", "second"}, {"output"});
+  expect_near(result(parts),
+              each([](double v, int, int, int x) { return v * (1 << x) + 10 * (x + 1); }));
 }
 
 TEST(RewriteOnnx, ReadsHalfPrecision) {
