@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/png_pixels.hpp"
 #include "scenes/tga.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
@@ -165,6 +166,8 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form) {
         fmt::format("declares {} x {} pixels, more than its {} bytes can hold or the limit allows",
                     size->width, size->height, bytes.size()));
   }
+  if (form == ImageForm::kStored)
+    if (cv::Mat image = decode_plain_png(bytes); !image.empty()) return image;
   const std::string quiet = without_remarks(bytes);
   const auto count = narrowed<int>(quiet.size());
   cv::Mat image;

@@ -7,6 +7,7 @@
 #include "slam/core/random.hpp"
 
 #include "scenes/image_file.hpp"
+#include "scenes/png_pixels.hpp"
 
 namespace mh {
 namespace {
@@ -44,6 +45,49 @@ TEST_P(Png, ImagesThatAreNoWholePieceOfMemory) {
   EXPECT_EQ(encode_png(part), encode_png(part.clone()));
 }
 
+/// The image as PNG, each row filtered by a given filter, or all in turn.
+std::string filtered_png(const cv::Mat& image, int filter) {
+  const std::vector<int> how = {cv::IMWRITE_PNG_COMPRESSION, 6, cv::IMWRITE_PNG_STRATEGY, filter};
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", image, bytes, how);
+  return {bytes.begin(), bytes.end()};
+}
+
+// OpenCV is the plain way. Ramps make libpng choose among all five filters.
+TEST_P(Png, PixelsAreThoseThatOpenCvReads) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 2), cv::Size(637, 31)}) {
+    const cv::Mat noise = some_image(size.width, size.height, GetParam());
+    cv::Mat ramp(size, GetParam());
+    for (int y = 0; y < ramp.rows; ++y)
+      for (std::size_t i = 0; i < static_cast<std::size_t>(ramp.cols) * ramp.elemSize(); ++i)
+        ramp.ptr(y)[i] =
+            static_cast<unsigned char>(y % 3 == 0   ? 3 * i
+                                       : y % 3 == 1 ? 5 * static_cast<std::size_t>(y)
+                                                    : i * i / 7 + static_cast<std::size_t>(y));
+    for (const cv::Mat& image : {noise, ramp})
+      for (const int strategy : {cv::IMWRITE_PNG_STRATEGY_DEFAULT,
+                                 cv::IMWRITE_PNG_STRATEGY_FILTERED, cv::IMWRITE_PNG_STRATEGY_RLE}) {
+        const std::string file = filtered_png(image, strategy);
+        const cv::Mat read = decode_plain_png(file);
+        ASSERT_EQ(read.type(), image.type());
+        ASSERT_EQ(read.size(), image.size());
+        EXPECT_EQ(cv::norm(read, image, cv::NORM_INF), 0.0) << size << " strategy " << strategy;
+      }
+  }
+}
+
+TEST_P(Png, DamagedPixelsAreLeftToOpenCv) {
+  const std::string whole = encode_png(some_image(21, 13, GetParam()));
+  for (std::size_t at = 8; at < whole.size(); ++at) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x41);
+    decode_plain_png(damaged);  // the sanitizers watch
+    decode_plain_png(whole.substr(0, at));
+  }
+  EXPECT_TRUE(decode_plain_png("not an image").empty());
+  EXPECT_TRUE(decode_plain_png("").empty());
+}
+
 INSTANTIATE_TEST_SUITE_P(Types, Png, testing::Values(CV_8UC1, CV_8UC3, CV_16UC1));
 
 TEST(PngText, IsFoundAgainAndLeavesTheImageAsItWas) {
@@ -64,6 +108,9 @@ TEST(PngTypes, OthersAreLeftToOpenCv) {
   EXPECT_TRUE(is_png_type(CV_16UC1));
   EXPECT_FALSE(is_png_type(CV_32FC1));
   EXPECT_FALSE(is_png_type(CV_8UC4));
+  const std::string with_opacity = filtered_png(some_image(9, 7, CV_8UC4), 0);
+  EXPECT_TRUE(decode_plain_png(with_opacity).empty());
+  EXPECT_EQ(decode_image(with_opacity).type(), CV_8UC4);
 }
 
 }  // namespace
