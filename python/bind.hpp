@@ -20,7 +20,7 @@
 #include "slam/core/sequence.hpp"
 #include "slam/core/trajectory.hpp"
 
-// What the parts of the Python module have in common. In Python poses are 4 x 4 arrays, images are
+// What the parts of the Python module have in common. In Python, poses are 4 x 4 arrays, images are
 // views of our memory, stamps are integers in nanoseconds.
 
 PYBIND11_MAKE_OPAQUE(std::vector<mh::TimedPose>)  // a class of its own
@@ -32,7 +32,7 @@ namespace py = pybind11;
 template <class T>
 using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-/// A read-only view of an image; `owner` keeps its memory.
+/// A read-only view of an image, whose memory `owner` keeps alive.
 template <class T>
 py::array view_of(const Grid2d<T>& grid, py::handle owner) {
   const auto h = grid.height(), w = grid.width();
@@ -46,7 +46,7 @@ py::array view_of(const Grid2d<T>& grid, py::handle owner) {
   return view;
 }
 
-/// The same of an image that nothing else holds.
+/// The same for an image that nothing else holds.
 template <class T>
 py::array array_of(Grid2d<T> grid) {
   auto held = std::make_unique<Grid2d<T>>(std::move(grid));
@@ -55,7 +55,7 @@ py::array array_of(Grid2d<T> grid) {
   return view_of(image, owner);
 }
 
-/// @throws py::value_error naming what it is, its shape and the shape that was expected
+/// @throws py::value_error naming the argument, its shape and the shape that was expected
 template <class T>
 Grid2d<T> grid_of(const Array<T>& image, const char* what) {
   if (image.ndim() != 2)
@@ -67,14 +67,14 @@ Grid2d<T> grid_of(const Array<T>& image, const char* what) {
 }
 Grid2d<Rgb8> color_of(const Array<std::uint8_t>& image);
 
-/// What numpy makes of a list or an array. @throws py::value_error if that is nothing
+/// Converts a list or an array with numpy. @throws py::value_error if numpy cannot
 inline py::array array_of_numbers(const py::object& object, const char* what) {
   py::array array = py::array::ensure(object);
-  if (!array) throw py::value_error(std::string(what) + ": is no array");
+  if (!array) throw py::value_error(std::string(what) + ": is not an array");
   return array;
 }
 
-/// Of what a pose may be; also of places in a scene.
+/// Largest accepted coordinate of a place and distance of a pose from the origin.
 inline constexpr double kFarthest_m = 1e6;
 
 /// 4 x 4.
@@ -89,7 +89,7 @@ inline Array<double> rows_of(const std::vector<std::vector<double>>& rows, py::s
   return all;
 }
 
-/// A recording, with the settings in its calibration and what was noticed when it was opened.
+/// A recording, with the settings in its calibration and the notes from opening it.
 struct Recording {
   std::shared_ptr<const Sequence> frames;
   SlamConfig slam;

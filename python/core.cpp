@@ -58,7 +58,7 @@ SE3 to_pose(const Array<double>& matrix) {
   if (!translation_m.allFinite() || !rotation.allFinite() ||
       (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).norm() > kRound ||
       rotation.determinant() < 0)
-    throw py::value_error("not a rigid pose: its rotation is none, or a number is not finite");
+    throw py::value_error("not a rigid pose: its rotation is not valid, or a number is not finite");
   return {rotation, translation_m};
 }
 
@@ -118,7 +118,7 @@ RgbdFrame frame_at(const Recording& recording, py::ssize_t i) {
 }
 
 /// @throws py::value_error unless numbers are of one of these kinds ("u", "i", "f"), since others
-/// would be converted to something else than was meant
+/// would be converted to something that was not meant
 void require_kind(const py::array& image, const std::string& kinds, const char* what,
                   const char* expected) {
   if (kinds.find(image.dtype().kind()) == std::string::npos)
@@ -156,7 +156,7 @@ RgbdFrame make_frame(const py::object& colors, const py::object& depths, Stamp s
     for (int y = 0; y < given.height(); ++y)
       for (int x = 0; x < given.width(); ++x) {
         if (given(x, y) < 0 || static_cast<std::size_t>(given(x, y)) >= classes().size())
-          throw py::value_error(fmt::format("labels: {} is no class", given(x, y)));
+          throw py::value_error(fmt::format("labels: {} is not a class", given(x, y)));
         ids(x, y) = static_cast<std::uint16_t>(given(x, y));
       }
     frame.semantics = one_hot(ids, nullptr);
@@ -255,8 +255,8 @@ void bind_core(py::module_& m) {
                            c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.rate_hz);
       });
 
-  py::class_<LaserScan>(m, "LaserScan", "A planar scan of a laser.")
-      .def_readonly("name", &LaserScan::name, "of the laser")
+  py::class_<LaserScan>(m, "LaserScan", "A planar laser scan.")
+      .def_readonly("name", &LaserScan::name, "name of the laser")
       .def_property_readonly(
           "camera_from_laser", [](const LaserScan& s) { return to_python(s.camera_from_laser); },
           "4 x 4, at the frame's stamp")
@@ -277,7 +277,7 @@ void bind_core(py::module_& m) {
           "(N,) m; 0 where nothing is in range");
 
   py::class_<RgbdFrame, std::shared_ptr<RgbdFrame>>(
-      m, "Frame", "Everything that SLAM sees of one instant. Images are read-only views.")
+      m, "Frame", "Everything that SLAM sees at one time. Images are read-only views.")
       .def(py::init(&make_frame), py::arg("color"), py::arg("depth"), py::arg("stamp_ns") = 0,
            py::arg("labels") = py::none(), py::arg("odometry") = py::none())
       .def_readonly("stamp_ns", &RgbdFrame::stamp_ns, "ns")
@@ -293,7 +293,7 @@ void bind_core(py::module_& m) {
             if (f.semantics.index.empty()) return py::none();
             return array_of(class_image(f.semantics));
           },
-          "(H, W) uint8, the most probable class of each pixel, 0 unknown; None without labels")
+          "(H, W) uint8, the most probable class of each pixel, 0 if unknown; None without labels")
       .def_property_readonly(
           "odometry", [](const RgbdFrame& f) { return to_python(f.odom_from_camera); },
           "4 x 4, where the wheels alone place the camera; None without odometry")
@@ -302,7 +302,7 @@ void bind_core(py::module_& m) {
           "(N, 7): stamp (s), angular rate (rad/s), specific force (m/s^2), camera axes")
       .def_readonly("lasers", &RgbdFrame::lasers, "list of LaserScan");
 
-  py::class_<Trajectory>(m, "Trajectory", "Camera poses by increasing stamps.")
+  py::class_<Trajectory>(m, "Trajectory", "Camera poses in order of their stamps.")
       .def(py::init(&make_trajectory), py::arg("stamps_ns"), py::arg("poses"))
       .def("__len__", [](const Trajectory& t) { return t.size(); })
       .def_property_readonly("stamps_ns", &stamps_of_poses, "(N,) int64")
@@ -331,7 +331,7 @@ void bind_core(py::module_& m) {
         "`rpe_frame_m`, `rpe_s_m` and so on, each with rmse, mean, median, std, min, max, count.\n"
         "align: none, origin, se3 or sim3. Poses are paired within 10 ms.");
 
-  py::class_<Recording>(m, "Sequence", "A recording; frames are read when they are asked for.")
+  py::class_<Recording>(m, "Sequence", "A recording; frames are read on demand.")
       .def("__len__", [](const Recording& r) { return r.frames->size(); })
       .def("__getitem__", &frame_at, py::arg("index"))
       .def_property_readonly(
@@ -349,7 +349,7 @@ void bind_core(py::module_& m) {
             return r.frames->truth() ? std::optional(*r.frames->truth()) : std::nullopt;
           },
           "True camera poses, a Trajectory; None if unknown")
-      .def_readonly("notes", &Recording::notes, "What could not be used, a line each");
+      .def_readonly("notes", &Recording::notes, "One line about each thing that could not be used");
   m.def(
       "open_sequence", &open_recording, py::arg("source"), py::arg("settings") = "",
       py::arg("labels") = true, py::arg("topics") = "",

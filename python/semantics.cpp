@@ -13,7 +13,8 @@
 namespace mh::python {
 namespace {
 
-/// Ids of labels or words. @throws py::value_error unless they are integers of 32 bits
+/// Ids of labels or words. @throws py::value_error unless they are integers that fit in 32 bits,
+/// unsigned
 class Ids {
  public:
   Ids(const py::object& object, const char* what) {
@@ -25,7 +26,7 @@ class Ids {
     const Array<std::int64_t> all(given);
     for (py::ssize_t i = 0; i < all.size(); ++i) {
       if (all.data()[i] < 0 || all.data()[i] > UINT32_MAX)
-        throw py::value_error(fmt::format("{}: {} is no id", what, all.data()[i]));
+        throw py::value_error(fmt::format("{}: {} is not an id", what, all.data()[i]));
       ids_.push_back(static_cast<std::uint32_t>(all.data()[i]));
     }
   }
@@ -124,11 +125,10 @@ void bind_semantics(py::module_& m) {
           "words", [](const AugmentedVector& v) { return members(v.words); }, "id: share")
       .def_property_readonly("label_mass", &AugmentedVector::label_mass,
                              "share of the mass that comes from labels");
-  s.def(
-      "augmented_vector", &make_vector, py::arg("labels"), py::arg("words"), py::arg("gamma"),
-      py::arg("eta") = py::none(), py::arg("void_is_a_label") = false,
-      "Equation 1 from one label and one word per keypoint, (N,) each. eta: factor by word, (W,); "
-      "None: 1. Label 0 is void.");
+  s.def("augmented_vector", &make_vector, py::arg("labels"), py::arg("words"), py::arg("gamma"),
+        py::arg("eta") = py::none(), py::arg("void_is_a_label") = false,
+        "Equation 1 from one label and one word per keypoint, (N,) each. eta: factor of each word, "
+        "(W,); None: all 1. Label 0 is void.");
   s.def("similarity", &l1_similarity, py::arg("f"), py::arg("k"),
         "1 - |f - k|_1 / 2, in [0, 1]: the paper's ||f, k||_1.");
   s.def("shared_labels", &shared_labels, py::arg("f"), py::arg("k"),
@@ -138,12 +138,12 @@ void bind_semantics(py::module_& m) {
   s.def("distance", &distances, py::arg("distances"), py::arg("labels_p"), py::arg("labels_q"),
         py::arg("xi"), py::arg("void_is_a_label") = false,
         "Equation 2 over pairs, (N,) each: xi times the distance where labels disagree.");
-  s.def(
-      "select_candidates", &select, py::arg("overlap"), py::arg("neighbors"), py::arg("similarity"),
-      py::arg("alpha"), py::arg("beta"),
-      "Equations 3 to 6 (Algorithm 1) over keyframes 0 to N - 1: overlap (N,) is n of equation 3, "
-      "neighbors lists each keyframe's neighborhood, itself included, similarity (N,) is to the "
-      "query. Returns [(keyframe, score), ...] and how many are left: c1, c2, c3, final.");
+  s.def("select_candidates", &select, py::arg("overlap"), py::arg("neighbors"),
+        py::arg("similarity"), py::arg("alpha"), py::arg("beta"),
+        "Equations 3 to 6 (Algorithm 1) over keyframes 0 to N - 1: overlap (N,) is n of equation "
+        "3, neighbors lists each keyframe's neighborhood, itself included, similarity (N,) is that "
+        "to the query. Returns [(keyframe, score), ...] and how many are left after each step: c1, "
+        "c2, c3, final.");
 }
 
 }  // namespace mh::python

@@ -24,7 +24,7 @@ LabelMode label_mode(const std::string& word) {
       fmt::format("labels='{}' is not one of none, exact, annotated, boxes, detector", word));
 }
 
-/// What a step delivers, with names for what the robot's sensors are called.
+/// What a step delivers, with the robot's equipment for the sensors' names.
 struct Observed {
   RobotObservation seen;
   std::shared_ptr<RgbdFrame> frame;  ///< or null
@@ -34,7 +34,7 @@ struct Observed {
 /// x, y (m) and heading (rad).
 using Place = std::array<double, 3>;
 
-/// A scene, a robot and a level, loaded once; reset() begins again.
+/// A scene, a robot and a level, loaded once; reset() starts over.
 class PythonSimulation {
  public:
   PythonSimulation(const std::string& scene, const std::string& robot, const std::string& level,
@@ -162,7 +162,7 @@ class PythonSimulation {
   }
 
  private:
-  // Of what follows, the callers hold the lock.
+  // Callers of the following functions hold the lock.
   Simulation& running() {
     if (!simulation_) begin({}, {});
     return *simulation_;
@@ -182,10 +182,10 @@ class PythonSimulation {
     for (const double number : place)
       if (!(std::abs(number) <= kFarthest_m))
         throw InputError(
-            fmt::format("pose ({}, {}, {}): is no place", place[0], place[1], place[2]));
+            fmt::format("pose ({}, {}, {}): is not a valid place", place[0], place[1], place[2]));
     return {{place[0], place[1]}, place[2]};
   }
-  /// The lock, taken without keeping other threads of Python from running meanwhile.
+  /// Takes the lock; other Python threads can run while this one waits for it.
   std::unique_lock<std::mutex> locked() {
     const py::gil_scoped_release others_run;
     return std::unique_lock(mutex_);
@@ -195,7 +195,7 @@ class PythonSimulation {
   SimulationConfig config_;
   SimulatedScene scene_;
   std::unique_ptr<Simulation> simulation_;
-  std::mutex mutex_;  ///< of simulation_ and config_: threads of Python may share one object
+  std::mutex mutex_;  ///< guards simulation_ and config_: Python threads may share an object
 };
 
 template <class Sensors, class Value>
@@ -226,7 +226,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly(
           "frame", [](const Observed& o) { return o.frame; },
           "The Frame that was due during the step, stamped one tick of the camera before it ends; "
-          "None if none was")
+          "None if none was due")
       .def_property_readonly("color", of_frame("color"), "(H, W, 3) uint8 of that frame, or None")
       .def_property_readonly("depth", of_frame("depth"), "(H, W) float32, m, or None")
       .def_property_readonly("labels", of_frame("labels"), "(H, W) uint8 class ids, or None")
@@ -237,10 +237,11 @@ void bind_simulation(py::module_& m) {
             if (o.seen.instances.empty()) return py::none();
             return view_of(o.seen.instances, self);
           },
-          "(H, W) which object each pixel shows, 0 none: the truth, for training; or None")
+          "(H, W) id of the object that each pixel shows, 0 for none: the truth, for training; or "
+          "None")
       .def_property_readonly(
           "odometry", [](const Observed& o) { return to_python(o.seen.odom_from_base); },
-          "4 x 4, where the wheels place the base; drifts")
+          "4 x 4, where the wheels alone place the base; drifts")
       .def_property_readonly(
           "imu",
           [](const Observed& o) {
@@ -252,7 +253,7 @@ void bind_simulation(py::module_& m) {
             return six;
           },
           "(6,) angular rate (rad/s) and specific force (m/s^2) of the base's IMU one tick ago; 0 "
-          "without one")
+          "without an IMU")
       .def_property_readonly(
           "lasers",
           [](const Observed& o) {
@@ -261,14 +262,14 @@ void bind_simulation(py::module_& m) {
               return Array<float>(static_cast<py::ssize_t>(m.size()), m.data());
             });
           },
-          "By laser: (N,) m, right to left; 0 where nothing is in range")
+          "For each laser by name: (N,) m, right to left; 0 where nothing is in range")
       .def_property_readonly(
           "sonars",
           [](const Observed& o) {
             return by_name(o.equipment->sonars,
                            [&](std::size_t k) { return o.seen.reading.sonars_m[k]; });
           },
-          "By sonar: m; 0 if nothing is in range")
+          "For each sonar by name: m; 0 if nothing is in range")
       .def_property_readonly(
           "bumpers",
           [](const Observed& o) {
@@ -277,9 +278,9 @@ void bind_simulation(py::module_& m) {
               d[o.equipment->bumpers[k].c_str()] = static_cast<bool>(o.seen.reading.bumpers[k]);
             return d;
           },
-          "By bumper: whether it was pressed during the step");
+          "For each bumper by name: whether it was pressed during the step");
 
-  py::class_<EpisodeStart>(m, "SearchStart", "Where a robot is put, and what it is to find.")
+  py::class_<EpisodeStart>(m, "SearchStart", "Where a robot starts, and what it must find.")
       .def_property_readonly(
           "pose",
           [](const EpisodeStart& s) {
@@ -287,24 +288,23 @@ void bind_simulation(py::module_& m) {
           },
           "x, y (m) and heading (rad)")
       .def_readonly("goal", &EpisodeStart::goal, "class")
-      .def_readonly("shortest_m", &EpisodeStart::shortest_m, "of the ways to it")
+      .def_readonly("shortest_m", &EpisodeStart::shortest_m, "length of the shortest path to it")
       .def(
           "is_arrival",
           [](const EpisodeStart& s, double x, double y, double arrival_m) {
             return is_arrival(s, {x, y}, arrival_m);
           },
           py::arg("x"), py::arg("y"), py::arg("arrival_m") = 1.0,
-          "Whether a place is so near to one of them, with no wall between.");
+          "Whether a position is within arrival_m of one of the goal's objects, with no wall in "
+          "between.");
 
   py::class_<PythonSimulation>(
       m, "Simulation",
-      "A robot in a scene that obeys velocity commands. The same commands give the same bits, "
-      "those "
-      "of `modelhouse drive` and `render`.\n\n"
+      "A robot in a scene that obeys velocity commands. The same commands give the same bits, also "
+      "in `modelhouse drive` and `render`.\n\n"
       "scene: a shipped name, a file, 'generated:CATEGORY:SEED'. robot, level: a shipped name or a "
-      "file. labels: none, exact, annotated, boxes or detector. ticks_per_frame: a frame is "
-      "delivered every so many ticks of the camera. cache: the folder that keeps baked light; '' "
-      "the "
+      "file. labels: none, exact, annotated, boxes or detector. ticks_per_frame: number of camera "
+      "ticks from one frame to the next. cache: the folder that keeps baked light; '' means the "
       "usual one, 'none' keeps nothing. Raises InputError.")
       .def(py::init<const std::string&, const std::string&, const std::string&, std::uint64_t,
                     const std::string&, int, const std::string&>(),
@@ -313,8 +313,8 @@ void bind_simulation(py::module_& m) {
            py::arg("cache") = "")
       .def("reset", &PythonSimulation::reset, py::arg("pose") = py::none(),
            py::arg("seed") = py::none(),
-           "Begins anew at a pose (x, y in m, heading in rad), or where the seed places it. Raises "
-           "InputError if the robot cannot stand there.")
+           "Starts over at a pose (x, y in m, heading in rad), or where the seed places the robot. "
+           "Raises InputError if the robot cannot stand there.")
       .def(
           "step", &PythonSimulation::step, py::arg("vx"), py::arg("vy"), py::arg("wz"),
           py::arg("dt") = 0.1,
@@ -322,14 +322,13 @@ void bind_simulation(py::module_& m) {
           "camera, within the robot's limits; returns an Observation. A differential base does not "
           "obey vy.")
       .def("carry_to", &PythonSimulation::carry_to, py::arg("pose"),
-           "Lifts the robot to another pose; its wheels do not turn.")
+           "Carries the robot to another pose; its wheels do not turn.")
       .def("switch_light", &PythonSimulation::switch_light, py::arg("on"),
            "While the light is off, frames are blank.")
       .def("truth", &PythonSimulation::truth,
-           "What no system may see: world_from_base and world_from_camera now, frame_pose of the "
-           "camera at "
-           "the last frame (4 x 4, or None), touching, bumps, "
-           "length_m, time_s.")
+           "The truth, which no system may see: the current world_from_base and world_from_camera, "
+           "frame_pose (world_from_camera at the last frame, or None), touching, bumps, length_m, "
+           "time_s.")
       .def("render", &PythonSimulation::render, py::arg("poses"),
            "The exact view from world_from_camera (4, 4), or from N of them: a dict of color, "
            "depth, "
@@ -337,9 +336,10 @@ void bind_simulation(py::module_& m) {
       .def("draw_start", &PythonSimulation::draw_start, py::arg("goals"), py::arg("seed") = 0,
            py::arg("arrival_m") = 1.0,
            "A SearchStart for one of the goals (classes), as suites with `episodes` draw them.")
-      .def_property_readonly("camera", &PythonSimulation::camera, "as SLAM should know it")
+      .def_property_readonly("camera", &PythonSimulation::camera,
+                             "the Camera as SLAM should know it")
       .def_property_readonly("things", &PythonSimulation::things,
-                             "classes of what is in the scene");
+                             "classes of the objects in the scene");
 }
 
 }  // namespace mh::python

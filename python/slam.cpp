@@ -17,7 +17,7 @@ namespace mh::python {
 namespace {
 
 /// The settings that {"features.count": 1000, ...} names, or those of a file.
-/// @param base  where they say nothing
+/// @param base  values of all other settings
 SlamConfig config_of(const py::object& settings, const SlamConfig& base) {
   if (settings.is_none()) return base;
   if (py::isinstance<py::str>(settings))
@@ -25,9 +25,10 @@ SlamConfig config_of(const py::object& settings, const SlamConfig& base) {
   std::map<std::string, std::string> sections;
   for (const auto& [key, value] : settings.cast<py::dict>()) {
     if (!py::isinstance<py::str>(key))
-      throw InputError(fmt::format("settings: {} is no name", py::repr(key).cast<std::string>()));
+      throw InputError(
+          fmt::format("settings: {} is not a name", py::repr(key).cast<std::string>()));
     const auto full = key.cast<std::string>();
-    if (!is_setting(full)) throw InputError(fmt::format("settings: '{}' is no setting", full));
+    if (!is_setting(full)) throw InputError(fmt::format("settings: '{}' is not a setting", full));
     const auto dot = full.find('.');
     const std::string text = py::isinstance<py::bool_>(value)
                                  ? (value.cast<bool>() ? "true" : "false")
@@ -44,7 +45,7 @@ std::shared_ptr<const Vocabulary> vocabulary_of(const std::string& name) {
       Vocabulary::load(find_shipped(name, Shipped::kVocabulary)));
 }
 
-/// What the command draws from while nothing is lost.
+/// The random stream that `modelhouse slam` uses until the system is first restarted.
 RandomStream draws_of(std::uint64_t seed) {
   RunSpec spec;
   spec.seed = seed;
@@ -58,7 +59,7 @@ struct PythonSlam {
   std::uint64_t seed = 0;
   RandomStream draws = draws_of(seed);
   std::uint64_t frames = 0;
-  /// Threads of Python may share one object.
+  /// Python threads may share one object.
   std::unique_ptr<std::mutex> mutex = std::make_unique<std::mutex>();
 
   StepReport step(const RgbdFrame& frame) {
@@ -72,7 +73,7 @@ struct PythonSlam {
   }
 };
 
-/// The lock, taken without keeping other threads of Python from running meanwhile.
+/// Takes the lock; other Python threads can run while this one waits for it.
 std::unique_lock<std::mutex> locked(const PythonSlam& slam) {
   const py::gil_scoped_release others_run;
   return std::unique_lock(*slam.mutex);
@@ -105,7 +106,7 @@ Trajectory keyframes(const PythonSlam& slam) {
 }  // namespace
 
 void bind_slam(py::module_& m) {
-  py::class_<StepReport>(m, "Step", "What SLAM says of a frame.")
+  py::class_<StepReport>(m, "Step", "What SLAM reports about a frame.")
       .def_property_readonly(
           "status", [](const StepReport& r) { return std::string(name(r.status)); },
           "initialized, tracked, relocalized or lost")
@@ -114,7 +115,7 @@ void bind_slam(py::module_& m) {
           "4 x 4 world_from_camera; None if lost")
       .def_readonly("keypoints", &StepReport::keypoints, "found in the image")
       .def_readonly("inliers", &StepReport::inliers, "landmarks that agree with the pose")
-      .def_readonly("keyframe", &StepReport::keyframe_added, "whether it became one")
+      .def_readonly("keyframe", &StepReport::keyframe_added, "whether the frame became a keyframe")
       .def_readonly("loop_closed", &StepReport::loop_closed, "whether a loop was closed")
       .def_property_readonly(
           "stage", [](const StepReport& r) { return std::string(name(r.relocalization)); },
@@ -163,13 +164,13 @@ void bind_slam(py::module_& m) {
             return PythonSlam{load_slam(file, vocabulary_of(vocabulary)), seed};
           },
           py::arg("file"), py::arg("vocabulary") = "vocabulary", py::arg("seed") = 0,
-          "A saved map file, to go on with or to localize in.")
+          "Loads a saved map file, to continue mapping or to localize in it.")
       .def("step", &PythonSlam::step, py::arg("frame"), py::call_guard<py::gil_scoped_release>(),
            "Tracks and maps the next Frame; its stamp must increase. Returns a Step.")
-      .def(
-          "relocalize", &PythonSlam::relocalize, py::arg("frame"),
-          py::call_guard<py::gil_scoped_release>(),
-          "Finds a Frame in the map as a lost system does; the map stays as it is. Returns a Step.")
+      .def("relocalize", &PythonSlam::relocalize, py::arg("frame"),
+           py::call_guard<py::gil_scoped_release>(),
+           "Localizes a Frame in the map as a lost system does; the map stays as it is. Returns a "
+           "Step.")
       .def(
           "rewind",
           [](PythonSlam& s) {
@@ -195,7 +196,7 @@ void bind_slam(py::module_& m) {
           "landmarks", [](const PythonSlam& s) { return landmarks(s, false); }, "(N, 3) m, world")
       .def_property_readonly(
           "landmark_labels", [](const PythonSlam& s) { return landmarks(s, true); },
-          "(N,) class ids of them, 0 unknown")
+          "(N,) class ids of the landmarks, 0 if unknown")
       .def_property_readonly(
           "keyframes", [](const PythonSlam& s) { return keyframes(s); },
           "Poses of the keyframes, a Trajectory");

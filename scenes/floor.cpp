@@ -21,18 +21,17 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr double kCell_m = 0.05;
-constexpr double kMostCells = 1000;  // either way
-constexpr float kLevel = 0.7F;       // cosine of a face's slope: scans are rough, see below
-constexpr float kUpright = 0.05F;    // below: a vertical face covers no area seen from above
-constexpr float kHeadroom_m = 1.0F;  // with less headroom, a surface cannot be stood on
-constexpr float kLayer_m = 0.1F;     // surfaces closer than this are one
+constexpr double kMostCells = 1000;  // along x and along y
+constexpr float kLevel = 0.7F;       // least cosine of a level face's slope: scans are rough
+constexpr float kUpright = 0.05F;    // less: a vertical face, which covers no area seen from above
+constexpr float kHeadroom_m = 1.0F;  // with less headroom, nobody can stand on a surface
+constexpr float kLayer_m = 0.1F;     // surfaces closer than this count as one
 constexpr double kBin_m = 0.05;      // of the histogram of heights
 constexpr double kLeast_m2 = 1.0;    // of a floor
 constexpr double kLarge = 0.25;      // of the largest level surface
-constexpr double kMostBelow = 0.25;  // of the scene's surface: a seat is not a floor
+constexpr double kMostBelow = 0.25;  // share of the surface below a floor: excludes seats
 constexpr double kSteepest_rad = 2.0 * std::numbers::pi / 180;
-constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // less is measurement error of a
-                                                                  // scan
+constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // less is measurement error
 constexpr double kLevelFloor_m = 1e-3;
 
 /// A surface crossed above one position.
@@ -76,7 +75,7 @@ class Columns {
             static_cast<double>(sample.z_m)};
   }
   double cell_m2() const { return cell_m_ * cell_m_; }
-  /// Area of the ground that these samples cover, overlaps counted once.
+  /// Area of the ground that these samples cover; overlaps count once.
   double area_m2(const std::vector<Sample>& some) const {
     std::size_t cells = 0;
     for (std::size_t i = 0; i < some.size(); ++i)
@@ -95,8 +94,8 @@ class Columns {
             .is_box = true};
   }
 
-  /// Samples of walkable classes; of two with less than headroom between them, the upper one: a
-  /// house's floor and not the ground below it.
+  /// Samples of walkable classes. If there is not enough headroom between two of them, only the
+  /// upper one is kept: a house's floor and not the ground below it.
   std::vector<Sample> labeled() const {
     std::vector<Sample> some;
     std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labeled);
@@ -108,15 +107,15 @@ class Columns {
     std::erase_if(some, [&](const Sample& sample) { return !among_things(point(sample)); });
     return some;
   }
-  /// Whether a point is where things are: a plane that extends to the horizon has most of its area
-  /// elsewhere.
+  /// Whether a point is within the extent of the things: a plane that extends to the horizon is
+  /// mostly outside of it.
   bool among_things(const Vector3d& p) const {
     return things_.contains(p.head<2>().cast<float>().eval());
   }
 
   Eigen::AlignedBox2d things_m() const { return things_.cast<double>(); }
 
-  std::vector<Sample> samples;  ///< by cell, then upward
+  std::vector<Sample> samples;  ///< sorted by cell, then by height
 
  private:
   static std::vector<Sample> with_headroom(const std::vector<Sample>& all) {
@@ -128,7 +127,7 @@ class Columns {
     return some;
   }
 
-  /// The extent of the things, and the same including what is labeled as floor.
+  /// The extent of the things, without and with the faces that are labeled as floor.
   static std::pair<Eigen::AlignedBox2f, Eigen::AlignedBox2f> extents(const Scene& scene) {
     Eigen::AlignedBox2f things, labeled, all;
     for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -261,8 +260,8 @@ FloorPlane refitted(const std::vector<Vector3d>& points, const FloorPlane& plane
   return result;
 }
 
-/// Whether too much of the scene is below the plane for a floor: this excludes table tops and
-/// seats.
+/// Whether too much of the scene is below the plane for it to be a floor: this excludes tabletops
+/// and seats.
 bool too_much_below(const Scene& scene, const FloorPlane& plane, const Columns& columns) {
   double below = 0, above = 0, all = 0;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -281,8 +280,8 @@ bool too_much_below(const Scene& scene, const FloorPlane& plane, const Columns& 
   return below > kMostBelow * all || below > above;
 }
 
-/// Five standard deviations of the corners of its faces: enough that none of a scan's many
-/// thousands exceeds it by noise.
+/// Five standard deviations of the floor vertices' height above the plane: far enough that noise
+/// puts none of a scan's many thousands of vertices beyond it.
 double roughness_m(const Scene& scene, const FloorPlane& plane) {
   std::vector<double> away;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -305,9 +304,10 @@ FloorPlane fitted(const std::vector<Vector3d>& points, double z_m,
   const double slope_rad = std::atan(plane.slope.norm());
   if (slope_rad >= kLevelFloor_rad && slope_rad <= kSteepest_rad) return plane;
   if (slope_rad > kSteepest_rad && warnings != nullptr)
-    warnings->push_back(fmt::format(
-        "{}: its floor slopes by {:.1f} degrees: taken as level (up to 2 degrees are followed)",
-        name, slope_rad * 180 / std::numbers::pi));
+    warnings->push_back(
+        fmt::format("{}: its floor slopes by {:.1f} degrees: treated as level (slopes of up to 2 "
+                    "degrees are followed)",
+                    name, slope_rad * 180 / std::numbers::pi));
   plane = {};
   plane.middle_m.z() = z_m;
   for (int i = 0; i < 3; ++i) plane = refitted(points, plane, 0.1, false);
@@ -341,7 +341,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   std::ranges::copy_if(some, std::back_inserter(inner), [&](const Sample& sample) {
     return (labeled || sample.level) && columns.among_things(columns.point(sample));
   });
-  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // the objects are elsewhere
+  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // the objects are not on the floor
   const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(inner, columns.cell_m2());
   if (!z_m) return std::nullopt;
 

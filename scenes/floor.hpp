@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// Whether a class is walkable: floors, and what lies flat on them.
+/// Whether a class is walkable: floors, and things that lie flat on them.
 bool is_walked_on(ClassId class_id);
 
 /// Faces of a walkable class are part of the floor up to this height above it, and down to
@@ -31,18 +31,18 @@ struct FoundFloor {
 void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& things_m);
 
 /// Finds the floor of a scene that does not state one: from faces of a walkable class, otherwise
-/// the lowest large level surface with headroom to stand. Of two levels, the lower one is taken if
-/// it is at least a quarter as large as the larger. A plane is fitted that may slope by up to 2
-/// degrees; steeper fits are replaced by a level plane. `rough_m` is five times the spread, 0.03 to
-/// 0.12 m.
+/// the lowest large level surface with headroom to stand. If there are two levels, the lower one is
+/// taken if it is at least a quarter as large as the larger. A plane is fitted that may slope by up
+/// to 2 degrees; steeper fits are replaced by a level plane. `rough_m` is five times the spread,
+/// 0.03 to 0.12 m.
 /// @param floor_z_m  the user's floor height: a level plane is used
 /// @param warnings   where to append anything doubtful; may be null
 /// @returns nullopt if there is nothing to stand on.
 std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> floor_z_m = {},
                                      std::vector<std::string>* warnings = nullptr);
 
-/// Whether a scene looks as if its file had y up: its floor is vertical, or it has a large level
-/// surface at the bottom only when turned.
+/// Whether a scene looks as if its file had y up: its labeled floor is vertical or, without one,
+/// the scene is shaped like a room that lies on its side.
 bool looks_y_up(const Scene& scene);
 
 /// Turns a scene from y up to z up, as for glTF: (x, y, z) becomes (x, -z, y). `back` reverses it.

@@ -47,7 +47,7 @@ class WorldReader {
 
   Scene read(std::vector<std::string>* warnings) {
     require_readable(file_);
-    // Its messages arrive as errors; it would also print them.
+    // libsdformat returns its messages as errors, but would also print them.
     sdf::Console::Instance()->SetQuiet(true);
     const gazebo::Expanded expanded = gazebo::expand(file_, collected_);
     scene_.name = file_.stem().string();
@@ -61,13 +61,13 @@ class WorldReader {
     std::vector<std::string> collected;
     collected_.append_to(&collected);
     if (scene_.triangles.empty())
-      throw InputError(fmt::format("{}: has nothing to be seen{}", file_.string(),
+      throw InputError(fmt::format("{}: has nothing visible{}", file_.string(),
                                    collected.empty() ? "" : ": " + collected.front()));
     if (warnings != nullptr) warnings->insert(warnings->end(), collected.begin(), collected.end());
     meshes_.clear();
     if (!scene_.lights.empty()) {
       const float edge_m = gazebo::edge_for_light_m(scene_);
-      constexpr std::size_t kEnoughFaces = 1'000'000;  // a road of 100 km is split along its length
+      constexpr std::size_t kEnoughFaces = 1'000'000;  // a 100 km road is split along its length
       scene_ = subdivide(std::move(scene_), edge_m, kEnoughFaces);
     }
     finish_parts(scene_);
@@ -75,8 +75,8 @@ class WorldReader {
   }
 
  private:
-  /// If libsdformat rejects an element, it rejects the whole document: then read the others without
-  /// it.
+  /// Adds elements of a world. libsdformat rejects a whole document if it rejects one element: the
+  /// other elements are then read without it.
   /// @returns whether nothing was rejected
   bool add_piece(const std::string& scene, std::span<const std::string> elements) {
     sdf::ParserConfig config;
@@ -106,7 +106,7 @@ class WorldReader {
     ambient_ = {ambient.R(), ambient.G(), ambient.B()};
   }
 
-  /// A pose that refers to something missing is relative to its parent.
+  /// A pose that refers to a missing frame is taken as relative to its parent.
   template <class Thing>
   Eigen::Affine3d pose_of(const Thing& thing, const std::string& what) {
     ignition::math::Pose3d pose;
@@ -126,11 +126,11 @@ class WorldReader {
     Scene parts;
     parts.name = model.Name();
     add_links(model, model.Name(), world_from_parent, parts);
-    if (parts.triangles.empty()) return;  // lights and ground truths have no geometry
+    if (parts.triangles.empty()) return;  // models that hold only lights or ground truth
     std::optional<ClassId> class_id = rules_.find({model.Name()});
     if (!class_id && guess_class(model.Name()) != kVoid) class_id = guess_class(model.Name());
     const bool known = std::ranges::any_of(parts.class_of, [](ClassId c) { return c != kVoid; });
-    if (!class_id && !known) class_id = kVoid;  // then it is at least one object
+    if (!class_id && !known) class_id = kVoid;  // makes it one object
     append_part(scene_, std::move(parts), Eigen::Affine3d::Identity(), model.Name(), class_id);
   }
 
@@ -166,7 +166,7 @@ class WorldReader {
     } else if (const auto shape = gazebo::shape_of(geometry, look_of(visual))) {
       append_part(parts, *shape, world_from_visual, name, kVoid);
     } else {
-      collected_.add(fmt::format("{}: {}: its kind of shape is not shown", file_.string(), what));
+      collected_.add(fmt::format("{}: {}: this kind of shape is not shown", file_.string(), what));
     }
   }
 
@@ -182,7 +182,7 @@ class WorldReader {
     append_part(parts, std::move(shown), world_from_visual, name);
   }
 
-  /// Cached, since worlds show one mesh many times. An unreadable mesh is omitted.
+  /// Cached, since worlds show the same mesh many times. An unreadable mesh is omitted.
   const Scene* mesh_of(const fs::path& file) {
     const auto [place, is_new] = meshes_.try_emplace(file);
     if (is_new) {
@@ -193,14 +193,14 @@ class WorldReader {
       } catch (const InputError& error) {
         const std::string what = error.what();
         const bool is_named =
-            what.find(file.string()) != what.npos;  // a Scene does not know its file
+            what.find(file.string()) != what.npos;  // errors about a Scene do not name its file
         collected_.add(fmt::format("{}{}: left out", is_named ? "" : file.string() + ": ", what));
       }
     }
     return place->second ? &*place->second : nullptr;
   }
 
-  /// The submesh that a visual names, moved to the center if the visual says so.
+  /// The submesh that a visual names, centered on the origin if the visual asks for that.
   Scene submesh_of(const Scene& mesh, const sdf::Mesh& wanted) {
     const auto found = std::ranges::find_if(mesh.instances, [&](const Instance& instance) {
       return lower_case(instance.name) == lower_case(wanted.Submesh());
@@ -226,8 +226,8 @@ class WorldReader {
     return part;
   }
 
-  /// A texture of the visual itself replaces the mesh's materials; a mere color applies to what has
-  /// no texture.
+  /// If the visual itself has a texture, it replaces the mesh's materials; a plain color replaces
+  /// only those without a texture.
   static void dress(Scene& mesh, const Material& look) {
     for (Material& material : mesh.materials)
       if (!look.texture.empty() || material.texture.empty()) {

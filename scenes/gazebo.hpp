@@ -12,8 +12,8 @@ namespace mh {
 /// Reads a Gazebo world or model (SDF), through libsdformat: the geometry of its visuals, which are
 /// mesh files, boxes, capsules, cylinders, ellipsoids, planes and spheres, with their colors and
 /// textures (PBR's albedo maps, Ogre scripts). Each top-level model is an object; its class comes
-/// from labels.yaml next to the world or from names (see LabelRules and load_mesh), and so does
-/// that of a mesh's parts if the model's own name implies none.
+/// from labels.yaml next to the world or from names (see LabelRules and load_mesh). If the model's
+/// own name implies no class, the parts of a mesh get theirs in the same manner.
 ///
 /// URIs are resolved relative to the file that contains them (gazebo::Finder), never to the current
 /// folder.

@@ -18,7 +18,7 @@ Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* 
   }
   std::vector<std::string> reported;
   Scene scene;
-  std::string read;  // what the child read: its scopes are not shared with this process
+  std::string read;  // record of what the child read: this process does not see the child's scopes
   const auto work = [&]() -> std::function<void(PipeWriter&)> {
     const ReadScope scope;
     scene = load(&reported);

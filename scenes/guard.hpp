@@ -15,10 +15,10 @@ namespace mh {
 /// the scene from it. If a parser crashes, hangs or exhausts memory, the result is a one-line
 /// error. A nested reader runs in the child of the outer one. What the child reads is recorded here
 /// (ReadScope).
-/// @param file      the innermost such file is named in the message.
+/// @param file      named in error messages; the innermost file if readers are nested
 /// @param warnings  where to append what `load` appended; may be null.
 /// @param load      reads the scene; its argument is where to append warnings.
-/// @throws InputError, MachineError as `load` does, and see in_child().
+/// @throws InputError or MachineError as `load` does; see also in_child().
 Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* warnings,
                    const std::function<Scene(std::vector<std::string>*)>& load,
                    const GuardLimits& limits = {});

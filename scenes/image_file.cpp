@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/png_pixels.hpp"
 #include "scenes/tga.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
@@ -45,11 +46,11 @@ std::optional<ImageSize> jpeg_size(std::string_view bytes) {
   return std::nullopt;
 }
 
-/// Whether a JPEG's data continue to its end marker; within them 0xff never precedes 0xd9.
+/// Whether a JPEG's data continues to its end marker; inside the data, 0xff never precedes 0xd9.
 bool jpeg_is_whole(std::string_view bytes) {
   std::size_t at = 2;
   while (at + 2 <= bytes.size()) {
-    if (bytes[at] != '\xff') {  // data, or what a decoder would skip
+    if (bytes[at] != '\xff') {  // data, or bytes that a decoder would skip
       at = bytes.find('\xff', at);
       if (at == bytes.npos) return false;
       continue;
@@ -76,7 +77,7 @@ const char* png_fault(std::string_view bytes) {
     if (length > bytes.size() - at - 12) break;
     const auto* typed = reinterpret_cast<const Bytef*>(bytes.data() + at + 4);
     if (crc32(0, typed, static_cast<uInt>(length + 4)) != big_endian(bytes, at + 8 + length, 4))
-      return "is damaged: the sum of its bytes is wrong";
+      return "is damaged: its checksum is wrong";
     if (bytes.substr(at + 4, 4) == "IEND") return nullptr;
     at += 12 + length;
   }
@@ -91,7 +92,7 @@ std::uint64_t bytes_per_pixel(std::string_view bytes) {
   return (type == 0 ? 1U : type >= 4 ? 4U : 3U) * (bytes[kBits] == 16 ? 2U : 1U);
 }
 
-/// Empty if the bytes hold no JPEG or PNG, or one that decode_image() refuses.
+/// Decodes a JPEG or PNG; empty if the bytes are neither, or if decode_image() refuses them.
 cv::Mat decode(std::string_view bytes) {
   if (!announced_size(bytes)) return {};
   try {
@@ -135,7 +136,7 @@ std::string without_remarks(std::string_view bytes) {
     const std::size_t length =
         std::min<std::size_t>(big_endian(bytes, at, 4), bytes.size() - at - kFrame);
     const std::string_view type = bytes.substr(at + 4, 4);
-    // A capital first letter: a critical chunk; tRNS is its opacity.
+    // A capital first letter marks a critical chunk; tRNS holds the opacity.
     if ((type[0] >= 'A' && type[0] <= 'Z') || type == "tRNS")
       kept += bytes.substr(at, kFrame + length);
     at += kFrame + length;
@@ -144,8 +145,8 @@ std::string without_remarks(std::string_view bytes) {
 }
 
 bool claims_too_much(std::string_view bytes) {
-  // An image of one color is the extreme case: a byte of deflate holds at most 1032, and a JPEG's
-  // block of 256 pixels takes a few bytes.
+  // An image of one color is the extreme case: a byte of deflate expands to at most 1032 bytes, and
+  // a JPEG's block of 256 pixels takes a few bytes.
   constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048, kMostBytes = 1U << 30;
   const auto size = announced_size(bytes);
   if (!size) return false;
@@ -162,9 +163,11 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form) {
   if (claims_too_much(bytes)) {
     const auto size = announced_size(bytes);
     throw InputError(
-        fmt::format("announces {} x {} pixels, more than its {} bytes can hold or anybody needs",
+        fmt::format("declares {} x {} pixels, more than its {} bytes can hold or the limit allows",
                     size->width, size->height, bytes.size()));
   }
+  if (form == ImageForm::kStored)
+    if (cv::Mat image = decode_plain_png(bytes); !image.empty()) return image;
   const std::string quiet = without_remarks(bytes);
   const auto count = narrowed<int>(quiet.size());
   cv::Mat image;
@@ -174,7 +177,7 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form) {
     } catch (const cv::Exception&) {  // beyond OpenCV's own limits
     }
   if (image.empty() && form == ImageForm::kStored) image = decode_tga(bytes);
-  if (image.empty()) throw InputError("is not an image, or a damaged one");
+  if (image.empty()) throw InputError("is not an image, or is damaged");
   return image;
 }
 

@@ -24,32 +24,32 @@ struct ImageSize {
 /// neither.
 std::optional<ImageSize> announced_size(std::string_view bytes);
 
-/// What is wrong with a JPEG or PNG as a file, found without decoding it: "is truncated", or a
-/// PNG's wrong checksum; or the kind of the image if it is not supported. nullptr if nothing.
-/// Decoders would return an image whose end is gray, and at most report it on stderr.
+/// What is wrong with a JPEG or PNG as a file, found without decoding it: "is truncated", a PNG's
+/// wrong checksum, or the kind of the image if it is not supported; nullptr if nothing is wrong.
+/// Decoders would return an image whose end is gray, and at most report that on stderr.
 const char* image_fault(std::string_view bytes);
 
-/// Whether the header declares more pixels than so few bytes can encode, or than are ever needed:
-/// such files are refused before anything is allocated for them.
+/// Whether the header declares more pixels than this number of bytes can encode, or more than are
+/// ever needed: such files are refused before anything is allocated for them.
 bool claims_too_much(std::string_view bytes);
 
 /// The same image without a PNG's ancillary chunks (color profiles, texts, times): no decoder here
 /// uses them, and libpng prints warnings about them to stderr. Other bytes are unchanged.
 std::string without_remarks(std::string_view bytes);
 
-/// Pixel format to decode to: channels (in OpenCV's order) and depth as stored, three of 8 bits, or
-/// one of 8 bits.
+/// Pixel format to decode to: channels (in OpenCV's order) and bit depth as stored, three 8-bit
+/// channels, or one 8-bit channel.
 enum class ImageForm { kStored, kColor, kGray };
 
-/// Decodes an image of any kind that OpenCV reads, or as stored a TGA; all image decoding in the
-/// program goes through this function.
+/// Decodes an image of any kind that OpenCV reads, or a TGA (only as stored). All image decoding in
+/// the program goes through this function.
 /// @throws InputError stating what is wrong with it, to be appended to a file's name: damaged,
-/// truncated, or declaring more than such a file can contain.
+/// truncated, or declaring more pixels than the file can contain.
 cv::Mat decode_image(std::string_view bytes, ImageForm form = ImageForm::kStored);
 /// Reads an image file. @throws InputError naming the file.
 cv::Mat read_image(const std::filesystem::path& file, ImageForm form = ImageForm::kStored);
 
-/// OpenCV's blue-green-red image, 8 bits, as color.
+/// Converts OpenCV's blue-green-red image of 8 bits to color.
 Grid2d<Rgb8> color_of(const cv::Mat& bgr);
 
 /// Decodes an image of three 8-bit channels; nullopt if the bytes are not such an image.
@@ -57,7 +57,7 @@ std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes);
 /// Decodes an image of one channel, 8 or 16 bits; nullopt if the bytes are not such an image.
 std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes);
 
-/// Decodes a depth image: one channel of 16 bits. Fewer bits hold no millimeters.
+/// Decodes a depth image: one channel of 16 bits. Fewer bits cannot hold millimeters.
 /// @throws InputError stating what it is instead, to be appended to a file's name.
 Grid2d<std::uint16_t> decode_depth16(std::string_view bytes);
 

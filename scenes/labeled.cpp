@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-/// "kitchen/Handle_01" as the pattern "Handle*".
+/// The pattern for an object's name: "kitchen/Handle_01" becomes "Handle*".
 std::string pattern_of(const std::string& name) {
   std::string_view last = std::string_view(name).substr(name.rfind('/') + 1);
   const std::size_t end = last.find_last_not_of("0123456789_.- ");

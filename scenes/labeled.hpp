@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// How much of a scene's surface is labeled, and the names of what is not.
+/// How much of a scene's surface is labeled, and the names of the unlabeled parts.
 struct LabeledSurface {
   struct Unlabeled {
     std::string pattern;  ///< as a rule of labels.yaml would match it (LabelRules)

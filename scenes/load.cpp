@@ -33,7 +33,7 @@ Scene built(Scene house, const std::filesystem::path& file, const SceneFrame& fr
   return house;
 }
 
-/// Adds what other sources' files lack: a floor, and a room if there is none.
+/// Adds what files from other sources lack: a floor, and a room if there is none.
 Scene settled(Scene scene, const SceneFrame& frame, std::vector<std::string>* warnings) {
   if (const auto found = find_floor(scene, frame.floor_z_m, warnings)) {
     scene.floor = found->floor;
@@ -94,7 +94,7 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings,
                  const SceneFrame& frame) {
-  std::vector<std::string> unheard;  // the same files are read whether or not warnings are wanted
+  std::vector<std::string> unheard;  // so that the same files are read if no warnings are wanted
   if (warnings == nullptr) warnings = &unheard;
   try {
     Scene scene = load(file, warnings, frame);
@@ -104,7 +104,7 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* wa
   } catch (const InputError& error) {
     const std::string_view what = error.what();
     if (!what.starts_with("scene ")) throw;
-    throw InputError(fmt::format("{}: {}", file.string(), what));  // a Scene does not know its file
+    throw InputError(fmt::format("{}: {}", file.string(), what));  // a Scene has no file name
   }
 }
 

@@ -15,8 +15,8 @@ namespace mh {
 /// (load_mesh), .sdf and .world are Gazebo worlds (load_gazebo_world). A folder is a ScanNet scene
 /// (load_scannet), "generated:CATEGORY:SEED" is generated (generate_scene).
 ///
-/// Files from other sources get a floor (find_floor), and, if they have no rooms, the box around it
-/// as a room.
+/// Scenes from other sources get a floor (find_floor) and, if they have no rooms, the floor's
+/// bounding box as a room.
 /// @param warnings  where to append what was repaired; may be null.
 /// @param frame     what the user states about the file's frame
 /// @throws InputError if the file is missing, damaged or of an unknown type, or `frame` turns a

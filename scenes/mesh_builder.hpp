@@ -53,7 +53,7 @@ class MeshBuilder {
 
   /// Maximum edge length of tessellated flat faces (m).
   float max_edge_m = 0.12F;
-  /// Divides max_edge_m and all other step sizes: small rooms can afford finer light.
+  /// Divides max_edge_m and all other step sizes: small rooms can afford finer lighting.
   float detail = 1.0F;
   /// If false, materials get no texture; textures take most of the time.
   bool painted = true;
@@ -64,12 +64,13 @@ class MeshBuilder {
 
   void box(MaterialId material, const Eigen::Vector3f& min_m, const Eigen::Vector3f& max_m,
            const BoxStyle& style = {});
-  /// A straight bar from a to b with a rectangular section; `side` is the direction of its width.
+  /// A straight bar from a to b with a rectangular cross section; `side` is the direction of its
+  /// width.
   void beam(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b, float width_m,
             float depth_m, const Eigen::Vector3f& side = {1, 0, 0});
   /// A flat parallelogram, seen from the side where u runs right and v runs down; texture
   /// coordinates go from uv0 at `corner` (upper left) to uv0 + uv_size, in meters on the image;
-  /// without uv_size, the parallelogram's own size, so that images appear once.
+  /// uv_size defaults to the parallelogram's own size, so that images appear once.
   void image(MaterialId material, const Eigen::Vector3f& corner, const Eigen::Vector3f& right,
              const Eigen::Vector3f& down, const Eigen::Vector2f& uv0 = {0, 0},
              std::optional<Eigen::Vector2f> uv_size = std::nullopt);
@@ -82,10 +83,10 @@ class MeshBuilder {
   void cylinder(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                 const EndRadii& radii, int sides = 16, bool caps = true);
   /// Revolves a profile of (radius, height) around the z axis through `center`, listed so that the
-  /// outside is to the right of its direction (upward: outward).
+  /// outside is to the right of its direction (faces of a profile listed upward point outward).
   void lathe(MaterialId material, const Eigen::Vector3f& center,
              std::span<const Eigen::Vector2f> profile, int sides = 24);
-  /// A polygon in the xy plane (counter-clockwise, star-shaped about its mean) extruded in z.
+  /// A polygon in the xy plane (counter-clockwise, star-shaped about its mean) extruded along z.
   void prism(MaterialId material, std::span<const Eigen::Vector2f> outline, float z0_m, float z1_m);
   /// A tube along a polyline with a radius at each point.
   void tube(MaterialId material, std::span<const Eigen::Vector3f> points,

@@ -23,14 +23,14 @@ Vector2f on_circle(int k, int n) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Two unit vectors across a unit direction; (first, second, way) is right-handed.
+/// Two unit vectors perpendicular to a unit direction; (first, second, way) is right-handed.
 std::pair<Vector3f, Vector3f> across(const Vector3f& way) {
   const Vector3f helper = std::abs(way.z()) < 0.9F ? Vector3f::UnitZ() : Vector3f::UnitX();
   const Vector3f first = helper.cross(way).normalized();
   return {first, way.cross(first)};
 }
 
-/// Projects a welded soft shape to a plane without a seam: no face that occurs is edge-on.
+/// Projects a welded soft shape to a plane without a seam: none of its faces is edge-on.
 Vector2f soft_uv(const Vector3f& p) {
   return {p.x() + 0.6F * p.z(), p.y() + 0.6F * p.z()};
 }

@@ -41,7 +41,7 @@ void make_one_object(Scene& part, ClassId class_id) {
   std::ranges::fill(part.class_of, class_id);
 }
 
-/// The new number of every object of the part.
+/// Adds the objects of a part. @returns the new id for each of the part's ids
 std::vector<InstanceId> enter_objects(Scene& scene, const Scene& part, const std::string& prefix) {
   const std::size_t first = scene.instances.empty() ? 1 : scene.instances.back().id + 1U;
   if (first + part.instances.size() > kMostIds + 1)
@@ -61,7 +61,8 @@ PlacedScene read(const fs::path& yaml) {
   return read_placed_scene(YamlReader::load(yaml), yaml.parent_path(), yaml.stem().string());
 }
 
-/// A mesh, or a ScanNet scene with its labels. If the file labels nothing, the object's name may.
+/// Loads a mesh, or a ScanNet scene with its labels. If a mesh has no labels, its class comes from
+/// the object's name.
 Scene load_object(const PlacedObject& object, const PlacedScene& placed, std::optional<UpAxis> up,
                   std::vector<std::string>* warnings, ImageStore* images) {
   if (is_scannet_scene(object.file)) {
@@ -110,7 +111,7 @@ void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_par
 
 void finish_parts(Scene& scene) {
   if (scene.triangles.empty())
-    throw InputError(fmt::format("scene {}: has nothing to be seen", scene.name));
+    throw InputError(fmt::format("scene {}: has nothing visible", scene.name));
   thin_images(scene);
   find_boxes(scene);
   rooms_from_floors(scene);

@@ -13,10 +13,10 @@
 
 namespace mh {
 
-/// Adds a part to a scene: vertices transformed, objects renamed to "prefix/name" (a part of one
-/// object becomes "prefix") and renumbered.
-/// @param class_id  of the whole part, which then is one object named prefix; nullopt = the part's
-///                  own
+/// Adds a part to a scene: vertices transformed, objects renamed to "prefix/name" (if the part has
+/// only one object, to "prefix") and renumbered.
+/// @param class_id  class of the whole part, which then is one object named prefix; nullopt keeps
+///                  the part's own objects and classes
 /// @throws InputError if there are more than 65535 objects or materials.
 void append_part(Scene& scene, Scene part, const Eigen::Affine3d& scene_from_part,
                  const std::string& prefix, std::optional<ClassId> class_id = std::nullopt);
@@ -30,7 +30,7 @@ bool is_placed_scene(const std::filesystem::path& yaml);
 
 /// Reads a scene of mesh files, each at its pose: see PlacedScene.
 /// @param warnings  where to append what was repaired; may be null
-/// @param up        of files whose objects do not state it
+/// @param up        up axis of files whose objects do not state one
 /// @throws InputError "file:line: place: value".
 Scene load_placed_scene(const std::filesystem::path& yaml,
                         std::vector<std::string>* warnings = nullptr,

@@ -45,8 +45,8 @@ struct PlacedScene {
   std::vector<PlacedObject> objects;
 };
 
-/// @param folder  that file names are relative to
-/// @param name    of a scene that states none
+/// @param folder  the folder that file names are relative to
+/// @param name    name of a scene whose file states none
 /// @throws InputError "file:line: place: value".
 PlacedScene read_placed_scene(YamlReader yaml, const std::filesystem::path& folder,
                               const std::string& name);

@@ -71,9 +71,10 @@ struct Room {
 struct Floor {
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< a point on it
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();       ///< its normal
-  /// Anything up to this height above it is part of it: rugs, thresholds, the bumps of a scan.
+  /// Anything up to this height above the plane is part of the floor: rugs, thresholds, the bumps
+  /// of a scan.
   double rough_m = 0.03;
-  std::optional<double> area_m2 = {};  ///< of its faces seen from above, overlaps counted once
+  std::optional<double> area_m2 = {};  ///< of its faces seen from above; overlaps count once
 
   /// Whether the floor is the plane z = 0.
   bool is_level_zero() const { return middle_m.z() == 0.0 && up == Eigen::Vector3d::UnitZ(); }
@@ -104,7 +105,7 @@ struct Scene {
   std::vector<Room> rooms;  ///< empty for meshes without a plan
   Floor floor;
 
-  /// Area of the rooms; without a plan, of the floor's faces.
+  /// Area of the rooms or, without a plan, of the floor's faces.
   double floor_area_m2() const;
 };
 

@@ -58,7 +58,8 @@ void fields(Archive& archive, T& scene) {
           materials, instances, lights, rooms, floor);
 }
 
-/// Types that are stored as in memory; Eigen's vectors are not trivial, but plain numbers.
+/// Types that are stored as they are in memory; Eigen's vectors are not trivial types, but hold
+/// plain numbers.
 template <class T>
 inline constexpr bool kPlain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 template <class T, int N>
@@ -124,7 +125,7 @@ class Sender {
   KnownImages images_;
 };
 
-/// Reads them from anything that has bytes(void*, size), directly into their destination.
+/// Reads values from anything that has bytes(void*, size), directly into their destination.
 template <class In>
 class Receiver {
  public:

@@ -15,7 +15,7 @@ constexpr Names<UpAxis, 2> words(UpAxis) {
   return {{{"y", UpAxis::kY}, {"z", UpAxis::kZ}}};
 }
 
-/// What a user states about the frame of a scene's files that the files do not.
+/// What the user states about the frame of a scene's files, because the files do not state it.
 struct SceneFrame {
   std::optional<UpAxis> up = {};         ///< none: y for glTF and DAE, otherwise z
   std::optional<double> floor_z_m = {};  ///< height of a level floor, after turning; none: detected

@@ -33,7 +33,7 @@ class SharedGrid {
   auto begin() const { return grid().begin(); }
   auto end() const { return grid().end(); }
 
-  /// Equal for images that share their memory; null for an empty one.
+  /// Equal for images that share their memory; null for an empty image.
   const void* identity() const { return grid_.get(); }
 
   friend bool operator==(const SharedGrid& a, const SharedGrid& b) {

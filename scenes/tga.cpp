@@ -18,7 +18,7 @@ constexpr std::size_t kTgaHeader = 18, kMostTgaPixels = std::size_t{1} << 28;
 enum TgaKind { kTgaPalette = 1, kTgaColor = 2, kTgaGray = 3 };
 constexpr int kRunLengths = 8;  // added to the kind
 
-/// What stands between header and pixels, and how pixels are written.
+/// Content of a header: where the palette and the pixels are, and how they are written.
 struct TgaHeader {
   int kind = 0;  ///< kTgaPalette, kTgaColor or kTgaGray
   bool run_lengths = false;
@@ -64,7 +64,7 @@ std::optional<TgaHeader> header_of_tga(std::string_view bytes) {
   return header;
 }
 
-/// The pixels as written, in file order; empty if the bytes end before.
+/// The pixels as written, in file order; empty if the bytes end too early.
 std::vector<char> pixels_of_tga(const TgaHeader& header, std::string_view bytes) {
   constexpr std::size_t kLongestRun = 128;
   const std::size_t size = header.pixel_bytes;

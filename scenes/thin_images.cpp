@@ -16,7 +16,7 @@ namespace {
 constexpr double kCoarsest_m = 0.0012;
 constexpr int kMostHalvings = 6;
 
-/// The surface that shows an image, by how often the image could be halved there.
+/// Area of the surface that shows an image, by how often the image could be halved there.
 using AreaByHalvings = std::array<double, kMostHalvings + 1>;
 
 std::map<const void*, AreaByHalvings> measure(const Scene& scene) {
@@ -53,7 +53,7 @@ int halvings_of(const AreaByHalvings& areas) {
   return 0;
 }
 
-/// Area averages in linear light.
+/// Averages areas of the image in linear light.
 Grid2d<Rgb8> shrunk(const Grid2d<Rgb8>& image, int halvings) {
   const int width = std::max(1, image.width() >> halvings);
   const int height = std::max(1, image.height() >> halvings);

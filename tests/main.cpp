@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// gtest's main, with a temporary folder for each process: ctest runs tests side by side, and two of
-// them that write testing::TempDir() + "made.yaml" would read each other's.
+// gtest's main, with a temporary folder for each process: ctest runs tests in parallel, and two
+// tests that both write testing::TempDir() + "made.yaml" would otherwise read each other's file.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     std::perror(folder.c_str());
     return 1;
   }
-  setenv("TEST_TMPDIR", folder.c_str(), 1);  // what TempDir() asks
+  setenv("TEST_TMPDIR", folder.c_str(), 1);  // TempDir() reads it
   const int result = RUN_ALL_TESTS();
   std::error_code kept;
   std::filesystem::remove_all(folder, kept);

@@ -42,7 +42,7 @@ struct Asked {
 /// What Algorithm 1 does with one query.
 struct Retrieved {
   std::vector<KeyframeId> candidates;
-  std::vector<KeyframeId> by_similarity;  ///< all that share anything
+  std::vector<KeyframeId> by_similarity;  ///< all keyframes that share anything with the query
 };
 
 class RunAuditor {
@@ -164,8 +164,8 @@ class RunAuditor {
     std::optional<SE3> in_run;
     if (score.answer.attempts == 1) in_run = score.answer.world_from_camera;
     if (digest(pose) != digest(in_run))
-      throw MachineError(fmt::format("{}: {} {}: the audit's answer is not the run's", spec_.name,
-                                     name(asked.set), score.answer.index));
+      throw MachineError(fmt::format("{}: {} {}: the audit's answer differs from the run's",
+                                     spec_.name, name(asked.set), score.answer.index));
     audit.matches = audit_of(asked, decisions);
   }
 
@@ -274,16 +274,16 @@ class RunAuditor {
 void require_auditable(const RunSpec& spec) {
   if (!spec.system.takes_settings())
     throw InputError(
-        fmt::format("{}: '{}' gives no match traces: an audit takes `semantic`, `plain` and "
-                    "their variants alone",
+        fmt::format("{}: '{}' gives no match traces: an audit takes only `semantic`, `plain` and "
+                    "their variants",
                     spec.name, spec.system.name));
   if (spec.episodes)
     throw InputError(
-        fmt::format("{}: an audit is of queries, and the suite has `episodes`", spec.name));
+        fmt::format("{}: an audit examines queries, but the suite has `episodes`", spec.name));
   if (spec.environment.is_recorded())
     throw InputError(
-        fmt::format("{}: '{}' is a recording, of whose surfaces nothing exact is "
-                    "known: an audit takes simulated scenes alone",
+        fmt::format("{}: '{}' is a recording, whose exact surfaces are unknown: an audit takes "
+                    "only simulated scenes",
                     spec.name, spec.environment.name));
 }
 

@@ -18,7 +18,7 @@ struct AuditOptions {
   /// Keeps baked light, finished maps and finished audits; nullopt: nothing is kept.
   std::optional<std::filesystem::path> cache;
   int threads = 1;  ///< for baking light
-  /// Space for the images of one environment, which its runs share.
+  /// Disk space for the images of one environment, which its runs share.
   double images_limit_gb = BenchOptions{}.images_limit_gb;
   /// Receives names and keys of all runs before any work; may throw.
   std::function<void(const PlannedKeys&)> planned = [](const auto&) {};

@@ -13,13 +13,13 @@ namespace {
 struct Judged {
   const MatchDecision* decision = nullptr;
   bool right = false;
-  bool differ = false;  ///< the labels, as equation 2 sees it
+  bool differ = false;  ///< whether the labels differ, by equation 2
   bool has_void = false, at_border = false;
 
   bool kept() const { return decision->gate == MatchGate::kKept; }
 };
 
-/// The decisions of a search by the point that was looked for.
+/// The decisions of a search, by the point that was searched for.
 using Question = std::pair<LandmarkId, std::uint32_t>;
 using JudgedSearch = std::map<Question, Judged>;
 
@@ -28,7 +28,7 @@ void count(const JudgedSearch& search, GateCounts& counts) {
     ++(j.right ? counts.right : counts.wrong)[static_cast<std::size_t>(j.decision->gate)];
 }
 
-/// The same pair in the other search; null if the point had another nearest feature there.
+/// The same pair in the other search; null if the point had a different nearest feature there.
 const Judged* same_pair(const Question& question, const Judged& pair, const JudgedSearch& other) {
   const auto found = other.find(question);
   if (found == other.end() || found->second.decision->feature != pair.decision->feature)

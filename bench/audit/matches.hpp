@@ -31,16 +31,16 @@ struct MatchEnd {
   ClassId label = kVoid;           ///< as SLAM has it
 };
 
-/// Pairs of a stage whose truth is known, by the gate that decided each.
+/// Numbers of a stage's pairs whose truth is known, by the gate that decided them.
 struct GateCounts {
   std::array<std::int64_t, kMatchGates> right{}, wrong{};  ///< by MatchGate
 
   std::int64_t kept_right() const { return right[0]; }
   std::int64_t kept_wrong() const { return wrong[0]; }
-  /// Share of the kept pairs that are right; absent without any.
+  /// Share of the kept pairs that are right; absent if none are kept.
   std::optional<double> precision() const;
-  /// Share of the right pairs that were kept; absent without any. Each searched point pairs only
-  /// with its nearest feature.
+  /// Share of the right pairs that were kept; absent if none are right. Each searched point pairs
+  /// only with its nearest feature.
   std::optional<double> recall() const;
   GateCounts& operator+=(const GateCounts& more);
 };
@@ -54,13 +54,14 @@ void fields(C& counts, Visit& v) {
 
 /// What equation 2 changed in a stage.
 struct XiEffect {
-  // Right pairs that are not kept but would be at xi = 1, by what removed them; another: a pair
+  // Right pairs that are not kept but would be at xi = 1, by what removed them; `another` is a pair
   // that xi favors, or the check of rotations.
   std::int64_t lost_to_threshold = 0, lost_to_ratio = 0, lost_to_another = 0;
-  // The same by why their labels differ: one is void, one is within kBorder_px of another class, or
-  // else one must be wrong. The rest have equal labels and were lost because another pair changed.
+  // The same pairs, by why their labels differ: one is void, one is within kBorder_px of another
+  // class, or else one must be wrong. The rest have equal labels and were lost because another pair
+  // changed.
   std::int64_t lost_by_void = 0, lost_at_border = 0, lost_by_label_error = 0;
-  std::int64_t right_gained = 0;  ///< kept, and would not be at xi = 1
+  std::int64_t right_gained = 0;  ///< kept, but would not be at xi = 1
   std::int64_t wrong_removed = 0, wrong_gained = 0;
   // Pairs kept at xi = 1 whose labels differ.
   std::int64_t right_differ = 0, wrong_differ = 0;

@@ -12,11 +12,12 @@
 
 namespace mh {
 
-/// A keyframe shows nothing of what a query sees if it shows less than this share of it.
+/// A keyframe counts as showing nothing of what a query sees if it shows less than this share of
+/// it.
 inline constexpr double kInSight = 0.1;
 /// A keyframe is relevant to a query if it shows at least this share of what the query sees.
 inline constexpr double kRelevant = 0.25;
-/// "The nearest": this many keyframes, by true distance, 1 rad equivalent to 1 m.
+/// "The nearest": this many keyframes, by true distance, where 1 rad counts as 1 m.
 inline constexpr std::size_t kNearest = 5;
 
 /// Why the first attempt at a query gave no correct answer: the first of these that applies.
@@ -38,8 +39,8 @@ constexpr Names<FirstCause, 6> words(FirstCause) {
            {"few_inliers", FirstCause::kFewInliers}}};
 }
 
-/// The audit of one query under one parameter point. All but `correct` and `attempts` refers to the
-/// first attempt.
+/// The audit of one query under one parameter point. Everything but `correct` and `attempts` refers
+/// to the first attempt.
 struct QueryAudit {
   std::size_t frame = 0;  ///< of its sequence
   bool correct = false;   ///< in the run, after all its attempts
@@ -48,19 +49,19 @@ struct QueryAudit {
   RelocalizationStage stage = RelocalizationStage::kNone;
   FirstCause cause = FirstCause::kNone;
 
-  // Where the query is: co-visibility is the share of its surface that a keyframe shows.
+  // Where the query is: co-visibility is the share of the surface it sees that a keyframe shows.
   double best_co_visible = 0;
   std::optional<double> nearest_m = {},
-                        nearest_deg = {};  ///< to the truly nearest keyframe, if any
+                        nearest_deg = {};  ///< to the nearest keyframe by true pose, if any
   int keyframes = 0, relevant = 0;
 
   // Retrieval: what Algorithm 1 chose, and all keyframes by their similarity (equation 5).
   int candidates = 0, relevant_candidates = 0;
-  std::optional<int> solving_candidate = {};  ///< rank of the first that solves, from 1
+  std::optional<int> solving_candidate = {};  ///< rank of the first that solves it, from 1
   std::optional<double> average_precision = {};
   std::optional<double> precision_1 = {}, precision_5 = {}, precision_10 = {};
   std::optional<double> recall_1 = {}, recall_5 = {}, recall_10 = {};
-  std::optional<int> solving_rank = {};  ///< of the most similar keyframe that solves, from 1
+  std::optional<int> solving_rank = {};  ///< of the most similar keyframe that solves it, from 1
   std::optional<double> solving_m = {}, solving_deg = {},
                         solving_co_visible = {};  ///< of that keyframe
   double label_mass = 0;

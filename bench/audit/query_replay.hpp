@@ -20,9 +20,10 @@ struct AnswerAgain {
   RelocalizationStage stage = RelocalizationStage::kNone;
 };
 
-/// Repeats the queries of a finished run on its finished map, to observe what the run did not keep.
-/// Under NeighborScores::kAsReleased answers depend on earlier ones: queries are then made in the
-/// order of the run, and leave() repeats the attempts after the first. The references outlive it.
+/// Repeats the queries of a finished run on its finished map, to observe what the run did not
+/// record. Under NeighborScores::kAsReleased, answers depend on earlier ones: queries are then made
+/// in the order of the run, and leave() repeats the attempts after the first. The references
+/// outlive it.
 class QueryReplay {
  public:
   QueryReplay(const RunSpec& spec, const World& world, SlamState& frozen)

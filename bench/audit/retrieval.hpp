@@ -11,11 +11,12 @@ namespace mh {
 using Relevance = std::vector<unsigned char>;
 
 /// Mean, over all relevant items, of the precision at their ranks; an item that is not in the list
-/// counts 0. Absent if nothing is relevant.
-/// @param relevant  in the list or not
+/// counts as 0. Absent if nothing is relevant.
+/// @param relevant  number of relevant items, in the list or not
 std::optional<double> average_precision(const Relevance& ranked, std::size_t relevant);
 
-/// Share of the first k items that are relevant; those beyond the list's end are not. @pre k > 0
+/// Share of the first k items that are relevant; positions beyond the list's end are not.
+/// @pre k > 0
 double precision_at(std::size_t k, const Relevance& ranked);
 
 /// Share of the relevant items that are among the first k; absent if nothing is relevant.

@@ -20,8 +20,8 @@ struct AuditedRun {
   RunAudit audit;
 };
 
-/// Queries of one set, summed up. Shares refer to all queries unless stated otherwise; a mean is
-/// over the queries that have the value, absent if none has.
+/// Summary of the queries of one set. Shares refer to all queries unless stated otherwise; a mean
+/// is over the queries that have the value, and absent if none has.
 struct AuditSummary {
   std::size_t queries = 0;
   double correct = 0;        ///< in the run, after all attempts
@@ -97,7 +97,7 @@ struct AuditRow {
   AuditSummary summary;
 };
 
-/// @param by_environment  one row for each of them too, instead of one for all
+/// @param by_environment  one row per environment as well, instead of one for all environments
 std::vector<AuditRow> audit_rows(const Suite& suite, std::span<const AuditedRun> runs,
                                  bool by_environment = false);
 

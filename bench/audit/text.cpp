@@ -17,7 +17,8 @@ std::string number(std::optional<double> value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
-/// What names a row, in the columns of every table; columns that are the same in all are left out.
+/// The columns that name a row in every table; level and settings are left out if all rows have the
+/// same.
 class Names {
  public:
   explicit Names(std::span<const AuditRow> rows) {

@@ -20,7 +20,7 @@ struct TrialOutcome {
 };
 
 /// Outcomes known so far for one query under one xi and void policy, the only settings that affect
-/// them: of the system itself, without false matches, and from the true pose.
+/// them: for the system itself, without false matches, and from the true pose.
 struct TrialMemo {
   std::map<KeyframeId, TrialOutcome> plain, without_false, with_true_pose;
   std::optional<StageMatches> with_every_keyframe;  ///< matches by words
@@ -60,7 +60,7 @@ struct KeyframeOrders {
 };
 
 /// Fills in the ceilings of a query and its first cause. Tries as few keyframes as possible.
-/// @param audit  has its answers and best_co_visible
+/// @param audit  already has its answers and best_co_visible
 void find_ceilings(Trials& trials, const KeyframeOrders& orders, QueryAudit& audit);
 
 }  // namespace mh

@@ -19,13 +19,13 @@ struct TrueMap {
   std::vector<std::optional<TruePoint>> landmarks;  ///< by landmark id: see true_landmark()
 };
 
-/// The point that a landmark represents: the median, by coordinate, of what the keypoints that
-/// observe it show, so that one wrong observation does not move it. None if no keypoint shows
-/// anything.
+/// The point that a landmark represents: the median, per coordinate, of the points shown by the
+/// keypoints that observe it, so that one wrong observation does not move it. nullopt if no
+/// keypoint shows anything.
 std::optional<TruePoint> true_landmark(const Landmark& landmark,
                                        const std::vector<std::optional<TrueView>>& views);
 
-/// The scene as it is at a moment of the mapping (with its pedestrian), or of the second tour.
+/// The scene, pedestrian included, at a time of the mapping or of the second tour.
 std::shared_ptr<const Renderer> scene_at(const SimulatedPlace& place, QuerySet set, Stamp stamp_ns);
 
 /// Renders every live keyframe at its true pose. @pre world.simulated

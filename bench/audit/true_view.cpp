@@ -94,7 +94,7 @@ double co_visible_share(const TrueView& view, const TrueView& other) {
           view.camera.unproject(x * TrueView::kStep, y * TrueView::kStep, depth_m);
       if (point.z() <= 0) continue;
       const Eigen::Vector2d pixel = other.camera.project(point);
-      // To the nearest sample of the stored depth, if within half a sample of the image.
+      // The nearest sample of the stored depth, if within half a sample of the image.
       const double u = std::round(pixel.x() / TrueView::kStep),
                    v = std::round(pixel.y() / TrueView::kStep);
       if (!(u >= 0 && v >= 0 && u < other.depth_m.width() && v < other.depth_m.height())) continue;

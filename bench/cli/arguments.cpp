@@ -83,7 +83,7 @@ void resolve(std::string& word, Shipped what) {
 
 namespace {
 
-/// What a file begins with that has an ending; empty for endings that tell nothing.
+/// The first bytes of a file with this extension; empty if the extension determines none.
 std::string_view head_of(const fs::path& file) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeads = {
       {{".png", "\x89PNG"},
@@ -96,7 +96,7 @@ std::string_view head_of(const fs::path& file) {
   return {};
 }
 
-/// Whether a file that is there begins so, or is empty.
+/// Whether a file begins with `head`; also true if it is empty or missing.
 bool begins_with(const fs::path& file, std::string_view head) {
   std::string start(head.size(), '\0');
   std::ifstream in(file, std::ios::binary);
@@ -122,11 +122,11 @@ void require_writable(const fs::path& file, const std::vector<fs::path>& read) {
   std::error_code error;
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
-                                 fs::is_directory(file, error) ? "a folder" : "no file"));
+                                 fs::is_directory(file, error) ? "a folder" : "not a file"));
   for (const fs::path& input : read) require_other_file(file, input);
   if (!begins_with(file, head_of(file)))
-    throw InputError(
-        fmt::format("{}: is there already, and no file of this kind: name another", file.string()));
+    throw InputError(fmt::format("{}: already exists and is not a file of this kind: name another",
+                                 file.string()));
   make_output_folder(file.has_parent_path() ? file.parent_path() : fs::path("."));
 }
 
@@ -141,8 +141,8 @@ void require_replaceable(const fs::path& file,
                          std::string_view kind, const std::vector<fs::path>& read) {
   if (!is_file(file)) return require_writable(file, read);
   if (const std::string text = read_file(file); !text.empty() && !is_ours(text))
-    throw InputError(
-        fmt::format("{}: is there already, and not from {}: name another", file.string(), kind));
+    throw InputError(fmt::format("{}: already exists and was not written by {}: name another",
+                                 file.string(), kind));
   require_writable(file, read);
 }
 
@@ -172,7 +172,7 @@ NewFolders::NewFolders(fs::path folder) {
 
 NewFolders::~NewFolders() {
   std::error_code error;
-  for (const fs::path& folder : missing_) fs::remove(folder, error);  // one with files stays
+  for (const fs::path& folder : missing_) fs::remove(folder, error);  // one that holds files stays
 }
 
 OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
@@ -184,9 +184,9 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::string& command,
   if (!ours)
     for (const std::string& name : names_)
       if (fs::exists(fs::symlink_status(folder / name, error)))
-        throw InputError(
-            fmt::format("{}: is there already, and not from `modelhouse {}`: name another folder",
-                        (folder / name).string(), command));
+        throw InputError(fmt::format(
+            "{}: already exists and was not written by `modelhouse {}`: name another folder",
+            (folder / name).string(), command));
   make_output_folder(folder);
   if (others == Others::kNone) hold_.take();
   if (ours) return;
@@ -206,7 +206,7 @@ OutputFolder::~OutputFolder() {
   if (mark_before_ && !holds_any()) {
     try {
       if (!mark_before_->empty()) write_atomically(folder_ / kOutputMark, *mark_before_);
-    } catch (const std::exception&) {  // leftovers there do no harm
+    } catch (const std::exception&) {  // a leftover mark does no harm
     }
     if (mark_before_->empty()) fs::remove(folder_ / kOutputMark, error);
   }

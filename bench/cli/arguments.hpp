@@ -20,30 +20,31 @@ namespace mh::cli {
 /// too small nor too large.)
 CLI::Validator number_between(double least, double greatest);
 
-/// Accepts a seed: an integer from 0 to 2^64 - 1. Parsing alone would let others wrap around.
+/// Accepts a seed: an integer from 0 to 2^64 - 1. Parsing alone would let other numbers wrap
+/// around.
 CLI::Validator seed_number();
 
 /// Accepts one of the given words; for a misspelling, the error suggests the nearest.
 CLI::Validator one_of_words(std::vector<std::string> words);
 
-/// Accepts any text except an empty one, as from an unset shell variable.
+/// Accepts any text except an empty one, such as that of an unset shell variable.
 CLI::Validator not_empty();
 
-/// Replaces a shipped name by its file (find_shipped; find_scene for scenes); leaves an empty one
-/// alone.
+/// Replaces a shipped name by its file (find_shipped; find_scene for scenes); leaves an empty word
+/// unchanged.
 void resolve(std::string& word, Shipped what);
 
-/// Checks before any work is done that a file can be written there, and that one which is there
-/// already is of the kind that its ending tells; creates its folder.
+/// Checks, before any work is done, that the file can be written, and that an existing one is of
+/// the kind that its extension says; creates its folder.
 /// @param read  what the command reads; none of it may be overwritten
 /// @throws InputError naming file or folder; DiskFullError.
 void require_writable(const std::filesystem::path& file,
                       const std::vector<std::filesystem::path>& read = {});
 
 /// Like require_writable(), for a file that may be replaced only if this command wrote it.
-/// @param is_ours  whether such a file is one of ours; an empty file may always be replaced
-/// @param head     what it begins with
-/// @param kind  "`modelhouse map plan`", what writes it
+/// @param is_ours  whether an existing file's text is ours; an empty file may be replaced
+/// @param head     what our files begin with
+/// @param kind     what writes it: "`modelhouse map plan`"
 void require_replaceable(const std::filesystem::path& file, std::string_view head,
                          std::string_view kind, const std::vector<std::filesystem::path>& read);
 void require_replaceable(const std::filesystem::path& file,
@@ -68,16 +69,17 @@ class NewFolders {
 };
 
 /// A command's output folder, created before any work is done, so that an unwritable one fails at
-/// once. If the command is refused before it wrote anything, no empty folder is left behind. A file
-/// in it, `.modelhouse`, names the commands that wrote there: they may replace what they wrote.
+/// once. If the command fails before it has written anything, no empty folder is left behind. A
+/// file in it, `.modelhouse`, names the commands that wrote there: they may replace what they
+/// wrote.
 class OutputFolder {
  public:
   /// Whether other processes may work there at the same time: never, or with hold().join().
   enum class Others { kNone, kMayJoin };
   /// @param command  "drive", as the user calls it
-  /// @param names    of the files that it will write there
-  /// @throws InputError if a file of such a name exists that the command did not write, or if
-  /// another command is working there; as make_output_folder()
+  /// @param names    names of the files that it will write there
+  /// @throws InputError if a file with one of these names exists that the command did not write, or
+  /// if another command is working there; also as make_output_folder()
   OutputFolder(const std::filesystem::path& folder, const std::string& command,
                std::vector<std::string> names, Others others = Others::kNone);
   ~OutputFolder();

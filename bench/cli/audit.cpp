@@ -63,7 +63,7 @@ std::vector<std::string> names_of_audit() {
 
 namespace {
 
-/// The runs of a folder's results; nullopt: there are none.
+/// The planned runs of a folder's results; nullopt if it has no results.
 std::optional<PlannedKeys> runs_of_results(const std::filesystem::path& out) {
   const std::filesystem::path file = out / "results.sqlite";
   if (!std::filesystem::exists(file)) return std::nullopt;
@@ -82,7 +82,7 @@ void forget_other_audit(const std::filesystem::path& out) {
   for (const auto& [name, key] : *runs) same[name] = key;
   if (json.value("runs", nlohmann::ordered_json()) == same) return;
   for (const std::string& name : names_of_audit()) std::filesystem::remove(out / name);
-  fmt::print(stderr, "{}: removed audit.json, audit.csv and audit.txt: they are of other runs\n",
+  fmt::print(stderr, "{}: removed audit.json, audit.csv and audit.txt: they belong to other runs\n",
              out.string());
 }
 
@@ -93,10 +93,10 @@ WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
   how.cache = cache;
   how.planned = [&](const PlannedKeys& keys) {
     if (const auto runs = runs_of_results(out); runs && *runs != keys)
-      throw InputError(fmt::format(
-          "{}: holds results of other runs than {} has now: an audit goes beside its own results "
-          "(`bench --audit`), or into another --out",
-          out.string(), suite.file.string()));
+      throw InputError(
+          fmt::format("{}: holds results of runs that {} no longer has: an audit belongs beside "
+                      "its own results (`bench --audit`), or into another --out",
+                      out.string(), suite.file.string()));
   };
   how.say = [&](std::string_view stage) { progress.say(stage); };
   how.progress = [&](double share, std::string_view status) { progress.share(share, status); };
@@ -111,8 +111,9 @@ WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
 
 void add_audit(CLI::App& app) {
   auto options = std::make_shared<AuditArguments>();
-  CLI::App* command = app.add_subcommand(
-      "audit", "Says why queries fail: a suite's matches and candidates against the exact truth.");
+  CLI::App* command = app.add_subcommand("audit",
+                                         "Explains why queries fail: checks a suite's matches and "
+                                         "candidates against the exact truth.");
   command->add_option("suite", options->suite, "Suite: a file (YAML), or the name of a shipped one")
       ->required();
   command->add_option("--out", options->out, "Folder for the tables (default: out/<suite>-audit)");

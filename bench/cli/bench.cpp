@@ -48,7 +48,7 @@ struct BenchArguments {
   bool audit = false;
   std::optional<std::size_t> slurm;
   std::string sbatch;
-  std::vector<std::string> arguments_of_part;  // as given, for the process of a share of --slurm
+  std::vector<std::string> arguments_of_part;  // as given, for the shares of --slurm
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
   double images_limit_gb = BenchOptions{}.images_limit_gb;
@@ -63,7 +63,7 @@ void print_settings() {
   fmt::print("{}", writer.text());
 }
 
-/// Results of a quick look must not replace the suite's own.
+/// The default folder: results of a quick look must not replace the suite's own.
 std::filesystem::path usual_folder(const Suite& suite, bool varied) {
   std::string name = suite.name;
   if (suite.max_frames) name += fmt::format("-first-{}", *suite.max_frames);
@@ -75,7 +75,8 @@ std::filesystem::path usual_folder(const Suite& suite, bool varied) {
 std::vector<std::string> words_in(const std::string& option, const std::string& text) {
   wordexp_t found{};
   if (wordexp(text.c_str(), &found, WRDE_NOCMD | WRDE_UNDEF) != 0)
-    throw InputError(fmt::format("{} '{}': are not words as a shell takes them", option, text));
+    throw InputError(
+        fmt::format("{} '{}': cannot be split into words as by a shell", option, text));
   std::vector<std::string> words(found.we_wordv, found.we_wordv + found.we_wordc);
   wordfree(&found);
   return words;
@@ -83,7 +84,7 @@ std::vector<std::string> words_in(const std::string& option, const std::string& 
 
 void run_shares(const Suite& suite, const SuiteOverrides& overrides, BenchOptions bench,
                 const BenchArguments& options) {
-  if (bench.shard.of > 1) throw InputError("--slurm: makes the shards itself, no --shard");
+  if (bench.shard.of > 1) throw InputError("--slurm: makes the shards itself: leave out --shard");
   if (options.audit) throw InputError("--slurm: audits nothing: run `audit` afterward");
   SlurmOptions slurm{.shares = *options.slurm,
                      .sbatch = words_in("--sbatch", options.sbatch),
@@ -98,7 +99,7 @@ void run_shares(const Suite& suite, const SuiteOverrides& overrides, BenchOption
   progress.end();
   std::string missing;
   if (!made.incomplete.empty())
-    missing = fmt::format("{} missing: of share {} of {}; see {}; the same command goes on",
+    missing = fmt::format("{} missing, from share {} of {}; see {}; the same command continues",
                           counted(made.results.missing.size(), "run"),
                           fmt::join(made.incomplete, ", "), *options.slurm,
                           share_folder(bench.out, made.incomplete.front()).string() + ".log");
@@ -132,7 +133,7 @@ void run(BenchArguments options) {
   if (options.slurm) return run_shares(suite, overrides, bench, options);
   std::vector<std::string> names = names_written(bench.out, suite);
   if (options.audit) {
-    if (bench.shard.of > 1) throw InputError("--audit: takes the whole suite, no --shard");
+    if (bench.shard.of > 1) throw InputError("--audit: needs the whole suite: leave out --shard");
     require_auditable(suite);
     if (!names.empty()) std::ranges::move(names_of_audit(), std::back_inserter(names));
   }
@@ -161,7 +162,9 @@ void add_bench(CLI::App& app) {
   command->add_option(
       "--out", options->out,
       "Folder for the results (default: out/<suite>; with --frames N out/<suite>-first-N)");
-  command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Runs executed at the same time; does not affect results")
       ->check(CLI::Range(1, 1024));
   command
       ->add_option("--trials", options->trials,
@@ -177,12 +180,12 @@ void add_bench(CLI::App& app) {
   options->set.add_to(*command);
   command
       ->add_option("--vary", options->vary,
-                   "SETTING=VALUE,VALUE,...: sweeps over a setting of SLAM, "
+                   "SETTING=VALUE,VALUE,...: sweeps over a setting of SLAM, such as "
                    "features.count=500,1000; several: over all combinations")
       ->allow_extra_args(false);
   command->add_option("--shard", options->shard,
-                      "i/n: takes the i-th of n shares of the runs, of about equal cost; `merge` "
-                      "puts them together");
+                      "i/n: executes the i-th of n shares of the runs, of about equal cost; "
+                      "`merge` combines their results");
   CLI::Option* const slurm =
       command
           ->add_option("--slurm", options->slurm,
@@ -191,7 +194,7 @@ void add_bench(CLI::App& app) {
           ->check(CLI::Range(1, 1000));
   command
       ->add_option("--sbatch", options->sbatch,
-                   "Further options of sbatch: --sbatch=\"--partition=long --mem=8G\"")
+                   "More options for sbatch: --sbatch=\"--partition=long --mem=8G\"")
       ->needs(slurm);
   command->add_option("--cache", options->cache,
                       "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
@@ -200,14 +203,17 @@ void add_bench(CLI::App& app) {
                     "Audits every query afterward, as `audit` does: maps come from the cache");
   command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
   command
-      ->add_option("--time-limit", options->time_limit_s,
-                   "Seconds for one run, besides limit_s of each of its episodes; 0 = none")
+      ->add_option(
+          "--time-limit", options->time_limit_s,
+          "Seconds for one run, in addition to limit_s of each of its episodes; 0 = no limit")
       ->check(number_between(0.0, 1e9));
-  command->add_option("--memory-limit", options->memory_limit_mb, "MB for one run; 0 = none")
+  command
+      ->add_option("--memory-limit", options->memory_limit_mb,
+                   "MB of memory for one run; 0 = no limit")
       ->check(number_between(0.0, 1e9));
   command
       ->add_option("--images-limit", options->images_limit_gb,
-                   "GB of disk, in --out, for images that runs share; 0 = each makes its own")
+                   "GB of disk, in --out, for images that runs share; 0 = each run renders its own")
       ->check(number_between(0.0, 1e6));
   command->add_flag("--json", options->json, "Prints results.json instead of the table");
   command->add_flag_callback(
@@ -221,7 +227,7 @@ void add_bench(CLI::App& app) {
       "Examples:\n  modelhouse bench model_house --jobs 2\n"
       "  modelhouse bench my_suite.yaml --scene house.glb --frames 600");
   command->callback([=] {
-    // Options of the starting command only; a share has a folder of its own.
+    // Options that are not passed on to a share, which has its own folder.
     const std::set<std::string> not_of_part{"suite",   "--out",   "--json",  "--shard",
                                             "--audit", "--slurm", "--sbatch"};
     for (const CLI::Option* option : command->get_options()) {

@@ -41,7 +41,7 @@ fs::path baseline_file(const CheckArguments& options) {
 }
 
 /// Returns where an interrupted check of that suite leaves its finished results, to be resumed by
-/// the same command; nullopt if it cannot be created, or if another process works there.
+/// the same command; nullopt if it cannot be created, or if another process is working there.
 std::optional<OwnedFolder> place_for(const fs::path& suite) {
   const fs::path cache = Cache::default_folder();
   if (cache.empty()) return std::nullopt;
@@ -64,10 +64,10 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
   }
 }
 
-/// Runs the suite. Reuses no earlier results except those of the same interrupted check, and no
-/// maps, which runs without images never take from the cache: only light and detections, whose keys
-/// cover everything that decides them.
-/// @param inputs  which may have been read already
+/// Runs the suite. Reuses no earlier results except those of the same interrupted check. From the
+/// cache it uses only light and detections, whose keys cover everything that determines them: runs
+/// without images never take maps from there.
+/// @param inputs  reads the inputs; some may have been read already
 Baseline measure(const Suite& suite, const CheckArguments& of, InputReader& inputs,
                  Progress& progress) {
   std::optional<OwnedFolder> place = place_for(suite.file);
@@ -134,7 +134,7 @@ void update(const CheckArguments& options, const Suite& suite, const Baseline& n
       const Baseline before = load_baseline(file);
       report(options, compare(before.runs, now.runs, suite.gate, false), suite.name);
     } catch (const InputError& error) {
-      fmt::print("cannot be compared with the baseline before: {}\n", error.what());
+      fmt::print("cannot be compared with the previous baseline: {}\n", error.what());
     }
   }
   save_baseline(now, file);
@@ -169,7 +169,7 @@ void run(CheckArguments options) {
   if (!fs::exists(file))
     throw InputError(
         fmt::format("{}: cannot be read: no such baseline; --update makes one", file.string()));
-  const Baseline baseline = load_baseline(file);  // before the work: a mistake costs no time
+  const Baseline baseline = load_baseline(file);  // first, so that a mistake costs no time
   check_suite(baseline, file, suite.name, gate_suite_digest(suite, inputs));
   const Baseline now = measure(suite, options, inputs, progress);
   const GateResult result = judge(suite, baseline, now);
@@ -182,7 +182,7 @@ void run(CheckArguments options) {
 void add_check(CLI::App& app) {
   auto options = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand(
-      "check", "Runs a suite and compares it with committed figures: a gate for CI.");
+      "check", "Runs a suite and compares the results with committed figures: a gate for CI.");
   command
       ->add_option("suite", options->suite,
                    "Suite with a section `check`: a file (YAML), or the name of a shipped one")
@@ -190,12 +190,14 @@ void add_check(CLI::App& app) {
   command->add_option("--baseline", options->baseline,
                       "Committed figures (default: the suite's name with .baseline.json)");
   command->add_option("--junit", options->junit, "Writes the findings as JUnit XML");
-  command->add_option("--jobs", options->jobs, "Runs at work at a time; never changes a result")
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Runs executed at the same time; does not affect results")
       ->check(CLI::Range(1, 1024));
   command
-      ->add_option("--frames", options->frames,
-                   "Cuts the tours after N frames; the baseline is then one of the same cut "
-                   "(default: all)")
+      ->add_option(
+          "--frames", options->frames,
+          "Cuts the tours after N frames; the baseline must have the same cut (default: all)")
       ->check(CLI::Range(1, 100000000));
   options->set.add_to(*command);
   command->add_flag("--update", options->update, "Rewrites the baseline and shows the difference");
@@ -203,7 +205,7 @@ void add_check(CLI::App& app) {
   command->footer(
       "Examples:\n  modelhouse check ci --jobs 2 --junit check.xml\n"
       "  modelhouse check my_suite.yaml --jobs 2 --update\n"
-      "Exit code 1 where something got worse by more than its tolerance.");
+      "Exit code 1 if something got worse by more than its tolerance.");
   command->callback([options] { run(*options); });
 }
 

@@ -21,7 +21,7 @@ std::string first_sentence(const std::string& text) {
   return text.substr(0, std::min(text.find(". "), text.find(';')));
 }
 
-/// "' bench'|' scene'|'scene info'": the command reached so far and the word that continues it.
+/// "' bench'|' scene'|'scene info'": in each pattern, the command reached so far and the next word.
 std::string steps(const std::vector<CommandDeclaration>& all) {
   std::vector<std::string> steps;
   for (const CommandDeclaration& command : all)

@@ -100,7 +100,7 @@ void add_declarations(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* completion =
       app.add_subcommand("completion", "Prints a script that completes commands and options.");
-  completion->add_option("shell", *shell, "For which shell")
+  completion->add_option("shell", *shell, "Shell that runs the script")
       ->required()
       ->check(one_of_words({"bash", "zsh", "fish"}));
   completion->footer(

@@ -12,9 +12,9 @@ namespace mh::cli {
 struct OptionDeclaration {
   std::vector<std::string> names;  ///< "--jobs"; for a positional argument, "suite"
   std::string meaning;
-  std::string usual;                 ///< the default; "" = none
+  std::string usual;                 ///< the default; "" if there is none
   std::vector<std::string> choices;  ///< valid words, or names of shipped files
-  bool or_file = false;              ///< any other file is as valid
+  bool or_file = false;              ///< any other file is valid, too
   bool takes_value = false, positional = false, required = false;
 };
 

@@ -57,11 +57,12 @@ class Frames {
             "--settings {}: is for a recording, and the sources are images", options.settings));
       images_ = options.sources;
       for (const std::string& image : images_)
-        if (!is_there(image)) read_file(image);  // for its message: damaged ones are skipped
+        if (!is_there(image)) read_file(image);  // throws; damaged ones are skipped later
       return;
     }
     if (options.sources.size() != 1)
-      throw InputError("several sources: they must all be images (.png, .jpg), or one a recording");
+      throw InputError(
+          "several sources: they must all be images (.png, .jpg), or a single recording");
     Settings read;
     OpenedRecording opened =
         open_sequence(options.sources.front(), {.calibration = options.settings,
@@ -71,12 +72,12 @@ class Frames {
     sequence_ = std::move(opened.sequence);
   }
   std::size_t size() const { return sequence_ ? sequence_->size() : images_.size(); }
-  /// Image files have the stamp of an RgbdFrame without one.
+  /// Image files have the default stamp of an RgbdFrame.
   std::vector<Stamp> stamps_ns() const {
     return sequence_ ? stamps_of(*sequence_)
                      : std::vector<Stamp>(images_.size(), RgbdFrame{}.stamp_ns);
   }
-  /// " of FILE" of an image; "" of a recording's frame.
+  /// " of FILE" for an image; "" for a recording's frame.
   std::string source_of(std::size_t i) const {
     return sequence_ ? "" : " of " + printable(images_[i]);
   }
@@ -92,8 +93,8 @@ class Frames {
   std::vector<std::string> images_;
 };
 
-/// COCO's results of a frame. The category is COCO's id for COCO's 80 classes; otherwise the
-/// class's index, from 1.
+/// Appends a frame's results in COCO's format. The category is COCO's id for COCO's 80 classes;
+/// otherwise the class's index, from 1.
 void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected& found,
                  bool of_coco) {
   std::map<int, int> category;  // by index among the 80
@@ -130,8 +131,8 @@ void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     for (const fs::path& place : {folder, file})  // boxes may be a folder
       if (fs::equivalent(place, options.out, error) && !error)
-        throw InputError(fmt::format("{}: lies in the folder to write, {}: name another",
-                                     file.string(), options.out));
+        throw InputError(fmt::format("{}: is in the output folder, {}: name another", file.string(),
+                                     options.out));
   }
 }
 
@@ -146,19 +147,20 @@ std::vector<std::string> drawn_earlier(const fs::path& out) {
   return names;
 }
 
-/// @throws InputError naming the file if one of a drawing's name is not from an earlier run.
+/// @throws InputError naming the file if an existing file with the name of a wanted image is not
+/// from an earlier run.
 void require_no_other_images(const fs::path& out, const std::vector<std::size_t>& wanted) {
   const std::vector<std::string> earlier = drawn_earlier(out);
   for (const std::size_t i : wanted)
     if (const std::string name = image_name(i);
         is_there(out / name) && std::ranges::count(earlier, name) == 0)
       throw InputError(
-          fmt::format("{}: is there already, and not from `modelhouse detector run`: name another "
-                      "folder",
+          fmt::format("{}: already exists and was not written by `modelhouse detector run`: name "
+                      "another folder",
                       (out / name).string()));
 }
 
-/// Replaces an earlier result by a finished one.
+/// Replaces an earlier result with a finished one.
 void replace_earlier(const fs::path& work, const fs::path& out, const std::string& results,
                      const std::string& drawn) {
   std::error_code error;
@@ -174,7 +176,7 @@ void replace_earlier(const fs::path& work, const fs::path& out, const std::strin
 void run(DetectorArguments options) {
   resolve(options.settings, Shipped::kSettings);
   const auto spec = options.detector.spec();
-  if (!spec) throw InputError("no detector is named: --network does");
+  if (!spec) throw InputError("no detector is given: name one with --network");
   const ReadScope reading;
   const Frames frames(options);
   const std::unique_ptr<Detector> detector = open_detector(*spec);
@@ -259,7 +261,7 @@ void run(DetectorArguments options) {
 void add_detector(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "detector",
-      "Runs a real object detector, and judges it by the exact truth of rendered rooms.");
+      "Runs a real object detector, and scores it against the exact truth of rendered rooms.");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  modelhouse detector run out/sequence --network yolox_nano.onnx --out "
@@ -267,16 +269,18 @@ void add_detector(CLI::App& app) {
       "  modelhouse detector score --network yolox_nano.onnx --out out/score");
 
   auto options = std::make_shared<DetectorArguments>();
-  CLI::App* r = command->add_subcommand("run", "Draws what it finds in a recording or in images.");
+  CLI::App* r =
+      command->add_subcommand("run", "Draws what the detector finds in a recording or in images.");
   r->add_option("sources", options->sources, "Images (.png, .jpg), or one recording")->required();
   options->detector.add_to(*r, "--network,--detector");
   r->add_option("--settings", options->settings,
                 "Calibration of the recording (YAML), or the name of a shipped one");
-  r->add_option("--out", options->out,
-                "Folder for images, their list drawn.txt, and detections.json (COCO's results)")
+  r->add_option(
+       "--out", options->out,
+       "Folder for images, their list drawn.txt, and detections.json (COCO's results format)")
       ->required();
-  r->add_flag("--labels", options->labels, "Draws the labels of the pixels beside each frame");
-  r->add_option("--frames", options->frames, "Only the first so many frames")
+  r->add_flag("--labels", options->labels, "Draws the labels of the pixels next to each frame");
+  r->add_option("--frames", options->frames, "At most this many frames, from the first on")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   r->add_option("--every", options->every, "Every n-th frame only")

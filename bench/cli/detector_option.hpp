@@ -26,9 +26,10 @@ struct DetectorOption {
                                "Darknet's .weights) or boxes (COCO .json, MOT .csv, a folder of "
                                "YOLO .txt)"),
             command.add_option("--detector-settings", settings,
-                               "Its settings (YAML), which may name it"),
-            command.add_option("--detector-cache", cache,
-                               "Cache folder for what it finds; without it, every image is run")};
+                               "The detector's settings (YAML), which may also name the detector"),
+            command.add_option(
+                "--detector-cache", cache,
+                "Cache folder for its detections; without one, the detector runs on every image")};
   }
   /// The cache of --detector-cache; warns on stderr if it cannot be used.
   /// @param command  named in the warning
@@ -51,8 +52,7 @@ struct DetectorOption {
     const DetectorSpec named = spec;
     if (!settings.empty()) load_detector_settings(settings, spec);
     if (!file.empty() && (spec.network != named.network || spec.boxes != named.boxes))
-      throw InputError(fmt::format("{} is named, and {} names {}: one of them says what is run",
-                                   file, settings,
+      throw InputError(fmt::format("{} is given, but {} names {}: name only one", file, settings,
                                    (spec.network.empty() ? spec.boxes : spec.network).string()));
     return spec;
   }

@@ -57,7 +57,7 @@ struct DetectorScoreArguments {
   bool json = false;
 };
 
-/// COCO's evaluation uses boxes with scores down to this; a detector's own threshold is far above.
+/// COCO's evaluation uses boxes with scores down to this; a detector's own threshold is far higher.
 constexpr double kLeastScore = 0.01;
 
 std::vector<std::string> names_of(const DetectorScoreArguments& options) {
@@ -72,7 +72,7 @@ struct JudgedFrame {
   double missed_pixels = 0;
 };
 
-/// The frames in which a detector missed most.
+/// The frames in which a detector missed the most object pixels.
 class Worst {
  public:
   void add(JudgedFrame frame) {
@@ -101,20 +101,20 @@ class Worst {
   std::vector<JudgedFrame> frames_;
 };
 
-/// The level's simulated detector with other settings, judged on the same frames.
+/// Scores of the detector and, on the same frames, of the level's simulated detector with the
+/// measured settings.
 struct Judged {
   DetectorScore real;
   std::optional<DetectorScore> simulated;
 };
 
-/// One moment of a scan, as the sensors deliver it.
+/// One frame of a scan, as the sensors deliver it.
 struct Moment {
   SensedMoment sensed;
   SE3 world_from_camera;
 };
 
-/// Calls visit(moment, index) for each moment of the rooms: of a hand-held scan of each, evenly
-/// spaced.
+/// Calls visit(moment, index) for evenly spaced frames of a handheld scan of each room.
 void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
                      const SensorConfig& sensors,
                      const std::function<void(const Moment&, std::size_t)>& visit) {
@@ -151,7 +151,7 @@ Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, W
   const SensorConfig sensors = load_sensor_config(options.level);
   const KeepDetections keep = detections_in(cache);
   DetectorJudge real(confidence);
-  std::vector<RenderedFrame> exact;  // without what the simulated detector does not use
+  std::vector<RenderedFrame> exact;  // only what the simulated detector uses
   std::vector<SE3> poses;
   for_each_moment(options, robot, sensors, [&](const Moment& moment, std::size_t index) {
     const RgbdFrame& frame = moment.sensed.frame;
@@ -238,7 +238,7 @@ void print_score(const Judged& judged) {
                return fmt::format("{} as {}", class_name(o.truth, "?"),
                                   class_name(o.found, "another of COCO's"));
              }));
-  fmt::print("of nothing: {}\n", most(s.false_alarms, [](const auto& key) {
+  fmt::print("found where there is no object: {}\n", most(s.false_alarms, [](const auto& key) {
                return fmt::format("{} on {}", class_name(key.first, "another of COCO's"),
                                   class_name(key.second, "void"));
              }));
@@ -250,7 +250,7 @@ void print_score(const Judged& judged) {
   print_dials(s.dials, judged.simulated->dials);
 }
 
-/// null for what is not known.
+/// The value; null if it is unknown (NaN).
 nlohmann::ordered_json known(double v) {
   return std::isnan(v) ? nlohmann::ordered_json() : nlohmann::ordered_json(v);
 }
@@ -298,10 +298,11 @@ DetectorSpec spec_of(DetectorScoreArguments& options) {
     if (std::find(options.scenes.begin(), name, *name) != name)
       throw InputError(fmt::format("--scenes: {} is named twice", *name));
   const auto spec = options.detector.spec();
-  if (!spec) throw InputError("no detector is named: --network does");
+  if (!spec) throw InputError("no detector is given: name one with --network");
   if (spec->network.empty())
-    throw InputError(fmt::format(
-        "{}: boxes of files are not of rendered rooms: a network is scored", spec->boxes.string()));
+    throw InputError(
+        fmt::format("{}: boxes from files do not belong to rendered rooms: name a network",
+                    spec->boxes.string()));
   return *spec;
 }
 
@@ -341,7 +342,7 @@ void fit(DetectorScoreArguments options) {
   require_unchanged(scope.record());
   require_not_read(options.out, scope.record());  // also the files of scenes and robot
   if (judged.real.mean.truths == 0)
-    throw InputError(fmt::format("no object of COCO's classes is in the {}: nothing is measured",
+    throw InputError(fmt::format("no object in the {} is of COCO's classes: nothing is measured",
                                  counted(judged.real.images, "image")));
   const DetectorConfig& measured = judged.real.dials;
   level.labels.detector = with_measured(level.labels.detector, measured);
@@ -369,16 +370,19 @@ void add_common(CLI::App& command, const std::shared_ptr<DetectorScoreArguments>
   options->detector.add_to(command, "--network,--detector");
   command.add_option("--scenes", options->scenes,
                      "Scenes (default: generated rooms of every category)");
-  command.add_option("--per-category", options->per_category, "So many rooms of each category")
+  command.add_option("--per-category", options->per_category, "Rooms of each category")
       ->check(CLI::Range(1, 1000));
   command
-      .add_option("--frames", options->frames, "Of each scene, evenly spaced along a scan by hand")
+      .add_option("--frames", options->frames,
+                  "Frames of each scene, evenly spaced along a handheld scan")
       ->check(CLI::Range(1, 100000));
   command.add_option("--level", options->level,
                      "Sensor level (YAML), or the name of a shipped one");
   command.add_option("--robot", options->robot,
-                     "Whose camera (YAML), or the name of a shipped robot");
-  command.add_option("--threads", options->threads, "That bake light; changes no figure")
+                     "Robot whose camera is used (YAML), or the name of a shipped one");
+  command
+      .add_option("--threads", options->threads,
+                  "Threads that bake light; does not affect the figures")
       ->check(CLI::Range(1, 256));
 }
 
@@ -387,9 +391,10 @@ void add_common(CLI::App& command, const std::shared_ptr<DetectorScoreArguments>
 void add_detector_score(CLI::App& detector) {
   auto options = std::make_shared<DetectorScoreArguments>();
   CLI::App* s = detector.add_subcommand(
-      "score", "Average precision per class on rendered rooms, and what is taken for what.");
+      "score", "Average precision per class on rendered rooms, and which classes are confused.");
   add_common(*s, options);
-  s->add_option("--out", options->out, "Folder for score.json and missed.png, what it missed most");
+  s->add_option("--out", options->out,
+                "Folder for score.json and missed.png (what it missed most)");
   s->add_flag("--json", options->json, "Prints JSON");
   s->footer("Example:\n  modelhouse detector score --network yolox_nano.onnx --out out/score");
   s->callback([options] { score(*options); });
@@ -397,9 +402,9 @@ void add_detector_score(CLI::App& detector) {
   auto of_fit = std::make_shared<DetectorScoreArguments>();
   CLI::App* f = detector.add_subcommand(
       "fit",
-      "Writes a sensor level whose simulated detector errs as the real one was measured to.");
+      "Writes a sensor level whose simulated detector has the errors measured for the real one.");
   add_common(*f, of_fit);
-  f->add_option("--base", of_fit->base, "Level whose other settings it keeps");
+  f->add_option("--base", of_fit->base, "Level that provides all other settings");
   f->add_option("--out", of_fit->out, "Level to write (YAML)")->required();
   f->footer(
       "Example:\n  modelhouse detector fit --network yolox_nano.onnx --base pepper "

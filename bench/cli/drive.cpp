@@ -55,7 +55,7 @@ void run(DriveArguments options) {
         std::pair(!options.pedestrian.empty(), "--pedestrian")})
     if (given && !driven)
       throw InputError(fmt::format(
-          "{}: motion '{}' moves a camera by hand, no robot drives along it", option, motion));
+          "{}: motion '{}' moves a handheld camera, no robot drives along it", option, motion));
   const std::filesystem::path out = options.out;
   std::optional<OutputFolder> folder;
   if (!options.out.empty()) {
@@ -139,7 +139,7 @@ void run(DriveArguments options) {
 void add_drive(CLI::App& app) {
   auto options = std::make_shared<DriveArguments>();
   CLI::App* command =
-      app.add_subcommand("drive", "Drives the robot through a scene, or moves a camera by hand.");
+      app.add_subcommand("drive", "Drives the robot through a scene, or moves a handheld camera.");
   command
       ->add_option("scene", options->scene,
                    "Scene (YAML), mesh file, or the name of a shipped scene")
@@ -148,18 +148,17 @@ void add_drive(CLI::App& app) {
   options->frame.add_to(*command);
   command->add_option("--robot", options->robot, "Robot (YAML), or the name of a shipped one");
   command->add_option("--pedestrian", options->pedestrian,
-                      "Adds a pedestrian (YAML); reflex and sensors notice him");
+                      "Adds a pedestrian (YAML), noticed by the collision reflex and the sensors");
   command->add_option("--out", options->out, "Folder for camera.tum and base.tum");
   command
       ->add_option("--format", options->format,
                    "mcap or rosbag: also writes NAME.mcap (ROS 2) or NAME.bag (ROS 1) into --out, "
-                   "with tf, odometry, what the robot measures and the floor's grid")
+                   "with tf, odometry, the robot's measurements and the floor's grid")
       ->check(one_of_words({"tum", "mcap", "rosbag"}));
   options->ros.add_to(*command);
-  command->add_flag(
-      "--sensors", options->sensors,
-      "Also writes wheel odometry, lasers, sonars, bumpers and IMU into --out; not for "
-      "motions by hand, which no robot makes");
+  command->add_flag("--sensors", options->sensors,
+                    "Also writes wheel odometry, lasers, sonars, bumpers and IMU into --out; not "
+                    "for handheld motions, which no robot makes");
   command->add_option("--seed", options->seed, "Seed of the odometry's errors")
       ->check(seed_number());
   command->add_flag("--json", options->json, "Prints JSON");

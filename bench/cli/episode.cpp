@@ -33,8 +33,8 @@ struct EpisodeArguments {
   bool no_cache = false, json = false;
 };
 
-/// The run that the options name, by default the first, with the one variant and the starts up to
-/// the one that they name.
+/// The run that the options select (by default the first), with only the selected variant and the
+/// starts up to the selected one.
 RunSpec chosen_run(const Suite& suite, const EpisodeArguments& options) {
   const auto check = [&](const char* option, const std::string& word,
                          const std::vector<std::string>& all) {
@@ -68,7 +68,7 @@ void run(EpisodeArguments options) {
   overrides.set = options.set.values();
   const Suite suite = load_suite(options.suite, overrides);
   if (!suite.episodes)
-    throw InputError(fmt::format("{}: has no section `episodes`: nobody is kidnapped in it",
+    throw InputError(fmt::format("{}: has no section `episodes`: its robot is not kidnapped",
                                  suite.file.string()));
   const RunSpec chosen = chosen_run(suite, options);
   const std::filesystem::path out = options.out.empty()
@@ -97,7 +97,7 @@ void run(EpisodeArguments options) {
                  .episodes = {.only = WatchedEpisode{options.start, observer}}});
     progress.end();
     score = result.episodes.front();
-  } catch (const OutsideError&) {  // the log up to there may show why
+  } catch (const OutsideError&) {  // the log up to this point may show why
     for (const char* name : {"strip.png", "episode.json"}) std::filesystem::remove(out / name);
     write_atomically(out / "log.txt", record ? record->log_so_far() : "");
     throw;
@@ -127,7 +127,7 @@ void add_episode(CLI::App& app) {
                       "One of the suite's systems (default: the first)");
   command
       ->add_option("--start", options->start,
-                   "Number of the start, from 0; the suite's `starts` is no limit")
+                   "Number of the start, from 0; may exceed the suite's `starts`")
       ->check(CLI::Range(0, 99999));
   command->add_option("--environment", options->environment,
                       "One of the suite's environments (default: the first)");

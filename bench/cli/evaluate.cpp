@@ -37,7 +37,7 @@ const std::map<std::string, Alignment> kAlignments = {{"se3", Alignment::kSe3},
                                                       {"origin", Alignment::kOrigin},
                                                       {"none", Alignment::kNone}};
 
-/// "30f", "0.2m", "1s". @throws InputError naming the text.
+/// Parses "30f", "0.2m" or "1s". @throws InputError naming the text.
 RpeDelta parse_delta(const std::string& text, bool all_pairs) {
   const auto fail = [&] {
     throw InputError(fmt::format("--delta: '{}' is not a distance such as 30f, 0.2m or 1s", text));
@@ -97,7 +97,7 @@ nlohmann::ordered_json to_json(const Evaluation& e, const std::string& align) {
           {"rpe", rpe}};
 }
 
-/// A diverged trajectory is off by millions of meters.
+/// Formats an error; that of a diverged trajectory may be millions of meters.
 std::string cell(double error) {
   return error < 1000 ? fmt::format("{:>10.5f}", error) : fmt::format("{:>10.2e}", error);
 }
@@ -111,7 +111,7 @@ void print_row(const std::string& what, const ErrorStatistics& s) {
 
 constexpr Stamp kEarliest_ns = -10'000'000'000'000'000, kLatest_ns = 9'200'000'000'000'000'000;
 
-/// Seconds, with a sign or without, exactly. @throws InputError naming the text
+/// Parses seconds exactly, with an optional minus sign. @throws InputError naming the text
 Stamp parse_offset(const std::string& text) {
   const bool negative = text.starts_with('-');
   try {
@@ -119,7 +119,7 @@ Stamp parse_offset(const std::string& text) {
     return negative ? -offset_ns : offset_ns;
   } catch (const InputError&) {
     throw InputError(
-        fmt::format("--offset: '{}' is no time in seconds from -9.2e9 to 9.2e9", text));
+        fmt::format("--offset: '{}' is not a time in seconds from -9.2e9 to 9.2e9", text));
   }
 }
 
@@ -135,7 +135,7 @@ std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
     for (TimedPose& pose : both.second) {
       // Within these limits, differences of stamps fit into a Stamp.
       if (offset_ns > kLatest_ns - pose.stamp_ns || offset_ns < kEarliest_ns - pose.stamp_ns)
-        throw InputError("--offset: leads to stamps that are not from -1e7 to 9.2e9 s");
+        throw InputError("--offset: gives stamps that are not from -1e7 to 9.2e9 s");
       pose.stamp_ns += offset_ns;
     }
     return both;
@@ -198,21 +198,21 @@ void add_evaluate(CLI::App& app) {
       app.add_subcommand("evaluate", "Scores an estimated trajectory against the true one.");
   command->add_option("truth", options->truth, "True trajectory")->required();
   command->add_option("estimate", options->estimate, "Estimated trajectory")->required();
-  command->add_option("--align", options->align, "How the estimate is laid over the truth")
+  command->add_option("--align", options->align, "How the estimate is aligned with the truth")
       ->check(one_of_words({"se3", "sim3", "origin", "none"}));
   command
       ->add_option("--format", options->format,
-                   "Of both files; where tum is expected, CSV is recognized")
+                   "Format of both files; tum also accepts EuRoC's CSV")
       ->check(one_of_words({"tum", "kitti"}));
   command
       ->add_option("--delta", options->deltas,
                    "Step of the relative error: 30f (frames), 0.2m or 1s; one or more")
       ->expected(1, 100);
   command->add_flag("--all-pairs", options->all_pairs,
-                    "Steps of frames start at every pose (those of meters and seconds always do)");
+                    "Steps in frames start at every pose (those in meters and seconds always do)");
   command
       ->add_option("--max-difference", options->max_difference_s,
-                   "Stamps (s) that are taken for one moment")
+                   "Largest difference in time between paired poses, s")
       ->check(number_between(0.0, 1e6));
   command
       ->add_option("--offset", options->offset,

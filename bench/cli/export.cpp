@@ -39,7 +39,8 @@ void run(const ExportArguments& options) {
 
 void add_export(CLI::App& app) {
   auto options = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Results of a suite as CSV, JSON or LaTeX.");
+  CLI::App* command =
+      app.add_subcommand("export", "Exports the results of a suite as CSV, JSON or LaTeX.");
   command->add_option("store", options->store, "results.sqlite, or the folder that holds it")
       ->required();
   command

@@ -71,7 +71,7 @@ void run(LiveArguments options) {
       for (std::string* image : {&shown.color, &shown.depth, &shown.labels})
         server.send_image(std::string(1, kind++) + *image);
     }
-    // A machine that is too slow drives in slow motion, not in leaps.
+    // On a machine that is too slow, the robot drives in slow motion instead of in leaps.
     due = std::max(due + period, Clock::now() - period);
     if (!options.fast) std::this_thread::sleep_until(due);
   }
@@ -82,7 +82,7 @@ void run(LiveArguments options) {
 void add_live(CLI::App& app) {
   auto options = std::make_shared<LiveArguments>();
   CLI::App* command =
-      app.add_subcommand("live", "Drives the robot from a browser, while SLAM maps what it sees.");
+      app.add_subcommand("live", "Drives the robot from a browser while SLAM maps what it sees.");
   command
       ->add_option("scene", options->scene,
                    "Scene (YAML), mesh file, or the name of a shipped scene")
@@ -92,14 +92,15 @@ void add_live(CLI::App& app) {
                       "Sensor level (YAML), or the name of a shipped one");
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
-  command->add_option("--port", options->address.port, "0: any that is free")
+  command->add_option("--port", options->address.port, "Port to listen on; 0: any free one")
       ->check(CLI::Range(0, 65535));
   command->add_option("--host", options->address.host,
-                      "Address to listen on; another than 127.0.0.1 asks everybody for a token");
-  command->add_option("--token", options->address.token, "Asked of everybody; without: drawn");
-  command->add_option("--seed", options->seed, "Of the start and of all noise")
+                      "Address to listen on; any other than 127.0.0.1 requires a token");
+  command->add_option("--token", options->address.token,
+                      "Token required from every browser (default: random if one is required)");
+  command->add_option("--seed", options->seed, "Seed of the start and of all noise")
       ->check(seed_number());
-  command->add_flag("--fast", options->fast, "As fast as the machine can, not in real time");
+  command->add_flag("--fast", options->fast, "Runs as fast as the machine can, not in real time");
   command->footer("Example:\n  modelhouse live model_house");
   command->callback([options] { run(*options); });
 }

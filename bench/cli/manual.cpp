@@ -7,7 +7,7 @@
 namespace mh::cli {
 namespace {
 
-/// Escapes text for roff: no line becomes a request, no '-' a hyphen.
+/// Escapes text for roff, so that no line becomes a request and no '-' a hyphen.
 std::string roff(const std::string& text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 `modelhouse map grid|cost|objects|plan|messages`: what a
-// robot gets from a saved octree.
+// SPDX-License-Identifier: Apache-2.0
+// `modelhouse map grid|cost|objects|plan|messages`: what a robot gets from a saved octree.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -59,7 +59,8 @@ struct MapPlanArguments {
 
 void add_band(CLI::App& command, ObstacleGridConfig& band) {
   command
-      .add_option("--height", band.robot_height_m, "Of the robot, m: what is higher is no obstacle")
+      .add_option("--height", band.robot_height_m,
+                  "Height of the robot, m: anything higher is no obstacle")
       ->check(number_between(0.15, 10.0));
   command.add_option("--floor-z", band.floor_z_m, "Height of the floor in the map, m")
       ->check(number_between(-1000.0, 1000.0));
@@ -79,24 +80,25 @@ VoxelMap load_map(const std::string& file) {
   return map;
 }
 
-/// @throws InputError if the map has no floor, or shows nothing between ground and head.
+/// @throws InputError if the map has no floor, or is empty between the ground and the robot's
+/// height.
 OccupancyGrid grid_of(const VoxelMap& map, const std::string& file,
                       const ObstacleGridConfig& band) {
   if (!map.on_floor())
     throw InputError(file + ": no floor was found for it: heights and a grid mean nothing in it");
   OccupancyGrid grid = obstacle_grid(map, band);
   if (grid.cells.empty())
-    throw InputError(fmt::format("{}: knows nothing between {} m and {} m", file,
+    throw InputError(fmt::format("{}: knows nothing about heights from {} m to {} m", file,
                                  band.floor_z_m + band.ground_m,
                                  band.floor_z_m + band.robot_height_m));
   return grid;
 }
 
-/// Gray is the mean of a pixel's colors, as in map_server.
+/// Decodes an image to gray, the mean of a pixel's colors, as in map_server.
 GrayImage decode_gray_image(const std::string& bytes) {
   cv::Mat decoded = decode_image(bytes);
   if (decoded.depth() != CV_8U && decoded.depth() != CV_16U)
-    throw InputError("its pixels are neither of 8 nor of 16 bits");
+    throw InputError("its pixels have neither 8 nor 16 bits");
   if (decoded.depth() == CV_16U) decoded.convertTo(decoded, CV_8U, 1.0 / 257);
   const int channels = decoded.channels(), colors = std::min(channels, 3);
   GrayImage image{Grid2d<std::uint8_t>(decoded.cols, decoded.rows), {}};
@@ -182,8 +184,9 @@ void run(const MapMessagesArguments& options) {
   if (kind != ".mcap" && kind != ".bag")
     throw InputError(options.out + ": its name ends neither in .mcap (ROS 2) nor in .bag (ROS 1)");
   if (is_there(options.out) && !holds_map_messages(options.out))
-    throw InputError(options.out +
-                     ": is there already, and not from `modelhouse map messages`: name another");
+    throw InputError(
+        options.out +
+        ": already exists and was not written by `modelhouse map messages`: name another");
   const VoxelMap map = load_map(options.map);
   const MapStudy study{grid_of(map, options.map, options.band), find_objects(map)};
   write_map_messages(kind == ".mcap" ? *write_mcap(options.out) : *write_bag(options.out), map,
@@ -192,8 +195,8 @@ void run(const MapMessagesArguments& options) {
              counted(study.objects.size(), "object"), counted(map.voxel_count(), "voxel"));
 }
 
-/// A goal next to a named object, where a robot in an episode would stop. Of several objects, the
-/// best-scored one that a path leads to.
+/// A goal next to a named object, where a robot in an episode would stop. If several objects match,
+/// it is next to the best-scored one that can be reached.
 Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownMap& known,
                       const Vector2d& from_m, double clearance_m) {
   constexpr double kReach_m = 1.5;  // farther than this is not at the object
@@ -208,23 +211,24 @@ Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownM
       return *found;
     }
   }
-  throw InputError(fmt::format(
-      "goal '{}'{}: no free place within 1.5 m of it, no wall between, can be reached from {}",
-      meant.front().name,
-      meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
-      place(from_m)));
+  throw InputError(
+      fmt::format("goal '{}'{}: no free place within 1.5 m of it, without a wall between, can be "
+                  "reached from {}",
+                  meant.front().name,
+                  meant.size() == 1 ? "" : fmt::format(", nor any of {} more", meant.size() - 1),
+                  place(from_m)));
 }
 
 /// @throws InputError if a robot cannot stand at a place of the grid.
 void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& grid,
                    const FloorGrid& floor, double clearance_m) {
   const auto cell = grid.cell_of(at);
-  if (!cell) throw InputError(fmt::format("{} {} is outside of the map", what, place(at)));
+  if (!cell) throw InputError(fmt::format("{} {} is outside the map", what, place(at)));
   const std::int8_t state = grid.cells(cell->x(), cell->y());
   if (state == kUnknownCell)
     throw InputError(fmt::format("{} {} is in unknown space", what, place(at)));
   if (state == kOccupiedCell)
-    throw InputError(fmt::format("{} {} is inside of an obstacle", what, place(at)));
+    throw InputError(fmt::format("{} {} is inside an obstacle", what, place(at)));
   if (const double has_m = floor.clearance_at(at); has_m < clearance_m)
     throw InputError(
         fmt::format("{} {} has {:.2f} m to the nearest obstacle or unknown space, "
@@ -235,7 +239,7 @@ void require_clear(const char* what, const Vector2d& at, const OccupancyGrid& gr
 void run(const MapPlanArguments& options) {
   const NewFolders made(std::filesystem::path(options.out).parent_path());
   if (options.to.empty() == options.thing.empty())
-    throw InputError("plan: the goal is either --to or --to-object");
+    throw InputError("plan: give the goal by either --to or --to-object");
   if (!options.out.empty())
     require_replaceable(options.out, kPathHead, "`modelhouse map plan`", {options.map});
   const VoxelMap map = load_map(options.map);
@@ -269,8 +273,8 @@ void run(const MapPlanArguments& options) {
 
 void add_grid(CLI::App& map) {
   auto options = std::make_shared<MapGridArguments>();
-  CLI::App* command =
-      map.add_subcommand("grid", "The part of a saved octree that obstructs a robot.");
+  CLI::App* command = map.add_subcommand(
+      "grid", "Writes the part of a saved octree that obstructs a robot, as a grid.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -285,16 +289,20 @@ void add_grid(CLI::App& map) {
 
 void add_cost(CLI::App& map) {
   auto options = std::make_shared<MapCostArguments>();
-  CLI::App* command = map.add_subcommand("cost", "Costs of a grid, as Nav2 numbers them.");
+  CLI::App* command =
+      map.add_subcommand("cost", "Writes the costs of a grid, as Nav2 numbers them.");
   command->add_option("grid", options->grid, "YAML file of a grid for map_server")->required();
   command
       ->add_option("--out", options->out,
-                   "Path without extension: costs as gray levels, and with _published the values "
-                   "that Nav2 publishes")
+                   "Path without extension: costs as gray levels; with _published appended, the "
+                   "values that Nav2 publishes")
       ->required();
-  command->add_option("--radius", options->config.inscribed_radius_m, "Of the robot's disc, m")
+  command
+      ->add_option("--radius", options->config.inscribed_radius_m, "Radius of the robot's disc, m")
       ->check(number_between(0.0, 10.0));
-  command->add_option("--inflation", options->config.inflation_radius_m, "Where costs end, m")
+  command
+      ->add_option("--inflation", options->config.inflation_radius_m,
+                   "Distance at which costs end, m")
       ->check(number_between(0.0, 10.0));
   command->add_option("--scaling", options->config.cost_scaling_factor, "Decay, 1/m")
       ->check(number_between(0.0, 1000.0));
@@ -304,8 +312,8 @@ void add_cost(CLI::App& map) {
 
 void add_objects(CLI::App& map) {
   auto options = std::make_shared<MapObjectsArguments>();
-  CLI::App* command =
-      map.add_subcommand("objects", "The objects of a saved octree, or those of a name.");
+  CLI::App* command = map.add_subcommand(
+      "objects", "Lists the objects of a saved octree, or those with a given name.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -320,7 +328,7 @@ void add_objects(CLI::App& map) {
 void add_messages(CLI::App& map) {
   auto options = std::make_shared<MapMessagesArguments>();
   CLI::App* command = map.add_subcommand(
-      "messages", "A saved octree for RViz: grid, costs, objects as markers, voxels.");
+      "messages", "Writes a saved octree for RViz: grid, costs, objects as markers, voxels.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -335,8 +343,8 @@ void add_messages(CLI::App& map) {
 void add_plan(CLI::App& map) {
   auto options = std::make_shared<MapPlanArguments>();
   CLI::App* command = map.add_subcommand("plan",
-                                         "A path over the floor of a saved octree: short, and away "
-                                         "from obstacles where there is room.");
+                                         "Plans a path over the floor of a saved octree: short, "
+                                         "and away from obstacles where there is room.");
   command
       ->add_option("map", options->map,
                    "map.ot of `map build` or `bench`, or any OcTree (.ot, .bt)")
@@ -349,12 +357,13 @@ void add_plan(CLI::App& map) {
       ->expected(2)
       ->check(number_between(-1e6, 1e6));
   command
-      ->add_option("--to-object", options->thing,
-                   "Goal: at this object, no wall between; a class, or an object's name")
+      ->add_option(
+          "--to-object", options->thing,
+          "Goal: next to this object, with no wall in between; a class, or an object's name")
       ->check(not_empty());
-  command->add_option("--radius", options->radius_m, "Of the robot's disc, m")
+  command->add_option("--radius", options->radius_m, "Radius of the robot's disc, m")
       ->check(number_between(0.0, 10.0));
-  command->add_option("--margin", options->margin_m, "Kept beyond the radius, m")
+  command->add_option("--margin", options->margin_m, "Clearance beyond the radius, m")
       ->check(number_between(0.0, 10.0));
   command->add_option("--out", options->out, "CSV file of the path's corners")->check(not_empty());
   add_band(*command, options->band);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `modelhouse map build`: space, grid, costs and objects from a sequence's depth at known poses.
+// `modelhouse map build`: voxels, grid, costs and objects from a sequence's depth at known poses.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -45,7 +45,7 @@ struct MapBuildArguments : SourceOptions {
   bool plain = false, score = false, lasers = false;
 };
 
-/// Poses of the frames whose depth is taken, in the frame of their first camera.
+/// Poses of the frames whose depth is used, in the frame of their first camera.
 struct Posed {
   Trajectory poses;
   std::vector<MapPoint> landmarks;  ///< of the SLAM map; empty without one
@@ -86,8 +86,8 @@ Posed run_slam(const MapBuildArguments& options, const Source& source,
   return posed_by(state);
 }
 
-/// The poses of frames by a trajectory, whose stamps may differ from theirs, as with motion
-/// capture.
+/// Poses of the frames, interpolated from a trajectory whose stamps may differ from theirs, as with
+/// motion capture.
 Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory) {
   Trajectory poses;
   for (std::size_t i = 0; i < frames.size(); ++i)
@@ -116,8 +116,8 @@ Trajectory keep_posed(const MapBuildArguments& options, const Source& source,
   return kept;
 }
 
-/// The frame of the map: that of a scene, whose robot knows its dock; else the floor's; nullopt if
-/// no floor was seen.
+/// Transform from the mapped poses' frame to that of the map: the scene's if there is one, since
+/// its robot knows its dock; else the floor's; nullopt if no floor was seen.
 std::optional<SE3> find_map_frame(const MapBuildArguments& options, const Source& source,
                                   const OccupancyMapper& mapper, const Trajectory& poses) {
   if (const Trajectory* truth = source.frames->truth(); options.is_scene() && truth != nullptr)
@@ -174,7 +174,7 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
     }
   }
   if (!any_depth)
-    throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without",
+    throw InputError(fmt::format("{}: none of {} has depth: space cannot be mapped without it",
                                  options.source, counted(keyframes.kept, "keyframe")));
   return keyframes;
 }
@@ -201,7 +201,7 @@ MapStudy study_floor(const MapBuildArguments& options, const Source& source,
   std::optional<ScanGrid> scans;
   if (mapped != nullptr && mapped->lasers)
     scans = mapped->lasers->scans(poses, *source.frames->truth(), options.resolution_m);
-  // The frame of a recording's map is on the floor.
+  // The origin of a recording's map frame is on the floor.
   const double floor_z_m = mapped != nullptr ? mapped->scene.floor.middle_m.z() : 0;
   MapStudy study = study_of(map, {.floor_z_m = floor_z_m, .robot_height_m = options.height_m},
                             scans ? &*scans : nullptr);
@@ -230,7 +230,7 @@ void remove_earlier(const fs::path& folder) {
 void check(const MapBuildArguments& options) {
   options.check();
   if (!options.map.empty() && !options.poses.empty())
-    throw InputError("--map and --poses: one of them says where the frames are");
+    throw InputError("--map and --poses: give only one, which says where the frames are");
   if (options.every != 1 && options.map.empty() && options.poses.empty())
     throw InputError("--every: is for --poses and --map: SLAM chooses its keyframes itself");
   if (options.score && !options.is_scene())
@@ -298,35 +298,37 @@ void run(MapBuildArguments options) {
 void add_map_build(CLI::App& map) {
   auto options = std::make_shared<MapBuildArguments>();
   CLI::App* command = map.add_subcommand(
-      "build", "Octree, grid, costs and objects from the depth of a sequence's keyframes.");
+      "build",
+      "Builds an octree, grid, costs and objects from the depth of a sequence's keyframes.");
   options->add_to(*command);
   command->add_option("--out", options->out, "Folder for the results")->required();
   command->add_option("--map", options->map,
-                      "Saved map (slam --save-map) of this sequence: where its keyframes are; "
-                      "without: SLAM is run");
-  command->add_option(
-      "--poses", options->poses,
-      "Trajectory of this sequence instead, TUM text or EuRoC CSV; between its stamps, "
-      "poses are interpolated over at most 0.05 s");
+                      "Saved map (slam --save-map) of this sequence, which gives its keyframes' "
+                      "poses (default: runs SLAM)");
+  command->add_option("--poses", options->poses,
+                      "Trajectory of this sequence instead of a map, TUM text or EuRoC CSV; "
+                      "between its stamps, poses are interpolated over at most 0.05 s");
   command
       ->add_option("--every", options->every,
-                   "--poses, --map: only every n-th frame that has a pose")
+                   "With --poses or --map: only every n-th frame that has a pose")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--resolution", options->resolution_m, "Side of a voxel, m")
       ->check(number_between(0.016, 0.5));
   command
-      ->add_option("--height", options->height_m, "Of the robot, m: what is higher is no obstacle")
+      ->add_option("--height", options->height_m,
+                   "Height of the robot, m: anything higher is no obstacle")
       ->check(number_between(0.15, 10.0));
-  command->add_option("--frames", options->frames, "At most so many frames")
+  command->add_option("--frames", options->frames, "At most this many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   command->add_flag("--plain", options->plain, "SLAM without semantics");
   command->add_flag("--lasers", options->lasers,
-                    "scene: what the robot's lasers see of the floor joins the grid");
-  command->add_flag("--score", options->score,
-                    "scene: against the exact mesh, with the poses given and with the true ones");
+                    "scene: adds what the robot's lasers see of the floor to the grid");
+  command->add_flag(
+      "--score", options->score,
+      "scene: scores against the exact mesh, with the given poses and with the true ones");
   command->footer("Example:\n  modelhouse map build out/sequence --out out/map");
   command->callback([options] { run(*options); });
 }

@@ -36,9 +36,9 @@ void run(const MergeArguments& options) {
 
 void add_merge(CLI::App& app) {
   auto options = std::make_shared<MergeArguments>();
-  CLI::App* command = app.add_subcommand(
-      "merge", "Puts the results of a suite's shards together; prints the table.");
-  command->add_option("out", options->out, "Folder for all results; may hold some already")
+  CLI::App* command =
+      app.add_subcommand("merge", "Combines the results of a suite's shards; prints the table.");
+  command->add_option("out", options->out, "Folder for all results; may already hold some")
       ->required();
   command->add_option("in", options->in, "Folders of `bench --shard i/n`")->required();
   command->add_flag("--json", options->json, "Prints results.json instead of the table");

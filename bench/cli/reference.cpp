@@ -31,8 +31,8 @@ namespace {
 /// States where a page comes from, so that it is not edited by hand.
 std::string heading(const char* title, const char* what) {
   return fmt::format(
-      "# {}\n\nMade by `modelhouse reference {}`; a test holds this page to the code.\n\n", title,
-      what);
+      "# {}\n\nMade by `modelhouse reference {}`; a test checks this page against the code.\n\n",
+      title, what);
 }
 
 const char* place_of(Mount mount) {
@@ -52,10 +52,10 @@ const char* place_of(Mount mount) {
 std::string furniture() {
   std::string text = heading("Kinds of furniture", "furniture");
   text +=
-      "What `kind` of an item in a house may be ([formats.md](../formats.md)). The usual size is\n"
-      "width x depth x height; `size_m` changes it. Roles are what `materials` of an item may "
-      "name.\n\n"
-      "| kind | class | stands on | usual size, m | roles of materials |\n|---|---|---|---|---|\n";
+      "Values of `kind` for an item in a house ([formats.md](../formats.md)). The usual size is\n"
+      "width x depth x height; `size_m` changes it. `materials` of an item may name the roles.\n\n"
+      "| kind | class | stands on | usual size, m | roles of materials |\n"
+      "|---|---|---|---|---|\n";
   for (const FurnitureKind& kind : furniture_kinds())
     text += fmt::format("| `{}` | {} | {} | {:g} x {:g} x {:g} | {} |\n", kind.name,
                         kind.class_name, place_of(kind.mount), kind.size_m.x(), kind.size_m.y(),
@@ -66,9 +66,10 @@ std::string furniture() {
 std::string materials() {
   std::string text = heading("Kinds of materials", "materials");
   text +=
-      "What `kind` of a material may be ([formats.md](../formats.md)). An image fills its "
-      "surface\n"
-      "once; everything else repeats without a seam.\n\n| kind | fills its surface |\n|---|---|\n";
+      "Values of `kind` for a material ([formats.md](../formats.md)). An image fills its surface\n"
+      "once; everything else repeats without a seam.\n\n"
+      "| kind | fills its surface |\n"
+      "|---|---|\n";
   for (const std::string_view kind : material_kinds())
     text += fmt::format("| `{}` | {} |\n", kind, is_image(kind) ? "once" : "by repeating");
   return text;
@@ -77,12 +78,13 @@ std::string materials() {
 std::string class_table() {
   std::string text = heading("Classes", "classes");
   text +=
-      "What a label may be: the 40 classes of NYU40, *void* (nobody knows), *background* (a "
-      "detector\n"
-      "looked and found nothing), and classes of COCO that NYU40 lumps together. Colors are those "
-      "of\n"
-      "images of labels.\n\n| id | class | in NYU40 files | in COCO's 80 | color "
-      "|\n|---|---|---|---|---|\n";
+      "Values of a label: the 40 classes of NYU40, *void* (unknown), *background* (a detector "
+      "looked\n"
+      "and found nothing), and classes of COCO that NYU40 lumps together. Colors are those of "
+      "label\n"
+      "images.\n\n"
+      "| id | class | in NYU40 files | in COCO's 80 | color |\n"
+      "|---|---|---|---|---|\n";
   for (const ClassInfo& info : classes()) {
     const Rgb8 color = class_color(info.id);
     text += fmt::format("| {} | {} | {} | {} | `#{:02x}{:02x}{:02x}` |\n", info.id, info.name,
@@ -148,7 +150,7 @@ class SettingsTables {
   std::string text_;
 };
 
-/// Sets `enabled` of every section, as it is where a level has the section.
+/// Sets `enabled` in every section, as in a level that has the section.
 struct SwitchOn {
   void section(const char*) const {}
   template <class T>
@@ -173,11 +175,13 @@ std::string sensors() {
   SettingsTables tables;
   for_each_setting(std::as_const(config), tables);
   return heading("Keys of a sensor level", "sensors") +
-         "`depth_noise` and `color_noise` must stand in every level, the other sections are off\n"
-         "unless they are there; defaults are those of a section that is there. What each fault "
-         "is\n"
-         "and where its numbers come from: [sensors.md](../sensors.md). `modelhouse sensors\n"
-         "--print-settings [--level LEVEL]` prints a level with every key.\n" +
+         "Every level must contain `depth_noise` and `color_noise`; the other sections are off "
+         "unless\n"
+         "they are present. Defaults apply to a section that is present. "
+         "[sensors.md](../sensors.md)\n"
+         "explains each fault and where its numbers come from. `modelhouse sensors "
+         "--print-settings\n"
+         "[--level LEVEL]` prints a level with every key.\n" +
          tables.text();
 }
 
@@ -187,7 +191,7 @@ std::string protocol() {
   const ProtocolConfig config;
   fields(config, tables);
   return heading("Settings of the protocol", "protocol") +
-         "The section `protocol` of a suite; what the words mean: [protocol.md](../protocol.md).\n"
+         "The section `protocol` of a suite; [protocol.md](../protocol.md) explains the terms.\n"
          "`modelhouse bench --print-settings` prints it.\n" +
          tables.text();
 }
@@ -221,7 +225,7 @@ std::string suite() {
   rest.section("episodes");
   episode_settings(episodes, rest);
   return heading("Keys of a suite", "suite") +
-         "Those that are one value or name one file; lists and mappings: "
+         "Keys with a single value or file; for lists and mappings, see "
          "[formats.md](../formats.md#suite-benchsuitesyaml).\n" +
          top.text() + source_table("environments: a scene", Environment{}) + rest.text() +
          source_table("episodes.variants", EpisodeVariant{});
@@ -234,7 +238,8 @@ std::string detector() {
   fields(settings, tables);
   return heading("Settings of a detector", "detector") +
          "Keys of a file for `--detector-settings` and of a mapping in `labels` of a suite\n"
-         "([detector.md](../detector.md)), beside `network`, `config`, `classes` and `boxes`.\n" +
+         "([detector.md](../detector.md)), in addition to `network`, `config`, `classes` and "
+         "`boxes`.\n" +
          tables.text();
 }
 

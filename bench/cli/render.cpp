@@ -54,7 +54,7 @@ struct RenderArguments {
   bool json = false;
 };
 
-/// The digest of an input as it was when it was read; empty if there is none of that name.
+/// The digest that an input had when it was read; empty if there is no input of that name.
 std::string digest_of(const std::vector<InputDigest>& inputs, std::string_view name) {
   const auto input = std::ranges::find(inputs, name, &InputDigest::name);
   return input == inputs.end() ? "" : hex(input->digest);
@@ -105,9 +105,9 @@ fs::path part_of_sequence(const fs::path& folder) {
 /// Images of two tours in one folder would look like one sequence.
 void refuse_older_sequence(const fs::path& folder) {
   if (!is_folder(folder) || fs::exists(folder / "render.json"))
-    return;  // compared when all settings are known
+    return;  // compared later, when all settings are known
   if (const fs::path part = part_of_sequence(folder); !part.empty())
-    throw InputError(fmt::format("{}: holds a sequence already ({}); name another folder",
+    throw InputError(fmt::format("{}: already holds a sequence ({}); name another folder",
                                  folder.string(), part.filename().string()));
 }
 
@@ -140,8 +140,8 @@ std::vector<std::string> names_written(const fs::path& out) {
 const MountedCamera* find_camera(const RenderArguments& options, const Robot& robot) {
   if (options.camera.empty()) return nullptr;
   if (!robot.equipment)
-    throw InputError(fmt::format("--camera {}: robot '{}' has no other cameras than its own",
-                                 options.camera, robot.name));
+    throw InputError(
+        fmt::format("--camera {}: robot '{}' has no further cameras", options.camera, robot.name));
   for (const MountedCamera& mounted : robot.equipment->cameras)
     if (mounted.name == options.camera) return &mounted;
   throw InputError(
@@ -344,7 +344,7 @@ void add_render(CLI::App& app) {
   auto options = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand(
       "render",
-      "Writes what a camera sees on its way through a scene, with labels, instances and poses.");
+      "Renders what a camera sees on its path through a scene, with labels, instances and poses.");
   command
       ->add_option("scene", options->scene,
                    "Scene (YAML), mesh file, or the name of a shipped scene")
@@ -356,50 +356,50 @@ void add_render(CLI::App& app) {
   command->add_option("--camera", options->camera,
                       "Another of the robot's cameras, by its name in the robot's file");
   command->add_option("--level", options->level,
-                      "Sensor level (YAML), or the name of a shipped one; without: no noise");
+                      "Sensor level (YAML), or the name of a shipped one (default: no noise)");
   command->add_option("--pedestrian", options->pedestrian,
-                      "Adds a pedestrian (YAML); a robot that drives meets him");
+                      "Adds a pedestrian (YAML), who can get in the way of a driving robot");
   command
       ->add_option("--out", options->out,
-                   "Folder to write; goes on where it was stopped (scannet, mcap, rosbag: anew, as "
-                   "one file is written in one go)")
+                   "Folder to write; resumes where it was stopped (scannet, mcap and rosbag start "
+                   "over, since a single file is written in one go)")
       ->required();
   command
-      ->add_option("--format", options->format,
-                   "tum: folders and lists; euroc: gray images, inertial readings, truth; scannet: "
-                   ".sens, label images; "
-                   "scannet-frames: folders as extracted from a .sens; mcap, rosbag: NAME.mcap "
-                   "(ROS 2) or NAME.bag (ROS 1), with all that the robot measures")
+      ->add_option(
+          "--format", options->format,
+          "tum: folders and lists; euroc: gray images, inertial readings, truth; scannet: .sens, "
+          "label images; scannet-frames: folders as extracted from a .sens; mcap, rosbag: "
+          "NAME.mcap (ROS 2) or NAME.bag (ROS 1), with everything that the robot measures")
       ->check(one_of_words({"tum", "euroc", "scannet", "scannet-frames", "mcap", "rosbag"}));
   command
       ->add_option("--stereo", options->stereo_m,
-                   "euroc: adds a second camera so many meters to the right")
+                   "euroc: adds a second camera this many meters to the right")
       ->check(CLI::Range(0.001, 10.0));
   options->ros.add_to(*command);
-  command->add_option("--frames", options->sequence.frames, "At most so many frames of the path")
+  command->add_option("--frames", options->sequence.frames, "At most this many frames of the path")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--every", options->sequence.every, "Every n-th frame only")
       ->check(CLI::Range(1, 100000000));
   command->add_option("--renderer", options->renderer, "embree or osmesa")
       ->check(one_of_words({"embree", "osmesa"}));
-  CLI::Option* labels =
-      command
-          ->add_option("--labels", options->labels,
-                       "exact, annotated, boxes or detector: what `label` holds, faults of the "
-                       "level with it")
-          ->check(one_of_words({"exact", "annotated", "boxes", "detector"}));
+  CLI::Option* labels = command
+                            ->add_option("--labels", options->labels,
+                                         "exact, annotated, boxes or detector: what `label` "
+                                         "contains, including the level's faults")
+                            ->check(one_of_words({"exact", "annotated", "boxes", "detector"}));
   for (CLI::Option* option : options->detector.add_to(*command)) labels->excludes(option);
   command->add_option("--seed", options->sequence.seed, "Seed of the noise")->check(seed_number());
   command
       ->add_option("--threads", options->sequence.threads,
-                   "Frames worked on side by side; never changes a byte")
+                   "Frames processed in parallel; does not change any byte")
       ->check(CLI::Range(1, 256));
   command
       ->add_option("--png-compression", options->png_compression,
                    "0 (none) to 9 (smallest) (default: 1)")
       ->check(CLI::Range(0, 9));
-  command->add_flag("--json", options->json, "Prints frames written and the time of each stage");
+  command->add_flag("--json", options->json,
+                    "Prints JSON: the number of frames written and the time of each stage");
   command->footer(
       "Example:\n  modelhouse render office --motion handheld:0 --level handheld "
       "--out out/sequence");

@@ -27,11 +27,11 @@ std::vector<std::string> doubts(const Scene& scene, const Trajectory& camera, bo
   }
   std::vector<std::string> found;
   if (outside > 0)
-    found.push_back(fmt::format("{} of {} stand outside of the scene: are they in its world?",
+    found.push_back(fmt::format("{} of {} are outside the scene: are they in its world frame?",
                                 outside, counted(camera.size(), "pose")));
   if (of_camera && upright == camera.size())
     found.emplace_back(
-        "every camera looks straight up or down: of a robot's base they are with --poses-of robot");
+        "every camera looks straight up or down: poses of a robot's base need --poses-of robot");
   return found;
 }
 
@@ -57,8 +57,7 @@ void RenderMotion::read() {
     return;
   }
   if (!option_.tour.empty() || !option_.motion.empty())
-    throw InputError(
-        fmt::format("--poses {}: stands in place of a motion: give one of both", file_));
+    throw InputError(fmt::format("--poses {}: takes the place of a motion: give only one", file_));
   poses_ = read_trajectory(file_);
 }
 

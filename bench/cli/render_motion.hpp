@@ -16,17 +16,19 @@ namespace mh::cli {
 class RenderMotion {
  public:
   void add_to(CLI::App& command);
-  /// Reads what needs no scene. @throws InputError unless exactly one of the two was given.
+  /// Reads what can be read without a scene. @throws InputError unless either a motion or poses
+  /// were given, not both.
   void read();
 
-  /// Its text in render.json.
+  /// The text for render.json.
   std::string text() const;
   bool is_driven() const { return !has_poses() && mh::is_driven(motion_); }
-  /// Whether the poses are those of the camera that is rendered, whichever it is.
+  /// Whether the poses are those of the camera that is rendered, whichever camera that is.
   bool is_of_camera() const { return has_poses() && poses_of_ == "camera"; }
 
   /// @pre read()
-  /// @param say  receives how poses were moved, or that they were not, and what may be wrong
+  /// @param say  receives messages: how the camera moves, whether poses were changed, and what may
+  /// be wrong
   DrivenPath path(const Scene& scene, const Robot& robot, const std::vector<MovingObstacle>& others,
                   const SensorConfig& level,
                   const std::function<void(std::string_view)>& say) const;

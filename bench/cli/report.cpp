@@ -24,8 +24,8 @@ struct ReportArguments {
   std::string out, cache;
 };
 
-/// Executes again the runs whose replay is requested: by name, `failed` (runs with a query that was
-/// not answered correctly) or `all`. @throws InputError if no results contain a run of that name.
+/// Repeats the runs whose replay is requested: by name, `failed` (runs with a query that was not
+/// answered correctly) or `all`. @throws InputError if no results contain a run of that name.
 void add_replays(std::vector<PagesSource>& sources, const ReportArguments& options) {
   const ReplayTools tools{
       .cache = usual_cache(options.cache), .threads = 1, .say = [](std::string_view stage) {
@@ -65,7 +65,7 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
       throw InputError(fmt::format("--replay: no run is named '{}'{}", word, hint(word, names)));
 }
 
-/// Folders with equal names are labeled by as much of their paths as distinguishes them.
+/// Labels folders of the same name with as much of their paths as distinguishes them.
 void name_apart(std::vector<PagesSource>& sources) {
   const auto tail = [](const PagesSource& source, std::size_t parts) {
     const auto whole = std::filesystem::absolute(source.folder).lexically_normal();
@@ -122,25 +122,26 @@ void draw(const PlotArguments& options) {
 
 void add_plot(CLI::App& app) {
   auto options = std::make_shared<PlotArguments>();
-  CLI::App* command = app.add_subcommand(
-      "plot",
-      "A figure or table for a paper: PDF (vectors, fonts embedded) or PNG, as wide as a column.");
-  command->add_option("results", options->results, "Folder of `bench`")->required();
+  CLI::App* command = app.add_subcommand("plot",
+                                         "Draws a figure or table for a paper: PDF (vectors, fonts "
+                                         "embedded) or PNG, as wide as a column.");
+  command->add_option("results", options->results, "Folder of results of `bench`")->required();
   CLI::Option* figure =
       command
           ->add_option("--figure", options->order.figure,
-                       "Of the paper: 2, a run from above; 3, boxes by density of objects; 4, "
-                       "error against frames; 5, a run on the grid of its map")
+                       "Figure of the paper: 2, a run from above; 3, box plots by density of "
+                       "objects; 4, error against frames; 5, a run on the grid of its map")
           ->check(CLI::IsMember({2, 3, 4, 5}));
   command
       ->add_option("--table", options->order.table,
-                   "Of the paper: 1, by category; 2, relocalization")
+                   "Table of the paper: 1, by category; 2, relocalization")
       ->check(CLI::IsMember({1, 2}))
       ->excludes(figure);
-  command->add_option("--run", options->order.run, "Of figures 2 and 5 (default: the first)");
+  command->add_option("--run", options->order.run,
+                      "Run that figures 2 and 5 show (default: the first)");
   command->add_option("--measure", options->order.measure,
-                      "Of figure 3: ate_rmse_m, held_out.success, ...");
-  command->add_option("--width", options->order.width_cm, "Of a figure, cm")
+                      "Measure that figure 3 shows: ate_rmse_m, held_out.success, ...");
+  command->add_option("--width", options->order.width_cm, "Width of a figure, cm")
       ->check(number_between(2.0, 100.0));
   command->add_option("--out", options->out, "File: .pdf or .png")->required();
   command->footer(
@@ -148,7 +149,7 @@ void add_plot(CLI::App& app) {
       "Needs gnuplot (Debian: gnuplot-nox).");
   command->callback([options, command, figure] {
     if (figure->empty() && command->get_option("--table")->empty())
-      throw InputError("plot: either --figure or --table says what to draw");
+      throw InputError("plot: give either --figure or --table");
     const int number = figure->empty() ? 0 : options->order.figure;
     if (!options->order.run.empty() && number != 2 && number != 5)
       throw InputError(fmt::format("--run {}: is for figures 2 and 5", options->order.run));
@@ -166,14 +167,14 @@ void add_plot(CLI::App& app) {
 void add_report(CLI::App& app) {
   auto options = std::make_shared<ReportArguments>();
   CLI::App* command = app.add_subcommand(
-      "report", "Results as pages for a browser, which open from the disk without a network.");
+      "report", "Writes results as pages for a browser, which open from disk without a network.");
   command
       ->add_option("results", options->results,
-                   "Folders of `bench`; several are shown side by side")
+                   "Folders of results of `bench`; several are shown side by side")
       ->required();
   command->add_option("--out", options->out, "Folder for the pages")->required();
   command->add_option("--replay", options->replay,
-                      "Runs to run again, so that their pages show scene and landmarks: names, "
+                      "Runs to execute again, so that their pages show scene and landmarks: names, "
                       "`failed` (runs with a query that was not answered correctly) or `all`");
   command->add_option("--cache", options->cache,
                       "Cache folder for light and maps (default: $XDG_CACHE_HOME/modelhouse)");

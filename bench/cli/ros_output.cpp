@@ -21,7 +21,8 @@ constexpr const char* kBag = "rosbag";
 void RosOption::add_to(CLI::App& command) {
   command
       .add_option("--chunk-compression", compression,
-                  "Of mcap and rosbag: none, lz4 or (mcap) zstd; never changes a message")
+                  "Compression of mcap and rosbag: none, lz4 or (only mcap) zstd; does not change "
+                  "any message")
       ->check(one_of_words({"none", "lz4", "zstd"}));
 }
 

@@ -17,8 +17,8 @@ namespace mh::cli {
 
 namespace {
 
-/// What the process of a run reports to the one that started it, on standard output, as RunProcess
-/// reads it.
+/// Reports from the process of a run to the one that started it, on standard output, as RunProcess
+/// reads them.
 class ToParent {
  public:
   void say(std::string_view stage) {
@@ -35,7 +35,8 @@ class ToParent {
     std::fflush(stdout);
   }
 
-  /// Frames pass faster than anyone can read; a status with another first word is sent at once.
+  /// Sent at most every 0.5 s, since frames pass faster than anyone can read; a status with a
+  /// different first word is sent at once.
   void status(std::string_view status) {
     constexpr auto kBetween = std::chrono::milliseconds(500);
     const auto now = std::chrono::steady_clock::now();
@@ -53,7 +54,7 @@ class ToParent {
   std::string last_word_;
 };
 
-/// Systems in Python find `from modelhouse import System, serve`.
+/// Lets systems in Python run `from modelhouse import System, serve`.
 void offer_python_package() {
   const char* const set = std::getenv("PYTHONPATH");
   const std::string more = set != nullptr && *set != 0 ? std::string(set) + ":" : "";
@@ -66,7 +67,7 @@ void add_run_one(CLI::App& app) {
   auto file = std::make_shared<std::string>();
   CLI::App* command =
       app.add_subcommand("run-one", "One run of a suite: what `bench` starts for each.");
-  command->group("");  // for bench alone: not listed
+  command->group("");  // only for bench, so not listed
   command->add_option("order", *file)->required();
   command->callback([file] {
     const RunOrder order = read_order(*file);

@@ -47,7 +47,7 @@ struct SceneArguments {
   SceneFrameOption frame;
   std::vector<std::string> scenes;  ///< preview
   bool scan_look = false;           ///< make
-  int each = 0;                     ///< preview: number of each category
+  int each = 0;                     ///< preview: scenes of each category
   int per_room = 2;                 ///< preview: rows of one scene's sheet
   bool no_captions = false;
   std::uint64_t seed = 0;
@@ -128,7 +128,7 @@ void info(SceneArguments options) {
   fmt::print("  digest     {}\n", hex(digest(scene)));
 }
 
-/// Keeps the first views of each room, at most this many.
+/// Keeps at most the first `count` views of each room.
 void keep_of_each_room(std::vector<View>& views, int count) {
   std::map<std::string, int> kept;
   std::erase_if(views, [&](const View& view) { return ++kept[view.caption] > count; });
@@ -178,13 +178,13 @@ void preview(const SceneArguments& options) {
   write_image(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
-/// Also covers the labels that are written next to a PLY: they must not replace any other file.
+/// Also checks the labels that are written next to a PLY: they must not replace any other file.
 void require_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
   require_writable(out, read);
   const fs::path labels = labels_path(out);
   if (out.extension() == ".ply" && fs::exists(labels) && !is_labels_file(labels))
-    throw InputError(fmt::format(
-        "{}: is there already, and would be overwritten: name another --out", labels.string()));
+    throw InputError(fmt::format("{}: already exists and would be overwritten: name another --out",
+                                 labels.string()));
 }
 
 void require_ending(const SceneArguments& options, const std::vector<std::string>& endings) {
@@ -199,7 +199,7 @@ Scene scanned(const Scene& scene) {
   constexpr std::size_t kViews = 90;
   const auto renderer = make_scene_renderer(scene);
   Camera camera;
-  // From anywhere, including up and down: a single walk misses half of the floor.
+  // Views in any direction, including up and down: a single walk would miss half of the floor.
   return scan_look(scene, *renderer, camera, scan_views(scene, 0, kViews));
 }
 
@@ -262,7 +262,7 @@ nlohmann::ordered_json facts_json(const GeneratedReference& reference, const Gen
 void make(const SceneArguments& options) {
   const GeneratedReference reference{options.scene, options.seed};
   if (options.scan_look && options.out.empty())
-    throw InputError("--scan-look writes a mesh: name its file by --out FILE.glb or FILE.ply");
+    throw InputError("--scan-look writes a mesh: name its file with --out FILE.glb or FILE.ply");
   if (options.scan_look)
     require_ending(options, {".glb", ".ply"});
   else if (!options.out.empty())
@@ -277,9 +277,9 @@ void make(const SceneArguments& options) {
   if (options.out.empty()) return;
   if (fs::path(options.out).extension() == ".yaml") {
     const std::string text = with_detail(plan);
-    if (is_file(options.out) && read_file(options.out) != text)  // plans are edited by hand
+    if (is_file(options.out) && read_file(options.out) != text)  // may have been edited by hand
       throw InputError(
-          fmt::format("{}: is there already, and differs: name another file", options.out));
+          fmt::format("{}: already exists and differs: name another file", options.out));
     write_atomically(options.out, text);
     return;
   }
@@ -332,7 +332,8 @@ void list(const SceneArguments& options) {
 
 void add_scene(CLI::App& app) {
   auto options = std::make_shared<SceneArguments>();
-  CLI::App* command = app.add_subcommand("scene", "Looks at scenes and converts them.");
+  CLI::App* command =
+      app.add_subcommand("scene", "Inspects, generates, draws and converts scenes.");
   command->require_subcommand(1);
   command->footer("Example:\n  modelhouse scene info model_house");
 
@@ -341,58 +342,63 @@ void add_scene(CLI::App& app) {
       ->required();
   options->frame.add_to(*i);
   i->add_flag("--json", options->json, "Prints JSON");
-  i->add_flag("--suggest-labels", options->suggest_labels,
-              "Prints a labels.yaml to fill: the names of what has no class, the largest first");
+  i->add_flag(
+      "--suggest-labels", options->suggest_labels,
+      "Prints a labels.yaml to fill in: the names of everything without a class, largest first");
   i->footer("Example:\n  modelhouse scene info model_house --json");
   i->callback([options] { info(*options); });
 
-  CLI::App* l = command->add_subcommand(
-      "list", "Lists the categories of generated scenes with their tally of densities.");
+  CLI::App* l = command->add_subcommand("list",
+                                        "Lists the categories of generated scenes and how many "
+                                        "scenes have which density of objects.");
   l->add_flag("--json", options->json, "Prints JSON: one entry per environment");
   l->footer("Example:\n  modelhouse scene list");
   l->callback([options] { list(*options); });
 
   CLI::App* m = command->add_subcommand("make", "Generates a furnished room of a category.");
-  m->add_option("category", options->scene, "One of those that 'scene list' names")->required();
-  m->add_option("--seed", options->seed, "Another seed is another room")->check(seed_number());
-  m->add_option("--out", options->out, "What to write: .yaml (a plan), .glb or .ply (a mesh, lit)");
+  m->add_option("category", options->scene, "A category that 'scene list' prints")->required();
+  m->add_option("--seed", options->seed, "A different seed gives a different room")
+      ->check(seed_number());
+  m->add_option("--out", options->out, "File to write: .yaml (a plan), .glb or .ply (a lit mesh)");
   m->add_flag("--scan-look", options->scan_look,
-              "Writes what a hand-held scan of it would be: colors per vertex, holes, bumps");
+              "Makes the mesh look like a handheld scan: colors per vertex, holes, bumps");
   m->add_flag("--json", options->json, "Prints JSON");
   m->footer(
       "Example:\n  modelhouse scene make bathroom --seed 3 --out bathroom.yaml\n"
-      "Wherever a scene file is wanted, generated:bathroom:3 stands for the same room.");
+      "Wherever a scene file is expected, generated:bathroom:3 stands for the same room.");
   m->callback([options] { make(*options); });
 
-  CLI::App* p = command->add_subcommand(
-      "preview", "Draws a contact sheet: color, depth, labels of one scene, or a view of each.");
+  CLI::App* p = command->add_subcommand("preview",
+                                        "Draws a contact sheet: color, depth and labels of one "
+                                        "scene, or one view of each of several.");
   p->add_option("scenes", options->scenes,
                 "Scenes: files, names of shipped ones, or generated:CATEGORY:SEED");
   options->frame.add_to(*p);
-  p->add_option("--each", options->each, "So many generated scenes of every category")
+  p->add_option("--each", options->each, "This many generated scenes of every category")
       ->check(CLI::Range(1, 1000));
-  p->add_option("--per-room", options->per_room, "Of one scene: at most so many views of each room")
+  p->add_option("--per-room", options->per_room,
+                "For one scene: at most this many views of each room")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   p->add_flag("--no-captions", options->no_captions,
-              "Of several scenes: images alone, without their names below");
+              "For several scenes: images alone, without their names below");
   p->add_option("--out", options->out, "Image to write (PNG)")->required();
   p->footer(
       "Example:\n  modelhouse scene preview model_house --out house.png\n"
       "  modelhouse scene preview --each 2 --out categories.png");
   p->callback([options] { preview(*options); });
 
-  CLI::App* c = command->add_subcommand("convert", "Writes a scene as a mesh, light baked in.");
+  CLI::App* c = command->add_subcommand("convert", "Writes a scene as a mesh with baked light.");
   c->add_option("scene", options->scene,
                 "Scene (YAML), mesh file, ScanNet folder, or the name of a shipped scene")
       ->required();
   options->frame.add_to(*c);
-  c->add_option(
-       "--out", options->out,
-       "Mesh to write: .ply (ScanNet-like) or .glb; or a folder, to become a ScanNet scene")
+  c->add_option("--out", options->out,
+                "Mesh to write: .ply (ScanNet-like) or .glb; or a folder, for a ScanNet scene")
       ->required();
-  c->add_option("--format", options->format,
-                "ply, glb or scannet; default: by the ending of --out, a folder without one")
+  c->add_option(
+       "--format", options->format,
+       "ply, glb or scannet (default: from the extension of --out, or scannet if it has none)")
       ->check(one_of_words({"ply", "glb", "scannet"}));
   c->footer(
       "Examples:\n  modelhouse scene convert model_house --out house.glb\n"

@@ -21,12 +21,13 @@ struct SceneFrameOption {
 
   void add_to(CLI::App& command) {
     command
-        .add_option("--up", up,
-                    "Which way is up in the scene's files, y or z; without: y for glTF and DAE")
+        .add_option(
+            "--up", up,
+            "Axis that points up in the scene's files, y or z (default: y for glTF and DAE)")
         ->check(CLI::IsMember({"y", "z"}));
     command
         .add_option("--floor-z", floor_z_m,
-                    "Height of the scene's floor in meters; without: it is looked for")
+                    "Height of the scene's floor in meters (default: found automatically)")
         ->check(number_between(-kFarthestFloor_m, kFarthestFloor_m));
   }
   SceneFrame frame() const {

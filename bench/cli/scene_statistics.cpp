@@ -41,8 +41,7 @@ std::vector<std::string> names_of(const SceneStatisticsArguments& options) {
   return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
-/// Measures moments of a hand-held scan of the scene, evenly spaced, as the level's sensors see
-/// them.
+/// Measures evenly spaced frames of a handheld scan of the scene, as the level's sensors see them.
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames,
                             const SceneStatisticsArguments& options, const Robot& robot,
                             const SensorConfig& sensors) {
@@ -99,8 +98,8 @@ void print_table(const std::vector<MeasuredPlace>& places, const std::vector<Rea
     std::vector<std::string> outside;
     for (const std::size_t i : row.outside)
       outside.push_back(fmt::format("{} ({})", places[i].name, shown(places[i].at(q, 0.5))));
-    fmt::print("  {} whose median leaves {}'s 5 to 95 %: {}\n", counted(outside.size(), "place"),
-               real.front().name, fmt::join(outside, ", "));
+    fmt::print("  {} whose median is outside {}'s 5 to 95 %: {}\n",
+               counted(outside.size(), "place"), real.front().name, fmt::join(outside, ", "));
   }
 }
 
@@ -156,23 +155,26 @@ void add_scene_statistics(CLI::App& scene) {
   options->level = "handheld";
   options->robot = "pepper";
   CLI::App* command = scene.add_subcommand(
-      "statistics", "Measures rendered frames beside real ones: texture, blankness, sharpness.");
-  command->add_option("scenes", options->scenes, "Scenes; without: those of every category");
+      "statistics", "Compares rendered frames with real ones: texture, blankness, sharpness.");
+  command->add_option("scenes", options->scenes, "Scenes (default: those of every category)");
   command
       ->add_option("--per-category", options->per_category,
-                   "Only so many of each category (default: all)")
+                   "Scenes of each category, at most (default: all)")
       ->check(CLI::Range(1, 1000));
   command->add_option("--frames", options->frames, "Frames of all scenes together")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--level", options->level,
                       "Sensor level (YAML), or the name of a shipped one");
   command->add_option("--robot", options->robot,
-                      "Whose camera (YAML), or the name of a shipped robot");
+                      "Robot whose camera is used (YAML), or the name of a shipped one");
   command->add_option("--reference", options->reference,
                       "Figures of real frames (YAML) (default: the shipped ones)");
-  command->add_option("--tum", options->tum, "Folder of real frames in TUM's layout, measured too");
+  command->add_option("--tum", options->tum,
+                      "Folder of real frames in TUM's layout, which are measured, too");
   options->frame.add_to(*command);
-  command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
+  command
+      ->add_option("--jobs", options->threads,
+                   "Threads that bake light; does not affect the figures")
       ->check(CLI::Range(1, 1024));
   command->add_option("--cache", options->cache,
                       "Cache folder for baked light (default: $XDG_CACHE_HOME/modelhouse)");

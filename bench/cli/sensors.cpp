@@ -103,7 +103,7 @@ void add_sensors(CLI::App& app) {
       "  modelhouse sensors --print-settings --level handheld --difficulty 0.5 > harder.yaml");
 
   CLI::App* p = command->add_subcommand(
-      "plot", "Plots the figure of each model's source beside what is measured of the model.");
+      "plot", "Plots what each model's source published next to what is measured of the model.");
   p->add_option("--out", options->out, "Folder to write")->required();
   p->footer("Example:\n  modelhouse sensors plot --out out/sensors");
   p->callback([options] { plot(*options); });

@@ -31,8 +31,8 @@ Settings settings_beside(const SourceOptions& options, const Sequence& frames,
     settings.slam = named.slam;
     settings.notes = std::move(named.notes);
     if (named.has_camera && named.camera != frames.camera())
-      settings.notes.push_back(
-          fmt::format("{}: its camera gives way to that of {}", options.settings, options.source));
+      settings.notes.push_back(fmt::format("{}: its camera is replaced by that of {}",
+                                           options.settings, options.source));
   }
   settings.notes.insert(settings.notes.end(), notes.begin(), notes.end());
   settings.camera = frames.camera();
@@ -50,15 +50,16 @@ void SourceOptions::add_to(CLI::App& command) {
                      "Settings (YAML), also ORB-SLAM2's, or the name of shipped ones (default: the "
                      "folder's camera.yaml)");
   command.add_option("--classes", classes,
-                     "What the labels of a recording mean (YAML), where they are not our classes");
+                     "What the labels of a recording mean (YAML), if they are not our classes");
   command.add_option("--topics", topics,
-                     "Topics of a bag or MCAP file, where several could be meant: "
-                     "color=/a,depth=/b; also labels, info (CameraInfo), truth");
+                     "Topics of a bag or MCAP file, if several could be meant: color=/a,depth=/b; "
+                     "also labels, info (CameraInfo), truth");
   command.add_option("--tour", tour, "scene: tour (YAML), or the name of a shipped one");
   command.add_option("--robot", robot, "scene: robot (YAML), or the name of a shipped one")
       ->default_str(kUsualRobot);
-  command.add_option("--level", level,
-                     "scene: sensor level (YAML), or the name of a shipped one; without: no noise");
+  command.add_option(
+      "--level", level,
+      "scene: sensor level (YAML), or the name of a shipped one (default: no noise)");
   frame.add_to(command);
   command.add_option("--seed", seed, "Seed of RANSAC and of a scene's noise")->check(seed_number());
 }
@@ -87,7 +88,7 @@ void SourceOptions::check() const {
 std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,
                            std::size_t offered) {
   std::string text = fmt::format(
-      "{}: nothing could be mapped: none of {} showed 100 keypoints with depth to begin with",
+      "{}: nothing could be mapped: none of {} showed 100 keypoints with depth to start with",
       source, counted(offered, "frame"));
   if (offered == 0) return text;
   std::vector<double> depths_m;
@@ -95,7 +96,7 @@ std::string nothing_mapped(const std::string& source, const Sequence& frames, st
     const RgbdFrame frame = frames.frame(first, RandomStream());
     for (const float depth_m : frame.depth_m)
       if (depth_m > 0) depths_m.push_back(depth_m);
-  } catch (const InputError&) {  // was reported when it was skipped
+  } catch (const InputError&) {  // already reported when the frame was skipped
     return text;
   }
   if (depths_m.empty()) return text + " (the first image has no depth)";

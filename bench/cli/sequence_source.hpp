@@ -19,7 +19,7 @@ namespace mh::cli {
 /// Prefix of a source that is a scene.
 inline constexpr std::string_view kSceneSource = "scene:";
 
-/// A recording, or a scene with a tour, as options of a command name it.
+/// A recording, or a scene with a tour, as named by a command's options.
 struct SourceOptions {
   std::string source, settings, classes, topics;
   SceneFrameOption frame;

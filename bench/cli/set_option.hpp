@@ -14,7 +14,7 @@
 namespace mh::cli {
 
 /// Words NAME=VALUE of an option that may be given several times.
-/// @throws InputError unless each is NAME=VALUE, each name once.
+/// @throws InputError if one is not NAME=VALUE, or if a name is given twice.
 inline std::map<std::string, std::string> named_values(const std::string& option,
                                                        const std::vector<std::string>& given) {
   std::map<std::string, std::string> values;
@@ -35,8 +35,8 @@ struct SetOption {
   void add_to(CLI::App& command) {
     command
         .add_option("--set", given,
-                    "NAME=VALUE: what ${NAME} in the suite stands for; a file or folder is seen "
-                    "from here")
+                    "NAME=VALUE: replaces ${NAME} in the suite; a file or folder is relative to "
+                    "the current folder")
         ->allow_extra_args(false);
   }
 

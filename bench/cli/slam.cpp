@@ -37,8 +37,7 @@ struct SlamArguments : SourceOptions {
 };
 
 /// Applies what --settings may change for a loaded map: the settings of relocalization. The others
-/// have shaped the map: the map's values are kept, and a note lists those that the file would
-/// change.
+/// shaped the map, so the map's values are kept, and a note lists those that the file would change.
 void apply_settings(const SlamArguments& options, SlamConfig& of_map,
                     std::vector<std::string>& notes) {
   const SlamConfig asked = load_settings(options.settings, of_map).slam;
@@ -51,7 +50,7 @@ void apply_settings(const SlamArguments& options, SlamConfig& of_map,
       list += fmt::format("{}{}.{}", list.empty() ? "" : ", ", section, line.substr(2));
   }
   if (!list.empty())
-    notes.push_back(fmt::format("{}: the map's own settings count: {}", options.settings, list));
+    notes.push_back(fmt::format("{}: the map's own settings are used: {}", options.settings, list));
 }
 
 /// Returns a new state, or that of the map file.
@@ -62,10 +61,10 @@ SlamState first_state(const SlamArguments& options,
     state = make_slam(settings.camera, settings.slam, vocabulary);
   } else {
     state = load_slam(options.map, vocabulary);
-    Camera made_by = state.camera;  // without what it learned
+    Camera made_by = state.camera;  // without the learned disparity_sigma_px
     if (!made_by.disparity_sigma_is_given) made_by.disparity_sigma_px = Camera{}.disparity_sigma_px;
     if (made_by != settings.camera)
-      throw InputError(fmt::format("{}: was made with another camera", options.map));
+      throw InputError(fmt::format("{}: was made with a different camera", options.map));
     if (!options.settings.empty()) apply_settings(options, state.config, settings.notes);
     if (!options.resume) {  // the map's frames are from another sequence
       rewind(state);
@@ -84,9 +83,9 @@ SlamState first_state(const SlamArguments& options,
 void check(const SlamArguments& options) {
   options.check();
   if (options.localize && options.map.empty())
-    throw InputError("--localize needs a map: name one by --map");
+    throw InputError("--localize needs a map: name one with --map");
   if (options.resume && options.map.empty())
-    throw InputError("--resume needs a map: name one by --map");
+    throw InputError("--resume needs a map: name one with --map");
   if (options.resume && options.protocol)
     throw InputError("--protocol and --resume: held-out frames need a whole run");
 }
@@ -106,7 +105,7 @@ std::size_t first_frame(const SlamArguments& options, const SlamState& state,
   }
   if (first == frames.size())
     throw InputError(fmt::format(
-        "{}: nothing is left to go on with: it ends at {} s, and the run of {} was fed until {} s",
+        "{}: nothing is left to resume: it ends at {} s, and the run in {} got as far as {} s",
         options.source, format_stamp(last_ns), options.map, format_stamp(*state.last_stamp_ns)));
   return first;
 }
@@ -119,13 +118,12 @@ void require_no_other_file(const fs::path& map) {
         fmt::format("--save-map {}: is not a map file: choose another name", map.string()));
 }
 
-/// Runs the protocol on one sequence: that of the bench, or a live camera feed without held-out
-/// frames.
+/// Runs one sequence, under the bench's protocol or as a live camera feed without held-out frames.
 RunResult run_sequence(const SlamArguments& options, const World& world, SlamState& state,
                        std::size_t first, const StepObservers& observers,
                        const MappingObserver& watch) {
-  // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol the feed
-  // rewinds.
+  // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol, the feed
+  // rewinds instead.
   constexpr int kSmallMap = 5;
   RunSpec spec;
   spec.environment.sequence = options.source;
@@ -183,8 +181,8 @@ void run(SlamArguments options) {
     require_writable(file);
     if (!options.save_map.empty() &&
         fs::absolute(file).lexically_normal() == fs::absolute(options.save_map).lexically_normal())
-      throw InputError(
-          fmt::format("--save-map {}: will hold a result of its own", options.save_map));
+      throw InputError(fmt::format(
+          "--save-map {}: is the name of another result: choose another name", options.save_map));
   }
   if (!options.save_map.empty()) {
     require_writable(options.save_map,
@@ -253,22 +251,22 @@ void add_slam(CLI::App& app) {
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--out", options->out, "Folder for the results")->required();
-  command->add_option("--map", options->map, "Map file to begin with");
+  command->add_option("--map", options->map, "Map file to start from");
   CLI::Option* localize =
-      command->add_flag("--localize", options->localize, "The map stays as it is");
+      command->add_flag("--localize", options->localize, "Only localizes: the map stays as it is");
   command->add_flag("--resume", options->resume, "Resumes the sequence where the map's run stopped")
       ->excludes(localize);
   command
       ->add_flag("--protocol", options->protocol,
-                 "As a suite runs it: frames are held out and queried after mapping, and "
-                 "the feed goes back where tracking is lost")
+                 "Runs as in a suite: frames are held out and queried after mapping, and the feed "
+                 "goes back when tracking is lost")
       ->excludes(localize);
   command->add_option("--save-map", options->save_map, "Map file to write")->excludes(localize);
   command->add_option(
       "--truth", options->truth,
       "True trajectory, TUM text or EuRoC CSV (default: the folder's groundtruth.txt "
       "or groundtruth.csv)");
-  command->add_option("--frames", options->frames, "At most so many frames")
+  command->add_option("--frames", options->frames, "At most this many frames")
       ->default_str("all")
       ->check(CLI::Range(1, 100000000));
   const std::vector<CLI::Option*> detector = options->detector.add_to(*command);
@@ -279,9 +277,9 @@ void add_slam(CLI::App& app) {
   CLI::Option* xi =
       command
           ->add_option("--xi", options->xi,
-                       "Penalty of labels that differ, equation 2 (default: the settings')")
+                       "Penalty for labels that differ, equation 2 (default: the settings')")
           ->check(number_between(1.0, 1e6));
-  CLI::Option* plain = command->add_flag("--plain", options->plain, "Without semantics");
+  CLI::Option* plain = command->add_flag("--plain", options->plain, "Runs without semantics");
   plain->excludes(gamma, xi);
   for (CLI::Option* option : detector) plain->excludes(option);
   command->add_flag_callback(
@@ -292,8 +290,7 @@ void add_slam(CLI::App& app) {
       },
       "Prints every setting with its default, meaning and range");
   command->footer(
-      "Example:\n  modelhouse slam out/sequence --out out/slam "
-      " --save-map out/house.mhmap");
+      "Example:\n  modelhouse slam out/sequence --out out/slam --save-map out/house.mhmap");
   command->callback([options] { run(*options); });
 }
 

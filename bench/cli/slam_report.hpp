@@ -22,7 +22,7 @@ struct SlamReport {
   const RunResult& run;
   const FrameLog& log;
   const StageClock& clock;
-  std::vector<double> frame_ms;          ///< of each processed frame, without reading it
+  std::vector<double> frame_ms;          ///< of each processed frame, excluding the time to read it
   std::optional<Evaluation> evaluation;  ///< if the truth is known
   std::string frames_csv, source;
 

@@ -51,8 +51,8 @@ struct TwinArguments {
   SceneFrameOption frame;
 };
 
-/// From the frame of the recording's poses to that of the scene: as stated, else ScanNet's
-/// alignment, which the scene's loader applies and the recording's poses lack.
+/// Transform from the frame of the recording's poses to that of the scene: the one given, else
+/// ScanNet's alignment, which the scene's loader applies and the recording's poses lack.
 SE3 scene_from_recording(const TwinArguments& options) {
   if (!options.scene_from_recording.empty()) {
     const std::vector<double>& v = options.scene_from_recording;
@@ -71,7 +71,8 @@ SE3 scene_from_recording(const TwinArguments& options) {
           info.aligned_from_scan->topRightCorner<3, 1>()};
 }
 
-/// A map of one kind of frames, and how it answers queries of both kinds, at the same moments.
+/// A map from one kind of frames (recorded or rendered), and its answers to queries of both kinds
+/// at the same times.
 struct Mapped {
   MappingOutcome mapping;
   TrajectoryScore trajectory;
@@ -122,7 +123,7 @@ void print(const std::vector<TwinFrame>& frames, const std::vector<TwinRow>& row
   for (const TwinRow& row : rows)
     fmt::print("{:<48}{:>12}{:>12}\n", row.name, shown(row.recorded), shown(row.rendered));
   fmt::print(
-      "(of the last three, \"rendered\" is the bound: the same rendering with other noise)\n");
+      "(for the last three, \"rendered\" is a bound: the same rendering with different noise)\n");
   std::vector<double> differences;
   for (const TwinFrame& frame : frames)
     if (frame.depth_difference_m) differences.push_back(*frame.depth_difference_m);
@@ -242,9 +243,9 @@ void run(TwinArguments options) {
 void add_twin(CLI::App& app) {
   auto options = std::make_shared<TwinArguments>();
   CLI::App* command = app.add_subcommand(
-      "twin", "Renders a recording's own scene along its poses and compares the two.");
+      "twin", "Renders the scene of a recording along its poses and compares the two.");
   command->add_option("recording", options->recording, sequence_forms())->required();
-  command->add_option("scene", options->scene, "The mesh of the same place")->required();
+  command->add_option("scene", options->scene, "Mesh of the same place")->required();
   command->add_option("--out", options->out, "Folder for pairs.png and twin.json")->required();
   command->add_option("--settings", options->settings,
                       "Calibration (default: that of the recording)");
@@ -254,13 +255,15 @@ void add_twin(CLI::App& app) {
                    "tx ty tz qx qy qz qw: from the frame of the recording's poses to the scene's "
                    "(default: ScanNet's alignment, otherwise none)")
       ->expected(7);
-  command->add_option("--frames", options->frames, "At most so many frames with a pose");
-  command->add_option("--every", options->every, "Compares every so many frames")
+  command->add_option("--frames", options->frames, "At most this many frames with a pose");
+  command->add_option("--every", options->every, "Compares every n-th frame only")
       ->check(CLI::Range(1, 1000000));
-  command->add_flag("--no-maps", options->plain_comparison, "Compares images alone");
+  command->add_flag("--no-maps", options->plain_comparison, "Compares only images, makes no maps");
   command->add_option("--vocabulary", options->vocabulary, "Vocabulary of the maps");
-  command->add_option("--seed", options->seed, "Of SLAM's draws");
-  command->add_option("--jobs", options->threads, "Threads that bake light; changes no figure")
+  command->add_option("--seed", options->seed, "Seed of SLAM's random draws");
+  command
+      ->add_option("--jobs", options->threads,
+                   "Threads that bake light; does not affect the figures")
       ->check(CLI::Range(1, 1024));
   command->add_option("--cache", options->cache,
                       "Cache folder for baked light (default: $XDG_CACHE_HOME/modelhouse)");

@@ -86,7 +86,7 @@ void add_verify(CLI::App& app) {
   command->add_flag("--json", options->json, "Prints JSON");
   command->footer(
       "Example:\n  modelhouse verify model_house --frames 600\n"
-      "Exit code 1 where a bit differs; the first frame and stage are named.");
+      "Exit code 1 if a bit differs; the first frame and stage that differ are named.");
   command->callback([options] { run(*options); });
 }
 

@@ -119,7 +119,8 @@ void info(VocabularyArguments options) {
 
 void add_vocabulary(CLI::App& app) {
   auto options = std::make_shared<VocabularyArguments>();
-  CLI::App* command = app.add_subcommand("vocabulary", "Trains and shows visual vocabularies.");
+  CLI::App* command =
+      app.add_subcommand("vocabulary", "Trains, converts and inspects visual vocabularies.");
   command->require_subcommand(1);
   command->footer("Example:\n  modelhouse vocabulary info vocabulary");
 
@@ -135,13 +136,15 @@ void add_vocabulary(CLI::App& app) {
       ->check(CLI::Range(2, 255));
   t->add_option("--depth", training.tree.depth, "Levels below the root")->check(CLI::Range(1, 10));
   t->add_option("--seed", training.seed, "Seed of rooms, views and tree")->check(seed_number());
-  t->add_option("--threads", training.threads, "Rooms side by side; changes no bit")
+  t->add_option("--threads", training.threads,
+                "Rooms processed in parallel; does not change any bit")
       ->check(CLI::Range(1, 1024));
   t->footer("Example:\n  modelhouse vocabulary train --out assets/vocabulary.mhvoc");
   t->callback([options] { train(*options); });
 
   CLI::App* c = command->add_subcommand(
-      "convert", "Between DBoW2's text format (ORBvoc.txt) and our own, either way.");
+      "convert",
+      "Converts between DBoW2's text format (ORBvoc.txt) and our own, in either direction.");
   c->add_option("file", options->file, "Vocabulary file, or the name of the shipped one")
       ->required();
   c->add_option("--out", options->out,
@@ -155,9 +158,11 @@ void add_vocabulary(CLI::App& app) {
   CLI::App* i = command->add_subcommand("info", "Prints size, weights, origin and digest.");
   i->add_option("file", options->file, "Vocabulary file, or the name of the shipped one")
       ->required();
-  auto* const frames = i->add_option("--frames", options->frames,
-                                     "tum:FOLDER with poses: how well words find views of a place");
-  i->add_option("--queries", options->queries, "tum:FOLDER to ask from, instead of the frames")
+  auto* const frames =
+      i->add_option("--frames", options->frames,
+                    "tum:FOLDER with poses: measures how well words find views of a place");
+  i->add_option("--queries", options->queries,
+                "tum:FOLDER to take queries from, instead of the frames")
       ->needs(frames);
   auto* const settings =
       i->add_option("--settings", options->settings, "Calibration (YAML, ORB-SLAM's keys)");

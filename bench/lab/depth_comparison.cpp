@@ -17,7 +17,7 @@ namespace {
 /// Where the camera's image shows undistorted keypoints.
 std::vector<Eigen::Vector2d> distorted(const Camera& camera,
                                        const std::vector<Keypoint>& keypoints) {
-  constexpr int kRounds = 4;  // each leaves a fraction of the error of the one before
+  constexpr int kRounds = 4;  // each leaves a fraction of the previous error
   std::vector<Eigen::Vector2d> wanted;
   for (const Keypoint& k : keypoints) wanted.emplace_back(k.u_px, k.v_px);
   std::vector<Eigen::Vector2d> at = wanted;
@@ -30,7 +30,8 @@ std::vector<Eigen::Vector2d> distorted(const Camera& camera,
   return at;
 }
 
-/// Whether a depth is found at a pixel or beside it: a keypoint on an edge has its neighbors'.
+/// Whether the wanted depth is found at a pixel or next to it: a keypoint on an edge may have a
+/// neighbor's depth.
 bool shows(const Grid2d<float>& depth_m, int x, int y, float wanted_m) {
   constexpr float kSame = 0.05F;  // of the depth: the noise may differ from that in mapping
   for (int v = y - 1; v <= y + 1; ++v)

@@ -15,11 +15,11 @@ namespace mh {
 /// with the frames of the same stamps.
 class DepthComparison {
  public:
-  /// @param map     outlives it
+  /// @param map     must outlive this
   /// @param camera  of the sequence
   DepthComparison(const Map& map, Camera camera);
 
-  /// Compares a frame with the keyframe of its stamp, if there is one.
+  /// Compares a frame with the keyframe of the same stamp, if there is one.
   void add(const RgbdFrame& frame);
   /// @throws InputError naming both if most depths differ.
   void require_same(const std::string& map, const std::string& sequence) const;

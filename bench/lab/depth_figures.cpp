@@ -31,7 +31,7 @@ SensorConfig depth_only() {
   return config;
 }
 
-/// Around the image center, where the angle is the nominal one.
+/// Standard deviation of depth around the image center, where the angle is the nominal one.
 double axial_sigma(double distance_m, double angle_rad) {
   SensorConfig config = depth_only();
   config.depth_noise.axial = true;
@@ -43,11 +43,12 @@ double axial_sigma(double distance_m, double angle_rad) {
   return spread.sigma();
 }
 
-/// From how often the last pixel before a wall's edge misses the wall: it strays by more than half
-/// a pixel with probability erfc(0.5 / sigma / sqrt 2) / 2. The wall is a fence around the image
-/// center, where the angle is the nominal one; each angle has its own random numbers.
+/// Lateral standard deviation (px), from how often the last pixel before a wall's edge misses the
+/// wall: it strays by more than half a pixel with probability erfc(0.5 / sigma / sqrt 2) / 2. The
+/// wall is a fence around the image center, where the angle is the nominal one; each angle has its
+/// own random numbers.
 double lateral_sigma(double angle_rad) {
-  constexpr int kBoard = 8, kFirst = 256, kEnd = 384;  // px; a board, a gap, a board
+  constexpr int kBoard = 8, kFirst = 256, kEnd = 384;  // px; boards and gaps of equal width
   SensorConfig config = depth_only();
   config.depth_noise.lateral = true;
   RenderedFrame truth = leaning(2.0, angle_rad);

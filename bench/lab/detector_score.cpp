@@ -101,7 +101,7 @@ std::vector<VisibleObject> DetectorJudge::add_outcomes(const RenderedFrame& exac
     }
     taken[best] = true;
     const VisibleObject& object = objects[best];
-    // A class that we do not have is a wrong one: it is counted as background.
+    // A class that we do not have is wrong: it is counted as background.
     ++outcomes_[{object.class_id, id == kVoid ? kBackground : id}];
     ++found_of_size_[size_class(object)];
     const ImageBox truth = image_box(object, 0);

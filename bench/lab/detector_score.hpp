@@ -15,13 +15,13 @@ namespace mh {
 
 /// The outcome of an object, or of a detection, at the detector's own threshold: `truth` is void
 /// for a detection of nothing, `found` for an object that was missed. A detection belongs to the
-/// free object that it overlaps by at least 0.5, of its own class if there is one, else most.
+/// unassigned object that it overlaps most, by at least 0.5; objects of its own class go first.
 struct Outcome {
   ClassId truth = kVoid, found = kVoid;
   friend auto operator<=>(const Outcome&, const Outcome&) = default;
 };
 
-/// Scores of one class that both we and COCO have.
+/// Scores of a class that is both ours and COCO's.
 struct ClassScore {
   ClassId class_id = kVoid;
   AveragePrecision precision;
@@ -30,25 +30,25 @@ struct ClassScore {
 
 /// How labels made of boxes agree with the exact classes of the pixels.
 struct LabelScore {
-  double right_share = 0;  ///< of the pixels that got a class: those that got their own
-  double found_share = 0;  ///< of the pixels of objects that COCO has: those that got their class
+  double right_share = 0;  ///< share of the pixels with a label whose label is right
+  double found_share = 0;  ///< share of the pixels of COCO's objects that got their class
 };
 
 struct DetectorScore {
   std::size_t images = 0;
   std::vector<ClassScore> classes;  ///< that occur, by id
-  /// Means over the classes that occur (of a size, for the sizes).
+  /// Means over the classes that occur (for a size: that occur in that size).
   AveragePrecision mean;
   std::map<Outcome, std::size_t> outcomes;
   /// False alarms, by their class and the most frequent class of pixels in their box.
   std::map<std::pair<ClassId, ClassId>, std::size_t> false_alarms;
   std::size_t badly_placed =
-      0;                       ///< overlap an object of their class by 0.1 to 0.5; no false alarms
+      0;                       ///< overlap an object of their class by 0.1 to 0.5; not false alarms
   DetectorConfig dials;        ///< settings of the simulated detector; NaN if not measured
   LabelScore box, foreground;  ///< by BoxFill; NaN if not measured
 };
 
-/// `dials` with the measured ones replaced (see DetectorScore::dials).
+/// `dials`, with those that were measured replaced (see DetectorScore::dials).
 DetectorConfig with_measured(DetectorConfig dials, const DetectorConfig& measured);
 
 /// Judges a detector by exact images. Objects are the visible parts of instances of COCO's classes;

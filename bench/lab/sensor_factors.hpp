@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// What is viewed, for a model without a strength setting.
+/// How the view changes, for a model without a strength setting.
 struct Look {
   double baseline = 1;      ///< factor on the sensor's baseline
   double far = 1;           ///< factor on the scene's size

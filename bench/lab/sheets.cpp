@@ -91,7 +91,7 @@ cv::Mat depth_image(const Grid2d<float>& depth_m, const Camera& camera) {
 }
 
 /// The color image in gray with the depth's edges in red: they coincide with the objects' edges if
-/// both are from the same moment.
+/// both were taken at the same time.
 cv::Mat edges_over_color(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& color) {
   constexpr double kJump = 0.08;  // share of the distance
   constexpr int kReach_px = 2;

@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// Contact sheets of the sensor factors, one row each: off, mild, strong, all from the same pose
-/// and motion (forward at 0.4 m/s while turning at 1 rad/s), where the scene shows the most
+/// Contact sheets of the sensor factors, one row per factor: off, mild, strong, all from the same
+/// pose and motion (forward at 0.4 m/s while turning at 1 rad/s), where the scene shows the most
 /// objects. A factor without a strength setting is made stronger by a larger room, larger pixels or
 /// a lower viewpoint, as its caption states.
 struct SensorSheets {

@@ -15,13 +15,13 @@ namespace mh {
 /// @param per_category  at most this many of each; 0: all
 std::vector<std::string> generated_rooms(int per_category);
 
-/// One of several moments spread evenly over a scan, with the poses before and after it that
+/// One of several frames spread evenly over a scan, with the poses before and after it that
 /// determine its blur.
 struct ScanMoment {
   Trajectory around;
-  std::size_t at = 0;  ///< which of them is the moment
+  std::size_t at = 0;  ///< index of the frame's pose in `around`
 };
-/// @param k  of `count` moments, from 0
+/// @param k  index of the frame among `count`, from 0
 ScanMoment scan_moment(const Trajectory& scan, std::size_t k, std::size_t count);
 
 /// The frames of one environment, or of one recording.
@@ -45,7 +45,7 @@ std::vector<RealFrames> load_real_frames(const std::filesystem::path& file);
 struct RealismRow {
   std::array<double, 5> ours;        ///< percentiles over all frames
   double median_of_places = 0;       ///< of the places' medians
-  bool in_range = false;             ///< it is between the real frames' 25th and 75th percentiles
+  bool in_range = false;             ///< that median is between their 25th and 75th percentiles
   double spread_ratio = 0;           ///< 5th to 95th percentile over frames: ours / theirs
   std::vector<std::size_t> outside;  ///< places whose median is beyond their 5th or 95th
 };

@@ -17,8 +17,8 @@
 
 namespace mh {
 
-/// The frames of a recording whose true poses are known, in the scene's frame; for which a twin can
-/// be rendered. A recorded frame without a pose is left out.
+/// The frames of a recording whose true poses, given in the scene's frame, are known, so that a
+/// twin can be rendered. Frames without a pose are left out.
 class PosedFrames : public Sequence {
  public:
   /// @param scene_from_recording  from the frame of the recording's truth to that of its scene
@@ -65,7 +65,7 @@ struct TwinFrame {
 /// Compares frames of a recording, at a fixed interval, with its twin.
 /// @param twin  of the same length and stamps
 /// @param progress  share done; may be empty
-/// @returns those that both can deliver
+/// @returns the frames that both can deliver
 std::vector<TwinFrame> compare_twins(const Sequence& recorded, const Sequence& twin,
                                      const FeatureConfig& features, std::size_t every,
                                      const std::function<void(double)>& progress = {});

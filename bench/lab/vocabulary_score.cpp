@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-constexpr Stamp kMaxApart_ns = 20'000'000;  // as TUM's associate.py
+constexpr Stamp kMaxApart_ns = 20'000'000;  // as in TUM's associate.py
 constexpr double kSecond_ns = 1e9;
 
 const TimedPose* nearest(const Trajectory& truth, Stamp stamp_ns) {
@@ -39,7 +39,7 @@ struct Ranking {
   double average_precision = 0, chance = 0;
 };
 
-/// @param is_true  of each candidate, most similar first.
+/// @param is_true  whether each candidate is true, most similar first
 /// @returns nullopt if no candidate is true.
 std::optional<Ranking> judge(const std::vector<bool>& is_true) {
   Ranking ranking;

@@ -39,7 +39,7 @@ struct VocabularyScore {
   int views = 0;                     ///< candidates
   int queries = 0;                   ///< that have a true neighbor among their candidates
   double words_per_view = 0;         ///< different words, of the queries
-  std::optional<double> label_mass;  ///< mean share of labels at gamma = 1; none without labels
+  std::optional<double> label_mass;  ///< mean share of labels at gamma = 1; absent without labels
   double precision = 0;              ///< share of queries whose most similar candidate is true
   double average_precision = 0;      ///< mean over queries (area under the precision-recall curve)
   double chance = 0;                 ///< mean share of true neighbors among candidates

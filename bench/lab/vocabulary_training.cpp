@@ -95,7 +95,7 @@ Images describe_file(const VocabularyTraining& config, const std::filesystem::pa
   return {describe_image(std::move(image), config)};
 }
 
-/// Jobs run in any order; their results are in job order.
+/// Runs jobs in any order; their results are in job order.
 template <class Job>
 Images collect(int count, int threads, const std::function<void(int, int)>& progress,
                const Job& job) {

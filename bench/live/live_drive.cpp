@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kTicksPerFrame = 2;          // of the camera's 30 Hz
+constexpr int kTicksPerFrame = 2;          // ticks of the camera's 30 Hz
 constexpr int kStepsWithoutDriver = 8;     // half a second
 constexpr int kDarkSteps = 15;             // a kidnapping takes a second
 constexpr std::size_t kMostPoints = 4000;  // of the map, in one message

@@ -23,14 +23,14 @@ class LiveDrive {
   LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
             std::shared_ptr<const Vocabulary> vocabulary, std::uint64_t seed);
 
-  /// What a viewer is told first: the plan, the classes, the robot. Safe to call from another
+  /// The first message to a viewer: the plan, the classes, the robot. Safe to call from another
   /// thread.
   std::string greeting() const;
   /// Takes a viewer's message, which acts from the next step on. Safe to call from another thread.
-  /// @returns why it is not understood; empty: it is
+  /// @returns why it was not understood; empty if it was
   std::string take(const std::string& message);
 
-  /// What is to be shown after a step; empty if nobody watches.
+  /// What to show after a step; empty if there is no viewer.
   struct Shown {
     std::string state;                 ///< JSON
     std::string color, depth, labels;  ///< JPEG
@@ -41,7 +41,7 @@ class LiveDrive {
  private:
   struct Asked {
     Twist2d velocity;
-    int steps_left = 0;  ///< then the robot stops: its driver is gone
+    int steps_left = 0;  ///< at 0 the robot stops: its driver is gone
     bool kidnap = false, restart = false;
     std::optional<bool> light, wheels;
     std::optional<double> gamma, xi;
@@ -61,10 +61,10 @@ class LiveDrive {
   int dark_steps_ = 0;  ///< until the light is on again
   bool light_ = true;
   bool wheels_ = true;  ///< whether SLAM is given their odometry
-  /// Carried away, and not found again: wheels that hung in the air tell nothing.
+  /// Carried away and not yet relocalized: the odometry of wheels in the air is useless.
   bool lifted_ = false;
   std::mutex mutex_;
-  Asked asked_;  ///< guarded by it
+  Asked asked_;  ///< guarded by mutex_
 };
 
 }  // namespace mh

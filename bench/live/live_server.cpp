@@ -46,7 +46,7 @@ constexpr std::array<PageFile, 3> kPage = {{{"/", "index.html", "text/html; char
                                             {"/live.js", "live.js", "text/javascript"},
                                             {"/live.css", "live.css", "text/css"}}};
 
-/// In a time that does not tell how much of it is right.
+/// Compares in a time that does not reveal how much of a guess is right.
 bool is_same(std::string_view a, std::string_view b) {
   unsigned differs = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -77,20 +77,20 @@ std::string text_of(beast::string_view view) {
 struct LiveServer::Impl {
   class Viewer;
 
-  std::size_t connections = 0;  // before what may still hold some
+  std::size_t connections = 0;  // declared before members that may hold connections
   asio::io_context io{1};
   Tcp::acceptor acceptor{io};
   LiveAddress address;
   std::filesystem::path page;
   std::function<std::string()> greeting;
   std::function<std::string(const std::string&)> heard;
-  std::set<std::shared_ptr<Viewer>> joined;  // on the server's thread alone
+  std::set<std::shared_ptr<Viewer>> joined;  // used only on the server's thread
   std::atomic<int> count{0};
   std::thread thread;
 
   void accept();
   void send(Outgoing message);
-  /// Why a request is refused; empty: it is not.
+  /// Why a request is refused; empty if it is not.
   std::string refusal(const http::request<http::string_body>& request) const;
 };
 
@@ -135,7 +135,7 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
       for (const PageFile& file : kPage)
         if (target == file.target)
           return reply(http::status::ok, file.type, read_file(server_.page / file.file));
-    reply(http::status::not_found, "text/plain", "nothing is here\n");
+    reply(http::status::not_found, "text/plain", "nothing found here\n");
   }
 
   void reply(http::status status, const char* type, std::string body) {
@@ -226,20 +226,20 @@ std::string LiveServer::Impl::refusal(const http::request<http::string_body>& re
   const std::string host = text_of(request[http::field::host]);
   const int port = acceptor.local_endpoint().port();
   if (address.token.empty()) {
-    // A name of somebody's that leads here would let his page in.
+    // A foreign name that resolves to this machine would let its owner's page in.
     const bool is_ours = host == fmt::format("127.0.0.1:{}", port) ||
                          host == fmt::format("localhost:{}", port) ||
                          host == fmt::format("[::1]:{}", port);
     if (!is_ours) return "this is for the machine's own programs";
   } else {
     const std::string target = text_of(request.target());
-    const bool is_part = target == "/live.js" || target == "/live.css";  // tell nothing
+    const bool is_part = target == "/live.js" || target == "/live.css";  // reveal nothing
     if (!is_part && !is_same(query_value(target, "token"), address.token))
       return "the token is missing or wrong";
   }
   if (const std::string origin = text_of(request[http::field::origin]);
       !origin.empty() && origin != "http://" + host)
-    return "another page may not open this";
+    return "pages from other sites may not open this";
   return "";
 }
 
@@ -253,10 +253,9 @@ LiveServer::LiveServer(const LiveAddress& address, const std::filesystem::path& 
   impl_->heard = std::move(heard);
   Error error;
   const auto host = asio::ip::make_address(address.host, error);
-  if (error) throw InputError(fmt::format("host '{}': is no address", address.host));
+  if (error) throw InputError(fmt::format("host '{}': is not an address", address.host));
   if (address.token.empty() && !host.is_loopback())
-    throw InputError(
-        fmt::format("host {}: whoever is not on this machine needs a token", address.host));
+    throw InputError(fmt::format("host {}: viewers on other machines need a token", address.host));
   if (!std::ranges::all_of(address.token, [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '-' || c == '_';
       }))

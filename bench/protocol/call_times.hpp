@@ -8,7 +8,7 @@ namespace mh {
 /// Wall time (ms) of every call that handled a frame, in call order.
 struct CallTimes {
   std::vector<double> track_ms;
-  std::vector<double> relocalize_ms;  ///< of queries' own frames
+  std::vector<double> relocalize_ms;  ///< of the queries' own frames
   std::vector<double> blank_ms;       ///< of the blank frames before them
   double processor_s = 0;             ///< of all calls except save and restore, in this process
 };

@@ -10,26 +10,26 @@
 
 namespace mh {
 
-/// What came of one kidnapping, by the truth.
+/// Outcome of one kidnapping, judged by the ground truth.
 struct EpisodeScore {
   std::string variant = {};
   std::size_t start = 0;
   std::string goal = {};
   double start_x_m = 0, start_y_m = 0, start_heading_deg = 0;
-  bool success = false;  ///< it said "arrived", and was within arrival_m of such a thing
+  bool success = false;  ///< it reported arrival and was within arrival_m of a goal object
   /// Empty for a success, else: no_map, never_relocalized, false_pose, object_not_in_map, no_path,
   /// stuck, collision_stop, time_out, wrong_arrival.
   std::string reason = {};
   bool said_arrived = false;
-  bool wrong_arrival = false;                  ///< said so, and was not
+  bool wrong_arrival = false;                  ///< reported arrival, but was not there
   double time_s = 0;                           ///< until it stopped for good
-  std::optional<double> located_s = {};        ///< when it first believed to know its place
+  std::optional<double> located_s = {};        ///< when it first believed that it knew where it was
   std::optional<double> located_error_m = {};  ///< of that belief
   std::optional<double> located_error_deg = {};
   std::optional<double> last_error_m = {};  ///< of its belief at the end
   double length_m = 0, shortest_m = 0;
   double spl = 0;             ///< success * shortest / max(shortest, driven): Anderson et al., 2018
-  double end_distance_m = 0;  ///< from the nearest such thing
+  double end_distance_m = 0;  ///< from the nearest goal object
   int contacts = 0, collisions = 0;  ///< collisions: faster than 0.1 m/s
   double worst_contact_m_per_s = 0;
   int frames = 0;

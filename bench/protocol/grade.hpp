@@ -9,12 +9,12 @@ namespace mh {
 
 /// How far a graded query is from what was mapped. Absent for queries of the other sets.
 struct QueryGrade {
-  // To the truly nearest frame that was offered for mapping, 1 rad equivalent to 1 m (as for
-  // NearestBy::kPlace): true poses, so that they are the same for every system.
+  // Distance and angle to the nearest frame offered for mapping, where 1 rad counts as 1 m (as for
+  // NearestBy::kPlace). From true poses, hence the same for every system.
   std::optional<double> mapped_m = {}, mapped_deg = {};
-  std::optional<double> shown = {};  ///< share of the surface in sight that a mapped frame shows
-  std::optional<double> speed = {};  ///< playback speed of a handheld scan, 1 = as
-                                     ///< recorded; absent: standing still
+  std::optional<double> shown = {};  ///< share of the visible surface that a mapped frame shows
+  /// Playback speed of a handheld scan, 1 = as recorded; absent if standing still.
+  std::optional<double> speed = {};
   friend bool operator==(const QueryGrade&, const QueryGrade&) = default;
 };
 

@@ -18,14 +18,14 @@ struct Feed {
   std::size_t next = 0;
   bool in_trouble = false;
   std::size_t to_pass = 0;  ///< after a failure: the furthest frame that failed
-  int restarts_here = 0;    ///< consecutive ones that did not get past to_pass
+  int restarts_here = 0;    ///< consecutive restarts that did not get past to_pass
   int dropped_in_row = 0;
   bool tracking = false;
   bool mapped = false;  ///< something was tracked since the start or the last reset
 };
 
-/// The readings since the frame that was shown before or, after a jump back, since the one before
-/// it in the sequence.
+/// The IMU readings since the previously shown frame or, after a jump back, since the preceding
+/// frame of the sequence.
 std::vector<ImuReading> imu_since(const Sequence& sequence, std::optional<Stamp> shown_ns,
                                   std::size_t index) {
   const Stamp since_ns = shown_ns    ? *shown_ns
@@ -105,7 +105,7 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       count + 1000, static_cast<std::size_t>(config.max_effort * static_cast<double>(count)));
 
   Feed feed{.next = first, .mapped = first > 0};
-  std::optional<Stamp> shown_ns;  // the last frame, unless the feed has gone back since
+  std::optional<Stamp> shown_ns;  // of the last frame, unless the feed has jumped back since
   while (feed.next < count) {
     const std::size_t i = feed.next++;
     if (is_test_frame(i, config) || out[i]) continue;

@@ -18,11 +18,11 @@ namespace mh {
 struct MappedFrame {
   std::size_t index = 0;  ///< in the sequence
   Stamp stamp_ns = 0;
-  int restart = 0;  ///< restarts so far: it keys the random streams
+  int restart = 0;  ///< restarts so far; part of the key of the random streams
   TrackStatus status = TrackStatus::kLost;
   std::optional<int> inliers;  ///< if the system reports it
   bool keyframe_added = false;
-  bool map_reset = false;  ///< as SystemReport
+  bool map_reset = false;  ///< as in SystemReport
   std::uint64_t image_digest = 0;
   std::uint64_t matching_digest = 0;
   std::uint64_t pose_digest = 0;
@@ -47,14 +47,14 @@ void fields(F& call, Visit& v) {
 struct MappingOutcome {
   std::vector<MappedFrame> calls;
   std::vector<std::size_t> dropped;    ///< frames removed after too many failed restarts, in order
-  int failures = 0;                    ///< times that tracking was lost
+  int failures = 0;                    ///< how often tracking was lost
   int restarts = 0;                    ///< rewinds
   int before_map = 0;                  ///< frames at the start, before there was a map
   bool gave_up = false;                ///< ProtocolConfig::max_effort was used up
   std::size_t offered = 0;             ///< frames of the sequence that are not test frames
   std::optional<MatchCounts> matches;  ///< summed over all track calls, if the system reports them
   std::vector<LoopClosure> loops;      ///< closed during the mapping, in order
-  SkippedFrames skipped;  ///< of the offered frames; those of queries are counted by the run
+  SkippedFrames skipped;               ///< of the offered frames; the run counts those of queries
 };
 
 /// All fields except the calls.
@@ -73,33 +73,33 @@ void fields(O& outcome, Visit& v) {
   v("skipped", skipped);
 }
 
-/// Whether frame `index` is a test frame, the last of every `test_interval`: 29, 59, ... at 30;
-/// none at 0.
+/// Whether frame `index` is a test frame, the last of every `test_interval` frames: 29, 59, ... for
+/// an interval of 30; none for 0.
 bool is_test_frame(std::size_t index, const ProtocolConfig& config);
 
 /// Returns the frames of a sequence from `first` on that are not test frames, in order.
 std::vector<std::size_t> offered_frames(std::size_t count, const ProtocolConfig& config,
                                         std::size_t first = 0);
 
-/// Frame and report of a track call as it happens: for progress reports and to retain keyframe
-/// depth.
+/// Receives the frame and report of each track call as it happens: to report progress and to retain
+/// keyframe depth.
 using MappingObserver =
     std::function<void(const MappedFrame&, const RgbdFrame&, const SystemReport&)>;
 
 /// Maps a sequence (section 3.1 of the paper; with OnFailure::kContinue, each frame is shown once
-/// and the rules on rewinds below do not apply). A failure is a lost frame right after a
-/// tracked one. After a failure at frame i the feed rewinds to i - 50 and continues with the map as
-/// it is. Frames lost on the way back to i are not failures, since the system is still relocalizing
-/// there; frame i itself is one if it is lost again. After five consecutive restarts that did not
-/// get past i, the furthest frame that failed, the frame that failed last (which may be an earlier
-/// one) is dropped, the feed rewinds by 50 once more and the count starts from zero. Frames
-/// reported lost before anything is mapped are skipped: there is nothing to rewind to.
+/// and the rules on rewinds below do not apply). A failure is a lost frame right after a tracked
+/// one. After a failure at frame i the feed rewinds to i - 50 and continues with the map as it is.
+/// Frames lost on the way back to i are not failures, since the system is still relocalizing there;
+/// frame i itself is one if it is lost again. After five consecutive restarts that did not get past
+/// i (the furthest frame that failed), the frame that failed last, which may be an earlier one, is
+/// dropped; the feed rewinds by 50 once more and the count starts over. Frames reported lost before
+/// anything is mapped are skipped: there is nothing to rewind to.
 ///
 /// Terminates: the frame to get past only moves forward, a drop removes a frame for good, and there
 /// are at most five restarts between two of these events; beyond max_effort * count track calls (or
 /// count + 1,000, if more) the rest stays unmapped.
 ///
-/// A frame that cannot be shown to any system (SkippedFrames) is skipped, as if it were not there.
+/// A frame that cannot be shown to any system (SkippedFrames) is skipped, as if it did not exist.
 ///
 /// Noise and SLAM draw from streams keyed by (restart, frame), so that a restart does not replay
 /// the same draws.
@@ -117,7 +117,7 @@ struct Localization {
 
 /// Localizes a whole sequence in a frozen map with one session: once relocalized in a frame, the
 /// camera is tracked to the next. Test frames and frames that cannot be shown are skipped.
-/// @throws InputError as map_sequence()
+/// @throws InputError as map_sequence() does
 Localization localize_sequence(const System& frozen, const Sequence& sequence,
                                const ProtocolConfig& config, RandomStream stream,
                                const MappingObserver& observe = {});

@@ -14,7 +14,7 @@ namespace mh {
 struct QueryAnswer {
   std::size_t index = 0;                 ///< of the test frame in its sequence
   int blank_frames = 0;                  ///< shown until the system was lost
-  int attempts = 0;                      ///< times that the test frame was shown
+  int attempts = 0;                      ///< how often the test frame was shown
   std::optional<SE3> world_from_camera;  ///< the first returned pose
   std::uint32_t map = 0;                 ///< SystemReport::map
   /// The furthest stage that an attempt reached, if the system reports it; kVerified if a pose was
@@ -61,8 +61,8 @@ Presentation presentation(RandomStream stream, std::size_t index, int attempt, A
 
 /// Queries a frozen system with one test frame (section 3.2 of the paper): a fresh session, blank
 /// frames until it is lost, then the test frame up to config.query_attempts times or until a pose
-/// is returned; config.attempts says with which noise. Noise and SLAM draw from streams keyed by
-/// (test frame, attempt) alone: the answer depends on no other query (except with `neighbor_scores:
+/// is returned; config.attempts decides the noise. Noise and SLAM draw from streams keyed by (test
+/// frame, attempt) alone: the answer depends on no other query (except with `neighbor_scores:
 /// as_released`).
 /// @throws UnusableFrame if the frame cannot be shown.
 /// @param memo  from frozen.make_memo(), for this query alone, or null; does not change the answer

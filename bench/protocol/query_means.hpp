@@ -8,7 +8,7 @@
 #include "bench/protocol/metrics/mapping_counts.hpp"
 #include "bench/protocol/run_result.hpp"
 
-// The figures of one run. The store keeps them: this code is in the key of a run.
+// The figures of one run. The store keeps them, so this code is part of a run's key.
 
 namespace mh {
 
@@ -17,8 +17,8 @@ EpisodeSummary summarize(std::span<const EpisodeScore> episodes);
 
 MappingCounts count(const MappingOutcome& mapping);
 
-/// Every figure of a run under one of its parameter points, under its name in all_metrics(). A
-/// query set that was not used has none, nor has a run without episodes of these.
+/// Every figure of a run under one of its parameter points, under its name in all_metrics(). Leaves
+/// out query sets that were not used, and episodes if the run has none.
 std::vector<Figure> figures_of(const RunResult& run, std::size_t point);
 
 }  // namespace mh

@@ -30,7 +30,7 @@ struct PointResult {
 struct Circumstances {
   std::string host;
   std::string session_start;  ///< when the command that made the run started, UTC; empty: unknown
-  int jobs = 0;               ///< runs that it executed in parallel
+  int jobs = 0;               ///< number of runs executed in parallel
   double load = 0;            ///< load average of the last minute, per processor
 };
 
@@ -46,21 +46,21 @@ struct RunResult {
   EstimateAlignment alignment;
   std::vector<PointResult> points;          ///< as in spec.points
   std::vector<EpisodeScore> episodes = {};  ///< by variant as in spec.episodes, then by start
-  std::shared_ptr<const VoxelMap> volume;   ///< keyframe depth at its final poses, dock frame
+  std::shared_ptr<const VoxelMap> volume;   ///< keyframe depth at the final poses, dock frame
   OccupancyGrid grid;                       ///< the part of it that obstructs a robot
   std::uint64_t map_digest = 0;             ///< of trajectory and grid
   CallTimes times;                          ///< not deterministic: never part of results.json
-  // Not deterministic either. CPU time spent on making the frames, and on products that are neither
+  // Not deterministic either. CPU time spent making the frames, and on products that are neither
   // SLAM nor scored: octree, grid, images.
   double frames_s = 0, products_s = 0;
   double wall_s = 0;
   Circumstances circumstances;
 };
 
-/// Sorts a system's trajectory by its maps.
+/// Splits a system's trajectory into `estimate` (the largest map) and `elsewhere`.
 void set_estimate(RunResult& run, const Trajectory& all);
 
-/// The same, and scores it.
+/// Like set_estimate(), and also scores the trajectory.
 void take_trajectory(RunResult& run, const Trajectory& all);
 
 /// The mapped frames of the map that an answer is in.

@@ -35,27 +35,27 @@ struct QueryMoment {
   std::optional<SE3> true_world_from_camera = {};
   QueryMoment(Stamp stamp, const std::optional<SE3>& truth)
       : stamp_ns(stamp), true_world_from_camera(truth) {}
-  // NOLINTNEXTLINE(google-explicit-constructor): a timed true pose has both parts of a moment
+  // NOLINTNEXTLINE(google-explicit-constructor): a TimedPose holds a stamp and a pose
   QueryMoment(const TimedPose& truth) : QueryMoment(truth.stamp_ns, truth.world_from_camera) {}
 };
 
 /// Exact pose of the query camera in the system's own map: the anchor's estimated pose composed
 /// with the true motion from the anchor to the query. Drift of the map elsewhere has no effect (the
-/// paper's Table 1 has distances of 0.02 m beside an APE of 0.2 m, so that they must be local too).
+/// paper's Table 1 has distances of 0.02 m beside an APE of 0.2 m, so those must be local, too).
 SE3 local_truth(const Anchor& anchor, const SE3& true_world_from_camera);
 
 /// Returns the anchor of a query; nullopt if nothing was mapped. Ties go to the earlier frame.
 std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajectory& mapping_truth,
                                      const TimedPose& true_query, NearestBy by);
 
-/// Returns a query's time with its true camera pose, by a true trajectory.
+/// Returns a query's time and its true camera pose, interpolated from a true trajectory.
 /// @param truth  may be null: unknown
 QueryMoment moment_of(Stamp stamp_ns, const Trajectory* truth);
 
-/// Returns the anchor that config.truth prescribes. With kInterpolated, that of a held-out query is
-/// the estimate interpolated at its time, which needs no truth. If there is none, for a query of
-/// another tour (which has no neighbors in time) and with kLocal, it is the nearest mapped frame,
-/// which needs the query's true pose.
+/// Returns the anchor that config.truth prescribes. With kInterpolated, the anchor of a held-out
+/// query is the estimate interpolated at its time, which needs no truth. If that cannot be
+/// interpolated, for queries of another tour (which have no neighbors in time), and with kLocal, it
+/// is the nearest mapped frame, which needs the query's true pose.
 std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
                                   const QueryMoment& query, NearestBy by,
                                   const ProtocolConfig& config);

@@ -12,7 +12,7 @@ namespace mh {
 
 // Every random stream of a run.
 
-/// Which part of a run draws: fork names of its streams below.
+/// Fork names of a run's streams: what the draws are for.
 struct RunDraw {
   enum Name : std::uint64_t { kNoise = 1, kSlam = 2, kBlank = 3 };
 };
@@ -20,12 +20,12 @@ struct RunDraw {
 /// The stream that mapping draws from (bench/protocol/mapping.hpp).
 RandomStream mapping_stream(const RunSpec& spec);
 
-/// The noise of mapping frames after that many restarts; the same for every system.
+/// The noise of the mapping frames after `restart` restarts; the same for every system.
 /// @param stream  mapping_stream()
 RandomStream mapping_noise(RandomStream stream, int restart);
 
-/// The noises that the mapping frames of a trial's runs have in common: at first, and after each of
-/// its first restarts. With more restarts, runs hardly have frames in common.
+/// The noise streams that the mapping frames of a trial's runs share: the initial one and those
+/// after each of the first restarts. After more restarts, runs hardly share any frames.
 std::vector<RandomStream> shared_noises(const RunSpec& spec);
 
 /// The stream that the queries of a set draw from (bench/protocol/query.hpp).

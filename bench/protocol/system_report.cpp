@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-constexpr int kNotReported = -1;  ///< no count
+constexpr int kNotReported = -1;  ///< not a valid count
 
 template <class T>
 std::uint64_t digest_value(const T& value, std::uint64_t seed) {

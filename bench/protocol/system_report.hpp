@@ -19,9 +19,10 @@ struct Candidates {
   std::optional<int> c1, c2, c3;     ///< after equations 3, 4 and 5
   std::optional<int> final;          ///< after equation 6
   std::optional<double> label_mass;  ///< share of the query vector's L1 mass held by labels
-  std::optional<double> gamma;       ///< the weight of a label that gave it
-  /// Shares of equation 5's similarities that no query computed (unscored), or that an earlier
-  /// query left (stale); the stale ones' share of the sums, and their mean age in queries.
+  std::optional<double> gamma;       ///< the weight of a label that resulted in this share
+  /// Shares of equation 5's similarities that no query computed (unscored) or that are left over
+  /// from an earlier query (stale); the stale ones' share of the sums, and their mean age in
+  /// queries.
   std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
   friend bool operator==(const Candidates&, const Candidates&) = default;
 };
@@ -47,7 +48,7 @@ void fields(C& candidates, Visit& v) {
 struct SystemReport {
   TrackStatus status = TrackStatus::kLost;
   std::optional<SE3> world_from_camera;  ///< in the system's own world
-  std::uint32_t map = 0;                 ///< whose world it is, of a system that keeps several
+  std::uint32_t map = 0;                 ///< that the pose refers to, if the system keeps several
   std::optional<int> keypoints, inliers;
   bool keyframe_added = false;
   bool map_reset = false;  ///< it discarded its map and started a new one: earlier poses are void

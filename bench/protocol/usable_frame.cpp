@@ -37,8 +37,8 @@ RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noi
 }
 
 std::vector<bool> increasing_stamps(const Sequence& sequence) {
-  // Longest increasing subsequence: for each length so far, the frame with the smallest stamp that
-  // ends one, and for each frame its predecessor there.
+  // Longest increasing subsequence: `ends` holds, for each length so far, the last frame of one,
+  // with the smallest stamp possible; `before` holds each frame's predecessor.
   constexpr std::size_t kNone = SIZE_MAX;
   std::vector<std::size_t> ends, before(sequence.size(), kNone);
   for (std::size_t i = 0; i < sequence.size(); ++i) {
@@ -57,12 +57,12 @@ std::vector<bool> increasing_stamps(const Sequence& sequence) {
 }
 
 std::string stamp_fault(const Sequence& sequence, std::size_t i) {
-  return fmt::format("frame {}: its stamp, {} s, does not increase among its neighbors'", i,
+  return fmt::format("frame {}: its stamp, {} s, is out of order with its neighbors'", i,
                      format_stamp(sequence.stamp_ns(i)));
 }
 
 std::optional<RgbdFrame> UsableFrames::frame(std::size_t i, RandomStream noise) {
-  if (!has_stamp_[i]) {  // does not show that nothing can be read
+  if (!has_stamp_[i]) {  // not evidence that the frames cannot be read
     skipped_.add(stamp_fault(sequence_, i));
     return std::nullopt;
   }

@@ -17,7 +17,7 @@ namespace mh {
 struct SkippedFrames {
   static constexpr std::size_t kReasonsKept = 5;
   std::size_t count = 0;
-  std::vector<std::string> reasons;  ///< of the first few, one line each
+  std::vector<std::string> reasons;  ///< a line for each of the first few
   void add(std::string reason);
   friend bool operator==(const SkippedFrames&, const SkippedFrames&) = default;
 };
@@ -41,8 +41,8 @@ inline constexpr std::size_t kHopeless = 10;
 /// camera's.
 RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noise);
 
-/// Marks the most frames whose stamps strictly increase; of frames with equal stamps, the first. A
-/// clock that jumps for one frame costs only that frame.
+/// Marks a largest set of frames whose stamps strictly increase; among frames with equal stamps,
+/// the first. A clock that jumps for one frame costs only that frame.
 std::vector<bool> increasing_stamps(const Sequence& sequence);
 
 /// Why increasing_stamps() leaves out frame i.

@@ -43,7 +43,8 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
                      p.starts_with('<') ? "" : "= ", p, corrected);
 }
 
-/// The line of a comparison by the suite's measure for a suite that states a margin.
+/// The line below a comparison by the suite's measure, for a suite that states a margin; otherwise
+/// empty.
 std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
   if (!suite.non_inferiority_margin || c.pairs == 0 || c.what.measure != name(suite.measure))
     return "";
@@ -57,7 +58,7 @@ std::string margin_line(const Suite& suite, const PairNames& names, const Compar
 }
 
 /// "semantic minus plain, level pepper: HOW, 95 % intervals, Holm over 4 comparisons of correct"
-/// and what else there is
+/// followed by `what`
 std::string heading(const Suite& suite, const SystemPair& systems, std::size_t level,
                     std::span<const Comparison> comparisons, const char* how, const char* what) {
   const PairNames names(suite, systems);
@@ -66,12 +67,11 @@ std::string heading(const Suite& suite, const SystemPair& systems, std::size_t l
                      counted(family_size(comparisons), "comparison"), name(suite.measure), what);
 }
 
-/// What an interval that ends at 0 means, where there is one: it seems nearly significant.
+/// A note on intervals that end at 0, which seem nearly significant; empty if there are none.
 std::string zero_text(std::span<const Comparison> comparisons) {
   if (std::ranges::none_of(comparisons, ends_at_zero)) return "";
   return "  an interval ends at 0 where few differ: resamples without these show no difference; p "
-         "is "
-         "of the signs of these few\n";
+         "comes from the signs of these few\n";
 }
 
 }  // namespace

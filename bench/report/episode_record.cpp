@@ -134,8 +134,8 @@ std::string EpisodeRecord::log_so_far() const {
 std::string EpisodeRecord::log(const EpisodeScore& score) const {
   std::string text = fmt::format(
       "start {} ({}): put at [{:.2f}, {:.2f}] m, {:.0f} deg, to find: {} ({:.1f} m away by the "
-      "shortest path)\nplaces are in the world, except 'in its map': that begins where its tour "
-      "began\n",
+      "shortest path)\nplaces are in the world, except 'in its map': its origin is where the "
+      "robot's tour began\n",
       score.start, score.variant, score.start_x_m, score.start_y_m, score.start_heading_deg,
       score.goal, score.shortest_m);
   text += log_so_far();
@@ -145,9 +145,8 @@ std::string EpisodeRecord::log(const EpisodeScore& score) const {
               : fmt::format("failure: {} after {:.1f} s and {:.1f} m, {:.2f} m from it\n",
                             score.reason, score.time_s, score.length_m, score.end_distance_m);
   if (score.located_s)
-    text += fmt::format("knew its place after {:.1f} s, {:.3f} m and {:.1f} deg off\n",
-                        *score.located_s, score.located_error_m.value_or(0),
-                        score.located_error_deg.value_or(0));
+    text += fmt::format("localized after {:.1f} s, {:.3f} m and {:.1f} deg off\n", *score.located_s,
+                        score.located_error_m.value_or(0), score.located_error_deg.value_or(0));
   text += fmt::format("{} contacts, the fastest {:.3f} m/s; {} collisions above {} m/s\n",
                       score.contacts, score.worst_contact_m_per_s, score.collisions,
                       kCollision_m_per_s);
@@ -228,7 +227,7 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
   };
   legend(kPale, "where it was put");
   legend(kTrue, "where it drove (truth)");
-  legend(kBelieved, "where it believed to be");
+  legend(kBelieved, "where it believed it was");
   legend(kPlan, "paths that it planned");
   legend(kGoalBox, fmt::format("'{}' in its own map", score.goal));
   legend(kOccupied, "occupied in its map");
@@ -238,9 +237,9 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
     canvas.text(text, {x, y}, 10, color);
     y += 21;
   };
-  line(score.located_s ? fmt::format("knew its place after {:.1f} s, {:.2f} m off",
-                                     *score.located_s, score.located_error_m.value_or(0))
-                       : "never knew its place",
+  line(score.located_s ? fmt::format("localized after {:.1f} s, {:.2f} m off", *score.located_s,
+                                     score.located_error_m.value_or(0))
+                       : "never localized",
        score.located_s ? kDark : kWrong);
   line(fmt::format("drove {:.1f} m, shortest path {:.1f} m", score.length_m, score.shortest_m));
   line(fmt::format("SPL {:.2f}; {:.2f} m from it in the end", score.spl, score.end_distance_m));

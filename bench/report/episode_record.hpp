@@ -22,12 +22,12 @@ class EpisodeRecord {
 
   /// A line for each decision, and one per second in between: time, state, true and believed pose,
   /// what the SLAM system answered.
-  /// Places are in the world's frame, except where the robot itself speaks of its map.
+  /// Places are in the world's frame, except what the robot itself reports in its map.
   std::string log(const EpisodeScore& score) const;
-  /// The same of an episode that did not come to its end.
+  /// The same for an episode that did not finish.
   std::string log_so_far() const;
   /// A strip of frames in order, and below it the robot's own map with where it was put, where it
-  /// drove, where it believed to be, and the paths that it planned; in its map's frame.
+  /// drove, where it believed it was, and the paths that it planned; in its map's frame.
   /// @param title  "semantic, start 3"
   cv::Mat strip(const std::string& title, const EpisodeScore& score) const;
 

@@ -28,7 +28,7 @@ std::map<std::string, std::size_t> reasons_of(const std::vector<EpisodeScore>& e
   return reasons;
 }
 
-/// How many episodes a share of a summary are.
+/// The number of episodes that a share of a summary stands for.
 long number(const EpisodeSummary& s, double share) {
   return std::lround(share * s.count);
 }

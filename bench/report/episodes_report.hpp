@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// The table of a suite's episodes: for each variant and system success with Wilson's 95 %
-/// interval, time, SPL, collisions, wrong arrivals and the reasons of failures; below, the paired
+/// The table of a suite's episodes: for each variant and system, success with Wilson's 95 %
+/// interval, time, SPL, collisions, wrong arrivals and the reasons for failures; below, the paired
 /// differences of compared systems over the same starts. "" for a suite without episodes.
 std::string episodes_table(const Suite& suite, std::span<const RunResult> runs);
 

@@ -20,7 +20,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// What LaTeX sets as this character; whatever it has no letter for, as "[U+6F22]".
+/// LaTeX source for a character; "[U+6F22]" for one that is not supported.
 std::string latex_character(char32_t c, std::string_view bytes) {
   if (c < 0x80 && std::string_view("&%$#_{}").find(static_cast<char>(c)) != std::string_view::npos)
     return "\\" + std::string(bytes);
@@ -88,8 +88,8 @@ nlohmann::ordered_json to_json(const Store::Value& value) {
 
 }  // namespace
 
-/// Appends what a sweep varies to rows of runs and points, each with its names first: a column for
-/// each setting; empty where a system ignores them.
+/// Appends a column for each setting that a sweep varies to rows of runs and points, the first of
+/// which holds the names; cells are empty for a system that ignores settings.
 void add_varied(const Suite& suite, Rows& rows) {
   const std::vector<std::string>& varied = suite.sweep.varied;
   std::map<std::string, RunSpec> spec_of;

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "0.4 to 0.8", a speed as it is.
+/// "0.4 to 0.8"; for a speed, its value.
 std::string bin_name(const GradedCurve& curve, const GradedBin& bin) {
   if (curve.by == "speed") return fmt::format("{:.3g}", 0.5 * (bin.low + bin.high));
   return fmt::format("{:.3g} to {:.3g}", bin.low, bin.high);
@@ -124,7 +124,7 @@ std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> 
          ++end) {
       Plot plot{title(*end), end->unit, "success, %", {}};
       const double range = end->bins.back().high - end->bins.front().low;
-      // All bins, all shares: so that panels and pages compare.
+      // The range of all bins and shares, so that panels and pages can be compared.
       plot.x_range = {end->bins.front().low, end->bins.back().high};
       plot.y_range = {0.0, 100.0};
       for (std::size_t s = 0; s < suite.systems.size(); ++s) {
@@ -132,7 +132,7 @@ std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> 
         for (const GradedBin& bin : end->bins) {
           const auto& share = bin.systems[s];
           if (!share) continue;
-          // Apart, so that no interval hides another.
+          // Shifted aside, so that no interval hides another.
           const double aside =
               0.012 * range *
               (static_cast<double>(s) - 0.5 * static_cast<double>(suite.systems.size() - 1));

@@ -22,7 +22,8 @@ nlohmann::ordered_json graded_json(const Suite& suite, std::span<const Row> rows
 /// "graded-exact-pepper.png"
 std::string graded_image_name(const Labels& labels, const std::filesystem::path& level);
 
-/// The curves of one level and kind of labels: a panel each, a line per system with 95 % intervals.
+/// The curves of one level and kind of labels: one panel per curve, with a line per system and 95 %
+/// intervals.
 struct GradedChart {
   std::string file;  ///< its name
   PlotPage page;

@@ -13,7 +13,7 @@ namespace mh {
 /// Appends a number, the lowest byte first.
 void put(std::vector<std::uint8_t>& bytes, std::uint32_t value, int count);
 
-/// Bytes as text of four characters for three (RFC 4648).
+/// Encodes bytes as text, four characters for three bytes (RFC 4648).
 std::string base64(const std::vector<std::uint8_t>& bytes);
 std::string base64(std::string_view bytes);
 

@@ -43,7 +43,7 @@ std::string title(QuerySet set) {
                                         : "graded by distance and angle";
 }
 
-/// A row of Table 2 in text: of each of its columns value(column).
+/// A row of Table 2 in text: value(column) for each of its columns.
 template <class Value>
 std::vector<std::string> paper_row(std::string_view title, const Value& value) {
   std::vector<std::string> cells{fmt::format("  {}", title)};
@@ -103,7 +103,7 @@ std::string paper_table(const Block& block) {
   return rule + table.text() + rule;
 }
 
-/// The headings of a score's figures, after a title.
+/// A title, followed by the headings of the scores' figures.
 template <class... Scores>
 std::vector<std::string> headings(std::string title) {
   std::vector<std::string> all{std::move(title)};
@@ -115,7 +115,7 @@ std::vector<std::string> headings(std::string title) {
   return all;
 }
 
-/// Adds its figures that have a heading; "-" if unknown.
+/// Appends the figures that have a heading; "-" if unknown.
 void add_cells(const std::vector<Figure>& figures, bool known, std::vector<std::string>& cells) {
   for (const Figure& figure : figures)
     if (!figure.metric.heading.empty()) cells.push_back(known ? shown(figure) : "-");
@@ -242,7 +242,7 @@ std::string block_text(const Block& block, Extent extent) {
   text += failing_stages(block) + mapping_details(block);
   if (block.detailed.size() < block.rows.size())
     text +=
-        "  plain: the same runs as above, since it looks at no labels; their details stand there\n";
+        "  plain: the same runs as above, since it ignores labels; their details are shown there\n";
   return text + common_ate(block) + penalties(block);
 }
 

@@ -10,7 +10,7 @@
 namespace mh {
 
 /// Table of a suite of one place: a block for each level and kind of labels, then how the systems
-/// differ. On a screen: of each block the table in the form of the paper's, and the mapping.
+/// differ. On a screen, each block has only the table in the form of the paper's, and the mapping.
 std::string place_table(const Suite& suite, std::span<const Row> rows,
                         Extent extent = Extent::kWhole);
 

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// The runs of one recording, each system with each kind of labels once: their trials see the same
+/// The first run of each system with each kind of labels on one recording: all trials see the same
 /// images.
 using Runs = std::vector<const RunResult*>;
 
@@ -63,8 +63,8 @@ std::string notes_text(const RunResult& run) {
   return text;
 }
 
-/// Warns of a second recording that was answered often, by all systems together, and never
-/// correctly.
+/// Warns about a second recording whose queries were answered several times, over all systems, and
+/// never correctly.
 std::string other_frame_text(const Runs& runs) {
   constexpr std::size_t kFewest = 3;
   std::vector<double> distances_m;
@@ -87,7 +87,7 @@ std::string other_frame_text(const Runs& runs) {
 
 std::string recordings_text(const Suite& suite, std::span<const RunResult> runs) {
   if (std::ranges::none_of(suite.environments, &Environment::is_recorded)) return "";
-  std::string text = "\nrecordings have one noise: trials differ in RANSAC's draws alone\n";
+  std::string text = "\nrecordings have only one noise: trials differ only in RANSAC's draws\n";
   for (const Environment& environment : suite.environments)
     if (const Runs of_it = first_runs(runs, environment);
         environment.is_recorded() && !of_it.empty())

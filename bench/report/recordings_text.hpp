@@ -9,10 +9,10 @@
 
 namespace mh {
 
-/// Notes on a suite's recordings, below its table: that they have a single noise; frames that were
-/// skipped, and for which systems if not for all; frames without a true pose; second recordings
-/// whose queries nobody answers correctly, as if they were in another frame of reference. Empty
-/// without recordings.
+/// Notes on a suite's recordings, below its table: that all trials see the same noise; frames that
+/// were skipped, and for which systems if not for all; frames without a true pose; second
+/// recordings whose queries no system answers correctly, as if they were in another frame of
+/// reference. Empty without recordings.
 std::string recordings_text(const Suite& suite, std::span<const RunResult> runs);
 
 }  // namespace mh

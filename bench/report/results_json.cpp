@@ -27,8 +27,8 @@ Json place_json(const PlaceFacts& place) {
   return json;
 }
 
-/// A query by its list of fields, except those that are reported for the whole run: digests,
-/// chained, and counts of matches, summed.
+/// A query as JSON, from its list of fields except those that are reported for the whole run:
+/// digests, chained, and counts of matches, summed.
 Json query_json(const QueryScore& query) {
   Json json = Json::object();
   const auto add = [&](const char* name, const auto& value) {

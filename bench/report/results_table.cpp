@@ -23,12 +23,12 @@
 namespace mh {
 namespace {
 
-/// The warning above all tables of tours that were cut.
+/// The warning, above all tables, that tours were cut.
 std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) {
   const auto cut = std::ranges::find_if(runs, [](const RunResult& run) { return run.place.cut; });
   if (cut == runs.end()) return "";
   return fmt::format(
-      "\nSHORTENED to the first {} of each tour: a quick look, no result of this suite\n",
+      "\nSHORTENED to the first {} of each tour: a quick look, not a result of this suite\n",
       counted(*suite.max_frames, "frame"));
 }
 
@@ -43,7 +43,7 @@ std::string base_text(const Suite& suite) {
 /// Why runs are missing from the table above.
 std::string failures_text(std::span<const FailedRun> failed) {
   if (failed.empty()) return "";
-  std::string text = fmt::format("\nfailed, so that the figures above are without {}:\n",
+  std::string text = fmt::format("\nfailed, so the figures above do not include {}:\n",
                                  counted(failed.size(), "run"));
   for (const FailedRun& run : failed) text += fmt::format("  {}: {}\n", run.spec.name, run.error);
   return text;
@@ -53,7 +53,7 @@ std::string failures_text(std::span<const FailedRun> failed) {
 std::string missing_text(std::span<const std::string> missing) {
   if (missing.empty()) return "";
   constexpr std::size_t kMost = 10;
-  std::string text = fmt::format("\nmissing, so that the figures above are without {}:\n",
+  std::string text = fmt::format("\nmissing, so the figures above do not include {}:\n",
                                  counted(missing.size(), "run"));
   for (std::size_t i = 0; i < std::min(kMost, missing.size()); ++i)
     text += fmt::format("  {}\n", missing[i]);
@@ -91,7 +91,7 @@ std::vector<std::string> base_lines(const Suite& suite) {
 
 namespace {
 
-/// Nothing unless the suite states published figures.
+/// Empty unless the suite states published figures.
 std::string published_text(const AteBesidePublished& table) {
   if (table.environments.empty()) return "";
   std::vector<std::string> headings{"ATE m"};
@@ -103,7 +103,7 @@ std::string published_text(const AteBesidePublished& table) {
       cells.push_back(ate_m ? fmt::format("{:.4f}", *ate_m) : "-");
     text.add(std::move(cells));
   }
-  return "\nbeside published ATE, of which all frames were mapped\n" + text.text();
+  return "\nbeside published ATE, for which all frames were mapped\n" + text.text();
 }
 
 std::string main_table(const Suite& suite, std::span<const Row> rows, Extent extent) {

@@ -22,8 +22,8 @@ std::string results_screen(const Suite& suite, std::span<const RunResult> runs,
                            std::span<const FailedRun> failed = {},
                            std::span<const std::string> missing = {});
 
-/// Whose rules relocalization follows, so that no figure stands without its base, and the systems
-/// with settings of their own, a line each.
+/// Lines that state whose rules relocalization follows, so that no figure appears without its
+/// basis, and one line for each system with settings of its own.
 std::vector<std::string> base_lines(const Suite& suite);
 
 /// How long the systems took.

@@ -69,8 +69,9 @@ std::map<double, std::string> distinct(const SweepResult& result, std::string_vi
   return values;
 }
 
-/// What labels weighed under each value of a setting, below it: the measured label mass, and the
-/// gamma that gave it where the mass itself is varied. Empty for a setting of something else.
+/// What labels weighed at each value of a setting, to be shown below it: the measured label mass
+/// or, where the mass itself is varied, the gamma that gave it. Empty for a setting that does not
+/// weigh labels.
 std::map<double, std::string> weights_of_labels(const SweepResult& result, std::string_view name) {
   if (!weighs_labels(name)) return {};
   std::map<double, std::vector<double>> masses, gammas;
@@ -97,7 +98,7 @@ struct Panel {
   std::optional<std::size_t> framed;  ///< the highlighted point
 };
 
-/// What a setting's values are called on an axis, with what labels weighed below.
+/// Names of a setting's values on an axis, with the weight of labels below.
 ShadedField::Ticks ticks(const SweepResult& result, const std::string& name, bool cells) {
   if (name.empty()) return {};
   const auto below = weights_of_labels(result, name);
@@ -105,7 +106,7 @@ ShadedField::Ticks ticks(const SweepResult& result, const std::string& name, boo
   const auto values = distinct(result, name);
   for (const auto& [value, text] : values) {
     const auto more = below.find(value);
-    // Dots stand where their values are: those of the ends are written.
+    // Dots are placed by value, so only the values at the ends are written.
     if (!cells && value != values.begin()->first && value != values.rbegin()->first) continue;
     list.emplace_back(cells ? static_cast<double>(list.size()) : value,
                       more == below.end() ? text : text + "\n" + more->second);

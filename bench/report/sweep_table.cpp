@@ -45,12 +45,12 @@ std::string best_points(const Suite& suite, std::span<const Row> rows) {
   return text;
 }
 
-/// Whether how much labels weigh is varied, as a factor or as a share.
+/// Whether the weight of labels is varied, as a factor or as a share.
 bool varies_weight_of_labels(const Sweep& sweep) {
   return std::ranges::any_of(sweep.varied, weighs_labels);
 }
 
-/// The gamma that gave a wished label mass, and the mass that queries then had.
+/// Headings of the gamma that gave a requested label mass, and of the mass that queries then had.
 void add_weight_headings(const Sweep& sweep, std::vector<std::string>& headings) {
   if (!varies_weight_of_labels(sweep)) return;
   if (std::ranges::count(sweep.varied, kLabelMass) > 0) headings.emplace_back("gamma");

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// A column of Table 2, relocalization, wherever it is shown: text has those with a heading for it;
-/// pages, their data and figures have all.
+/// A column of Table 2, relocalization, wherever it is shown: text shows those with a heading for
+/// it; pages, their data and figures show all.
 struct Table2Column {
   std::string_view key;
   std::string_view title;

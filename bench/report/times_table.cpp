@@ -29,7 +29,7 @@ struct Range {
   }
 };
 
-/// How the times were measured: they are affected by other work on the machine.
+/// How the times were measured, since other work on the machine affects them.
 std::string circumstances(std::span<const RunResult> runs) {
   std::set<std::string> hosts, sessions;
   bool unknown = false;

@@ -11,14 +11,14 @@ namespace mh {
 
 // Text that the tables of results share.
 
-/// Above this share of queries with a returned pose, and a correct one where that is known, nothing
+/// Above this share of queries answered with a pose (a correct one, where that is known), nothing
 /// is left to gain.
 inline constexpr double kSaturated = 0.97;
 
 /// Whether a system without labels returns a pose for so many queries, correct as far as is known,
 /// that labels have nothing left to gain.
 bool is_saturated(const SystemSpec& system, const QuerySummary& queries);
-/// The same of all sets of queries that were asked.
+/// The same for all sets of queries that were asked.
 bool is_saturated(const SystemSpec& system, const CategoryRow& row);
 
 /// "held out", "2nd tour", "graded"
@@ -43,7 +43,7 @@ std::vector<std::string> query_headings(QuerySet set);
 std::vector<std::string> trajectory_cells(const CategoryRow& row);
 std::vector<std::string> query_cells(const CategoryRow& row, QuerySet set);
 
-/// The share of the queries' vectors that labels held, "17.2%"; "-" if unknown.
+/// The share of the queries' vectors that labels make up, "17.2%"; "-" if unknown.
 std::string shown_mass(const QuerySummary& summary);
 
 /// Whether any of the rows answered queries of the set.

@@ -37,7 +37,8 @@ std::string mark_of(const fs::path& image) {
   return fs::is_regular_file(image) ? text_in(read_file(image), kMadeOf) : std::string();
 }
 
-/// Everything that determines a contact sheet. Levels, which may drop different frames, share one.
+/// Everything that determines a contact sheet. Levels share one, though they may drop different
+/// frames.
 std::string identity_of_views(const World& world, const RunSpec& spec) {
   std::string text = fmt::format("{} {} {} ", code_of_run(), json_of(spec.environment.frame).dump(),
                                  spec.max_frames ? std::to_string(*spec.max_frames) : "all");
@@ -47,7 +48,7 @@ std::string identity_of_views(const World& world, const RunSpec& spec) {
   return text_key(text);
 }
 
-/// Without gnuplot the results stand without charts, which a report shows as well.
+/// Without gnuplot, the results lack charts, which a report shows as well.
 void draw_chart(const fs::path& file, const PlotPage& page) {
   try {
     write_plots(file, page);

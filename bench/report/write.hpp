@@ -11,9 +11,9 @@
 namespace mh {
 
 /// Writes the large files of a run into its folder: truth.tum, estimate.tum, map.bt, map.ot,
-/// objects.json, map.pgm, map.yaml and topdown.png, which contains the run's key. For a recording,
-/// whose floor is unknown, there is no map.pgm and no image, and run.key contains the key. Each
-/// file appears whole or not at all.
+/// objects.json, map.pgm, map.yaml, topdown_second_tour.png if there is a second tour, and
+/// topdown.png, which contains the run's key. For a recording, whose floor is unknown, there is no
+/// map image or drawing, and run.key contains the key. Each file appears whole or not at all.
 void write_run(const std::filesystem::path& folder, const World& world, const RunResult& run,
                const std::string& key);
 /// Removes what write_run() writes and nothing else: files of an earlier run must not remain next
@@ -26,7 +26,8 @@ bool shows_another_run(const std::filesystem::path& folder, const std::string& k
 /// scene, robot, path and code.
 void write_views(const std::filesystem::path& file, const World& world, const RunSpec& spec);
 
-/// Writes the combined results of a suite's runs: results.json, times.json, table.txt, times.txt.
+/// Writes the combined results of a suite's runs: results.json, times.json, reproduction.json,
+/// table.txt, times.txt and the charts.
 void write_results(const std::filesystem::path& folder, const Suite& suite,
                    std::span<const RunResult> runs, std::span<const FailedRun> failed = {},
                    std::span<const std::string> missing = {});

@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-/// What queries are graded by.
+/// A quantity that queries are graded by.
 struct Axis {
   const char *by, *unit;
   std::optional<double> QueryGrade::*value;

@@ -17,17 +17,17 @@ struct GradedShare {
   double low = 0, high = 1;
 };
 
-/// The graded queries between two edges of what they are graded by.
+/// The graded queries between two edges of the quantity that they are graded by.
 struct GradedBin {
   double low = 0, high = 0;
   std::size_t queries = 0;  ///< over scenes; each is made in every trial
-  std::vector<std::optional<GradedShare>> systems = {};  ///< as Suite::systems; absent: no answers
+  std::vector<std::optional<GradedShare>> systems = {};  ///< by system; absent if it has no answers
   /// Success of the suite's first pair of systems over the same queries, first minus second: with
   /// scenes as clusters if there are four, else by blocks of queries.
   std::optional<Comparison> difference = {};
 };
 
-/// Success over what queries are graded by.
+/// Success as a function of a quantity that queries are graded by.
 struct GradedCurve {
   std::size_t level = 0;
   Labels labels;
@@ -37,9 +37,9 @@ struct GradedCurve {
 };
 
 /// Curves at the suite's first parameter point, per level and kind of labels: over distance and
-/// angle to the nearest mapped view and, where they differ, over the share of the view that the map
-/// shows and the speed; for a suite with several categories, over distance in each. Empty without
-/// graded queries.
+/// angle to the nearest mapped view, over the share of the view that the map shows and, if there
+/// are several speeds, over speed; for a suite with several categories, also over distance within
+/// each. Empty without graded queries.
 std::vector<GradedCurve> graded_curves(const Suite& suite, std::span<const Row> rows);
 
 /// How many views were drawn in a suite's scenes, and how many of them were not queried because no

@@ -58,7 +58,8 @@ std::map<std::size_t, std::optional<double>> per_query(const Row& row, QuerySet 
   return medians;
 }
 
-/// For the queries made to both systems: some may have been skipped for a system that needs labels.
+/// Differences over the queries made to both systems: some may have been skipped for a system that
+/// needs labels.
 template <class Get>
 std::vector<PairedDifference> differences(const Row& first, const Row& second, QuerySet set,
                                           Get get) {

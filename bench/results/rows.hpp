@@ -49,11 +49,11 @@ struct Family {
   std::vector<Comparison> comparisons;
 };
 
-/// First minus second of each pair that the suite compares, at its first parameter point, for each
-/// environment, level, label kind, query set and measure. The family of one pair, environment and
-/// level, which Holm's correction covers, is for each label kind and query set the share that the
-/// suite's `measure` names, correct or success, and the distance where both answer. The other share
-/// is shown alongside.
+/// First minus second for each pair that the suite compares, at its first parameter point, for each
+/// environment, level, label kind, query set and measure. Holm's correction covers the family of
+/// one pair, environment and level: for each label kind and query set, the share that the suite's
+/// `measure` names (correct or success) and the distance where both answer. The other share is
+/// shown alongside.
 std::vector<Family> compare_systems(const Suite& suite, std::span<const Row> rows);
 
 /// Per query made to both, in order: first minus second, each the median over trials.

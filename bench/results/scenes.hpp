@@ -33,11 +33,11 @@ inline const QuerySummary& summary(const CategoryRow& row, QuerySet set) {
 /// last), then system.
 std::vector<CategoryRow> make_category_rows(const Suite& suite, std::span<const Row> rows);
 
-/// First minus second of each pair that the suite compares, over scenes: one family per pair, level
-/// and parameter point, corrected by Holm. In it are the share that the suite's `measure` names,
-/// correct or success, distance over the queries that both answered, ATE over the frames that both
-/// tracked. Outside the family are the other share, false positive, and both shares of all queries
-/// pooled, with scenes as clusters.
+/// First minus second for each pair that the suite compares, over scenes: one family per pair,
+/// level and parameter point, with Holm's correction. It contains the share that the suite's
+/// `measure` names (correct or success), the distance over the queries that both answered, and the
+/// ATE over the frames that both tracked. Outside the family are the other share, false positives,
+/// and both shares over all queries pooled, with scenes as clusters.
 struct SceneFamily {
   std::size_t level = 0, parameters = 0;
   SystemPair systems;

@@ -49,7 +49,7 @@ std::vector<std::size_t> draw_blocks(std::size_t n, std::size_t block, RandomStr
 
 constexpr std::size_t kFewestPairs = 4;  // with fewer, resampling is meaningless
 
-/// Draws for the interval.
+/// How resamples for the interval are drawn.
 struct Draws {
   std::size_t block = 1;  ///< consecutive units that are drawn together
   std::uint64_t seed = 0;
@@ -94,7 +94,7 @@ Comparison resample(std::span<const Unit> units, std::size_t answers, const Draw
   return c;
 }
 
-/// With `independent` signs, the smallest two-sided p is 2 of all patterns.
+/// With `independent` signs, the smallest two-sided p is that of 2 of all sign patterns.
 void note_least_p(Comparison& c, std::size_t independent) {
   if (std::ldexp(2.0, -static_cast<int>(independent)) > 0.05) c.detectable = INFINITY;
 }

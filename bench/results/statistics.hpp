@@ -22,7 +22,7 @@ inline PairedDifference paired_difference(const std::optional<double>& first,
   return first && second ? PairedDifference{*first - *second, true} : PairedDifference{};
 }
 
-/// What two systems are compared by.
+/// The quantity that two systems are compared by.
 struct Compared {
   std::string measure;  ///< "success", "distance where both answer"
   std::string unit;     ///< "m"; empty for shares
@@ -41,7 +41,7 @@ struct Comparison {
   std::size_t clusters = 0;  ///< scenes that the pooled queries come from; 0: not pooled
   double difference = 0;     ///< mean of first - second
   double low = 0, high = 0;  ///< 95 % bootstrap interval
-  double p = 1;              ///< two-sided; for queries by sign flips, for scenes Wilcoxon's
+  double p = 1;              ///< two-sided: for queries from sign flips, for scenes Wilcoxon's
   double p_holm = 1;         ///< corrected over the family (see holm)
   /// The true difference that would be detected with 80 % power at the 5 % level: 2.8 standard
   /// errors; for shares at least 3 / n, n being the yes-or-no answers behind them, since
@@ -64,11 +64,11 @@ double wilcoxon_signed_rank(std::span<const double> differences);
 Comparison compare_scenes(std::span<const PairedDifference> scenes, std::size_t answers,
                           std::uint64_t seed, int resamples = 10000);
 
-/// Mean difference of two systems over the pooled queries of many scenes: each query counts the
-/// same, in any scene. Queries of one scene depend on each other, so scenes are resampled as wholes
-/// (the cluster bootstrap: Field and Welsh, 2007), and p is that of sign_flip() over the sums of
-/// scenes (signs by cluster: Canay, Romano and Shaikh, 2017). With fewer than 4 scenes the interval
-/// stays wide open; fewer than 6 cannot be significant.
+/// Mean difference of two systems over the pooled queries of many scenes: each query counts
+/// equally, whatever its scene. Queries of one scene depend on each other, so scenes are resampled
+/// as wholes (the cluster bootstrap: Field and Welsh, 2007), and p is that of sign_flip() over the
+/// sums of scenes (signs by cluster: Canay, Romano and Shaikh, 2017). With fewer than 4 scenes the
+/// interval is infinite; fewer than 6 cannot be significant.
 /// @param clusters  per scene, its paired queries
 Comparison compare_clusters(std::span<const std::vector<PairedDifference>> clusters, bool shares,
                             std::uint64_t seed, int resamples = 10000);
@@ -96,9 +96,9 @@ std::size_t family_size(std::span<const Comparison> comparisons);
 /// Applies Holm's correction (Holm, 1979) in place to the comparisons for which counts() holds.
 void holm(std::span<Comparison> comparisons);
 
-/// Whether the interval of a difference ends at 0 exactly. So few observations differ that in 2.5 %
-/// of the resamples or more they are absent or cancel, while p is the probability that these few
-/// have such signs: two of two that agree give an end at 0 and p = 0.5.
+/// Whether the interval of a difference ends exactly at 0. Then so few observations differ that
+/// they are absent or cancel in at least 2.5 % of the resamples, while p is the probability that
+/// these few have such signs: two differences that agree give an end at 0 and p = 0.5.
 bool ends_at_zero(const Comparison& comparison);
 
 /// Whether a result may be called *better*, and which system's.

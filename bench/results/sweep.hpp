@@ -15,7 +15,7 @@ struct SweepResult {
   std::size_t level = 0, system = 0;
   Labels labels;
   std::vector<SharedSlamConfig> points;  ///< as the suite states them
-  std::vector<CategoryRow> answers;      ///< as points
+  std::vector<CategoryRow> answers;      ///< in the order of `points`
 };
 
 /// Returns one result per level, labels and system that uses more than one point of the sweep, in

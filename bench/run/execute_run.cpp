@@ -57,8 +57,8 @@ RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s
                             .load = load_per_processor()}};
 }
 
-/// Builds the world of a run. The command could read every input before it began, so that one which
-/// cannot be read now has changed.
+/// Builds the world of a run. The command read every input before it started any run, so an input
+/// that cannot be read now has changed.
 World build_as_planned(const RunSpec& spec, const std::string& key,
                        const std::function<World()>& build) {
   try {
@@ -73,7 +73,7 @@ World build_as_planned(const RunSpec& spec, const std::string& key,
       throw_changed(spec);
     }
   }
-  return build();  // of what the key names: an error is now the run's own
+  return build();  // the inputs match the key: an error is now the run's own
 }
 
 }  // namespace
@@ -94,7 +94,8 @@ RunOrder read_order(const fs::path& file) {
 
 void execute_run(const RunOrder& order, const RunListener& listener) {
   const auto start = std::chrono::steady_clock::now();
-  // To follow a frame, read from here: of all that came before, only this decides its bits.
+  // To follow a frame through the code, start here: of all that came before, only the spec affects
+  // its bits.
   const RunSpec& spec = order.spec;
   double world_s = 0, products_s = 0;
   const World world = build_as_planned(spec, order.key, [&] {
@@ -112,7 +113,7 @@ void execute_run(const RunOrder& order, const RunListener& listener) {
   make_output_folder(folder);
   if (!order.metrics_only) remove_run(folder);
   std::error_code no_matter;
-  // Another map would be made than the one that the first episodes drove on.
+  // The new map would differ from the one that the earlier episodes drove on.
   if (!spec.system.repeatable) fs::remove_all(ended, no_matter);
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,

@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// One run, as a command orders it from a process of its own (`modelhouse run-one FILE`, the file
-/// being this as JSON). Only the spec decides bits of the result.
+/// One run, as a command orders it from a separate process (`modelhouse run-one FILE`, where FILE
+/// is this struct as JSON). Only the spec affects the bits of the result.
 struct RunOrder {
   RunSpec spec;
   std::string key;
@@ -21,7 +21,7 @@ struct RunOrder {
   std::filesystem::path maps;    ///< for finished maps; empty: keeps nothing
   std::filesystem::path images;  ///< of runs that see the same images; empty: none are shared
   std::uint64_t images_limit = 0;
-  bool share_noise = false;   ///< also shares mapping frames with their noise there
+  bool share_noise = false;   ///< also share mapping frames with their noise there
   std::string views;          ///< file name of the environment's contact sheet
   std::string session_start;  ///< start of the command
   int jobs = 1;               ///< parallel runs; threads for baking light
@@ -50,18 +50,18 @@ void fields(O& order, Visit& v) {
 }
 
 void write_order(const std::filesystem::path& file, const RunOrder& order);
-/// @throws InputError if the file is not what write_order() writes.
+/// @throws InputError unless the file has the form that write_order() writes.
 RunOrder read_order(const std::filesystem::path& file);
 
-/// What hears of a run's progress.
+/// Receives a run's progress.
 struct RunListener {
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};
   std::function<void(std::string_view)> status = [](std::string_view) {};  ///< as in RunTools
 };
 
-/// One run in this process, start to end: builds its world, executes it, writes its files into
-/// folder / its name, and puts it into the store.
+/// Does one run in this process from start to end: builds its world, executes it, writes its files
+/// into `folder` / its name, and puts the result into the store.
 void execute_run(const RunOrder& order, const RunListener& listener);
 
 }  // namespace mh

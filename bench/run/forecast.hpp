@@ -23,11 +23,12 @@ struct RunAtWork {
 class Forecast {
  public:
   void note(const RunSpec& finished, double wall_s);
-  /// Duration of such a run; nullopt before any run has finished.
+  /// Expected duration of a run; nullopt before any run has finished.
   std::optional<double> of(const RunSpec& run) const;
-  /// Duration of all of these, one after the other; nullopt before anything has finished.
+  /// Expected duration of all these runs, one after another; nullopt before any run has finished.
   std::optional<double> of_all(const std::vector<const RunSpec*>& runs) const;
-  /// nullopt if unknown: nothing has finished, and a run in progress is less than 1/10 done.
+  /// Time remaining; nullopt if unknown: no run has finished, and one in progress is less than 1/10
+  /// done.
   /// @param waiting_s  of_all() of the runs that have not begun
   /// @param jobs       runs in parallel
   std::optional<double> to_go_s(double waiting_s, const std::vector<RunAtWork>& at_work,

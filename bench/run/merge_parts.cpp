@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Copies the parts of a file or folder that the output lacks. Each file appears complete or not at
-/// all, so that a copy that was stopped by a full disk can be resumed.
+/// all, so that a copy interrupted by a full disk can be resumed.
 void copy_missing(const fs::path& from, const fs::path& to) {
   if (fs::is_directory(from)) {
     make_output_folder(to);
@@ -26,7 +26,7 @@ void copy_missing(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Copies the folders of runs and the images that the output lacks.
+/// Copies the run folders and the images that the output lacks.
 void copy_files(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const std::string name = entry.path().filename().string();
@@ -56,7 +56,7 @@ void merge_parts(const fs::path& out, const std::vector<fs::path>& parts,
   for (const fs::path& part : parts) {
     const bool itself = fs::equivalent(part, out);
     if (itself || store.merge(part / "results.sqlite") == 0)
-      say(fmt::format("{}: holds no result that is not here already", part.string()));
+      say(fmt::format("{}: holds no new results: all of them are here already", part.string()));
     if (!itself) copy_files(part, out);
   }
 }

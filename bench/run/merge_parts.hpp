@@ -10,12 +10,12 @@
 
 namespace mh {
 
-/// The results files of parts and, first, the one in `out` if there is one.
-/// @throws InputError if a part has none, or as Store::check_mergeable(); nothing is written.
+/// The results files to merge: first the one in `out`, if it exists, then those of the parts.
+/// @throws InputError if a part has none, or as Store::check_mergeable() does; nothing is written.
 std::vector<std::filesystem::path> mergeable_results(
     const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts);
 
-/// Copies from a suite's parts the results, folders of runs and images that `out` lacks.
+/// Copies from a suite's parts the results, run folders and images that are missing in `out`.
 /// @param say  receives a line about each part that adds nothing
 /// @pre mergeable_results() passed
 void merge_parts(const std::filesystem::path& out, const std::vector<std::filesystem::path>& parts,

@@ -45,19 +45,20 @@ void check_recordings(const Environment& e, const Labels& labels,
       throw InputError(fmt::format("{}: holds no labels: take `labels: [none]` for it", sequence));
     require_usable_frames(*opened.sequence);
     if (camera && *camera != opened.sequence->camera())
-      throw InputError(fmt::format("{}: was taken with another camera than {}: a system has one",
-                                   sequence, e.sequence));
+      throw InputError(
+          fmt::format("{}: was recorded with a different camera from {}: a system has only one",
+                      sequence, e.sequence));
     camera = opened.sequence->camera();
     if (opened.sequence->truth() == nullptr)
       say(
-          fmt::format("warning: {}: has no ground truth: answers are successes, and "
-                      "nothing is said of correct ones, of distances and of the trajectory",
+          fmt::format("warning: {}: has no ground truth: answers count as successes, but correct "
+                      "answers, distances and the trajectory are not scored",
                       sequence));
   }
 }
 
-/// Lists settings of SLAM in a calibration file that a run does not use: a suite ignores them,
-/// except the readout time, which is the camera's.
+/// Warns about SLAM settings in a calibration file that a run does not use: a suite ignores them,
+/// except the readout time, which is a property of the camera.
 void warn_of_ignored_settings(const fs::path& file, const RunSpec& run,
                               const std::function<void(std::string_view)>& say) {
   const SlamConfig& of_run = run.slam;
@@ -69,21 +70,21 @@ void warn_of_ignored_settings(const fs::path& file, const RunSpec& run,
         text != setting_text(defaults, name) && text != setting_text(of_run, name))
       ignored.push_back(fmt::format("{}: {}", name, text));
   if (ignored.empty()) return;
-  say(fmt::format(
-      "warning: {}: its settings of SLAM do not count in a suite: name them in `slam:` where they "
-      "are meant: {}",
-      file.string(), fmt::join(ignored, ", ")));
+  say(
+      fmt::format("warning: {}: its SLAM settings are ignored in a suite (to use them, put them "
+                  "under `slam:`): {}",
+                  file.string(), fmt::join(ignored, ", ")));
 }
 
-/// Checks that runs can have folders of their names.
+/// Checks that the runs' names are distinct and can be folder names.
 void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
   constexpr std::size_t kLongest = 200;  // a file's name has at most 255 bytes
   std::set<std::string> names;
   for (const RunSpec& spec : specs) {
     if (spec.name.size() > kLongest)
       throw InputError(
-          fmt::format("{}: the name of run '{}...' has {} characters, at most {} can be: shorten "
-                      "that of its environment, system or labels",
+          fmt::format("{}: the name of run '{}...' has {} characters, at most {} are allowed: "
+                      "shorten the name of its environment, system or labels",
                       suite.file.string(), spec.name.substr(0, 40), spec.name.size(), kLongest));
     if (!names.insert(spec.name).second)
       throw InputError(fmt::format("{}: two runs are named '{}': rename an environment or a level",
@@ -91,7 +92,7 @@ void check_names(const Suite& suite, const std::vector<RunSpec>& specs) {
   }
 }
 
-/// Finds environments that are one place under two names.
+/// Finds environments that are the same place under two names.
 class Places {
  public:
   Places(const Suite& suite, const InputReader& inputs) : suite_(suite), inputs_(inputs) {}
@@ -115,10 +116,9 @@ class Places {
 
  private:
   [[noreturn]] void refuse(const std::string& a, const std::string& b, const char* alike) const {
-    throw InputError(
-        fmt::format("{}: environments '{}' and '{}' {}: statistics take environments for "
-                    "independent",
-                    suite_.file.string(), a, b, alike));
+    throw InputError(fmt::format(
+        "{}: environments '{}' and '{}' {}: statistics assume that environments are independent",
+        suite_.file.string(), a, b, alike));
   }
 
   const Suite& suite_;
@@ -136,20 +136,22 @@ void check_episodes(const Suite& suite) {
   };
   for (const std::string& goal : suite.episodes->goals)
     if (!is_thing(class_by_name(goal).value()))
-      refuse(fmt::format("episodes.goals: '{}' is never an object of a map", goal));
+      refuse(fmt::format("episodes.goals: '{}' is never an object in a map", goal));
   if (suite.labels.size() > 1)
-    refuse(fmt::format("labels: {}: one kind makes the robot's map in `episodes`",
-                       suite.labels.size()));
+    refuse(
+        fmt::format("labels: {}: with `episodes`, only one kind is possible, for the robot's map",
+                    suite.labels.size()));
   if (suite.labels.front() == Labels())
     refuse("labels: 'none' leaves maps without objects: episodes have no goals then");
   if (suite.levels.size() > 1)
-    refuse(fmt::format("levels: {}: a place is mapped at one; episodes at others are `variants`",
-                       suite.levels.size()));
+    refuse(fmt::format(
+        "levels: {}: a place is mapped at one level; use `variants` for episodes at others",
+        suite.levels.size()));
   if (suite.sweep.points.size() > 1)
-    refuse("parameters: a suite with `episodes` sweeps none: give systems settings of their own");
+    refuse("parameters: a suite with `episodes` cannot sweep: give systems settings of their own");
   if (suite.trials != 1)
     refuse(fmt::format("trials: {}: episodes are repeated by their `starts`", suite.trials));
-  if (suite.graded) refuse("graded: a suite asks either graded queries or `episodes`");
+  if (suite.graded) refuse("graded: a suite has either graded queries or `episodes`");
   for (const Environment& environment : suite.environments)
     if (!is_driven(environment.mapping_tour.string()))
       refuse(

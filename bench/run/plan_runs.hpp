@@ -13,22 +13,22 @@
 
 namespace mh {
 
-/// Checks what a suite with episodes asks for; passes others.
-/// @throws InputError if it combines them with what has no meaning there.
+/// Checks the settings of a suite with episodes; accepts any other suite.
+/// @throws InputError if it combines episodes with settings that have no meaning for them.
 void check_episodes(const Suite& suite);
 
 /// Every run of a suite, in the order of expand(), with the key of its result and what it sees.
-/// @param say  receives which recordings are left out and which programs cannot be seen
-/// @throws InputError if two runs have one name or are equal in all but their names, if an input
-/// cannot be read; as check_episodes().
+/// @param say  receives a line about each recording left out and each program whose file is unknown
+/// @throws InputError if two runs have the same name or are equal in all but their names, if an
+/// outside program cannot be started, if an input cannot be read, or as check_episodes() does.
 std::vector<Job> plan_runs(const Suite& suite, InputReader& inputs,
                            const std::function<void(std::string_view)>& say);
 
-/// As Store::plan() takes them: name, key.
+/// Name and key of each job, as Store::plan() takes them.
 PlannedKeys keys_by_name(const std::vector<Job>& jobs);
 
-/// Checks all inputs that the runs name, each once: outside programs can be started, scenes read,
-/// tours driven, goals of episodes found. Generated scenes and motions are valid by construction.
+/// Checks each input that the runs name once: recordings and scenes can be read, tours driven,
+/// goals of episodes found. Generated scenes and motions are valid by construction.
 /// @throws InputError
 void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                      const std::function<void(std::string_view)>& say);
@@ -38,12 +38,12 @@ std::string views_name(const Suite& suite, const Environment& environment);
 
 struct Reuse {
   bool failures = true;  ///< a failed run counts as finished
-  bool files = true;     ///< the files of runs count, too
+  bool files = true;     ///< a run's files must not be those of another run
 };
 
-/// Whether the result of a run is reused instead of making it again: it is in the store, and the
-/// folder of its name holds the files of no other run. The one place where this is decided.
-/// @param out  holds the folders of runs
+/// Whether a run's result is reused instead of recomputed: it is in the store, and the folder of
+/// the run's name does not hold the files of another run. The only place where this is decided.
+/// @param out  contains the run folders
 bool is_reused(const Store& store, const Job& job, const std::filesystem::path& out,
                const Reuse& reuse = {});
 

@@ -29,7 +29,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kFirstGuess_mb = 1500;  // until a run was measured
+constexpr double kFirstGuess_mb = 1500;  // until a run has been measured
 constexpr int kPoll_ms = 100;
 constexpr auto kBeat = std::chrono::seconds(10);
 
@@ -39,7 +39,7 @@ double available_mb() {
   double kb = 0;
   while (file >> word)
     if (word == "MemAvailable:" && file >> kb) return kb / 1024.0;
-  return 1e9;  // unknown: memory limits nothing
+  return 1e9;  // unknown: no limit
 }
 
 struct Waiting {
@@ -102,8 +102,8 @@ class Pool {
     return available_mb() - promised_mb > require_mb();
   }
 
-  /// Positions in waiting_, best first: images that exist and no run is using, images that no run
-  /// has begun, the others.
+  /// Positions in waiting_, best first: runs whose images exist and are not in use, then those
+  /// whose images no run has begun, then the others.
   std::vector<std::size_t> by_preference() const {
     std::set<std::string> in_use;
     for (const Running& r : running_) in_use.insert(r.what.job.images);
@@ -121,7 +121,7 @@ class Pool {
     while (another_fits() && start_next()) estimate_waiting();
   }
 
-  /// Called when runs begin or end, not at each of the thousands of reports.
+  /// Called when runs begin or end, not at each of the thousands of progress reports.
   void estimate_waiting() {
     std::vector<const RunSpec*> waiting;
     for (const Waiting& w : waiting_) waiting.push_back(&w.job.spec);
@@ -260,7 +260,7 @@ class Pool {
     estimate_waiting();
     report();
   }
-  /// Whether no other run uses the same.
+  /// Whether no other waiting or running job has the same value of `seen`.
   bool was_last(const Job& job, std::string Job::*seen) const {
     const auto sees_it = [&](const Job& other) { return other.*seen == job.*seen; };
     return std::ranges::none_of(waiting_, sees_it, &Waiting::job) &&
@@ -300,7 +300,7 @@ class Pool {
   double require_mb_ = 0;  ///< of one run, as measured so far
   Forecast forecast_;
   std::vector<Waiting> waiting_;
-  std::optional<double> waiting_s_;  ///< what they will take, if known
+  std::optional<double> waiting_s_;  ///< how long they will take, if known
   std::vector<Running> running_;
   std::set<std::string> begun_;  // images that a run has begun to make
 };

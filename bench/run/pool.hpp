@@ -17,8 +17,8 @@ namespace mh {
 struct Job {
   RunSpec spec;
   std::string key;
-  std::string images = {};  ///< the images that it sees: equal for runs that see the same
-  std::string frames = {};  ///< the frames that it maps, noise included: likewise
+  std::string images = {};  ///< name of the images that it sees: equal if the images are
+  std::string frames = {};  ///< name of the frames that it maps, noise included; likewise
 };
 
 /// Prefix of the error of a run that failed on bad input, which the user can fix.
@@ -34,16 +34,18 @@ struct PoolProgress {
 
 struct PoolOptions {
   int jobs = 1;  ///< parallel processes; never changes a result
-  /// Wall time of one run, besides the simulated time that its episodes may take; 0 = none.
+  /// Wall time of one run, in addition to the simulated time that its episodes may take; 0 = no
+  /// limit.
   double time_limit_s = 14400;
   double memory_limit_mb = 0;  ///< resident set size of one run; 0 = none
   std::filesystem::path executable;
-  /// For the logs of runs, key.log, and what `arguments` writes, key.json: both are removed after
-  /// a success. Exists.
+  /// For the runs' logs, KEY.log, and what `arguments` writes, KEY.json: both are removed after a
+  /// success. Must exist.
   std::filesystem::path work_folder;
-  /// The command line of a run's process. It finishes by putting the result into the store.
+  /// The command line of a run's process. The process finishes by putting the result into the
+  /// store.
   std::function<std::vector<std::string>(const Job&)> arguments;
-  /// Called when no run will need the data of this name any more (Job::frames, then Job::images).
+  /// Called when no run will need the data of this name anymore (Job::frames, then Job::images).
   std::function<void(const std::string& name)> forget = [](const std::string&) {};
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
@@ -57,9 +59,9 @@ struct PoolOptions {
 ///   images and the others find them: a free process takes a run whose images exist and are not in
 ///   use, else the next one in the order of `jobs`.
 /// - Another process starts only if there is enough memory for it and for what the running ones
-///   still need (as measured on finished ones); one always runs.
+///   still need (as measured on finished ones); at least one always runs.
 /// - A run that ends by itself without success is a failure and stays one. One that was killed from
-///   outside (SIGKILL, SIGTERM, SIGHUP: the kernel out of memory, an impatient scheduler) is tried
+///   outside (SIGKILL, SIGTERM, SIGHUP: by a kernel short of memory or by a scheduler) is tried
 ///   once more, alone. One that hits a full disk ends all work and is not a failure: the same
 ///   command resumes once there is space.
 /// @throws Interrupted on Ctrl-C, SIGTERM or SIGHUP; DiskFullError.

@@ -29,9 +29,9 @@ extern char** environ;
 namespace mh {
 namespace {
 
-/// This process' environment, set so that glibc requests pages of 2 MB where possible: a run
-/// touches some 300 MB once, mostly textures, and spent a fifth of its time on their page faults. A
-/// setting by the user is kept.
+/// This process' environment, set so that glibc requests 2 MB pages where possible: a run touches
+/// some 300 MB once, mostly textures, and spent a fifth of its time on their page faults. The
+/// user's own setting is kept.
 std::vector<char*> with_large_pages() {
   static std::string tunables = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
   std::vector<char*> all;
@@ -122,12 +122,12 @@ void RunProcess::kill() {
 
 void RunProcess::read_shares() {
   char buffer[4096];
-  constexpr int kMost = 256;  // pieces: a process that prints endlessly must not block us
+  constexpr int kMost = 256;  // reads: a process that prints endlessly must not block us
   for (int piece = 0; piece < kMost; ++piece) {
     const ssize_t got = read(output_, buffer, sizeof buffer);
     if (got <= 0) break;
     unread_.append(buffer, static_cast<std::size_t>(got));
-    // A library in it may print there, too, without line ends.
+    // A library in that process may print here, too, without newlines.
     constexpr std::size_t kLongestLine = 1 << 16;
     if (unread_.size() > kLongestLine && unread_.find('\n') == std::string::npos) unread_.clear();
   }
@@ -192,7 +192,7 @@ double RunProcess::rss_mb() const {
 
 void die_with(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(3);  // it died before the line above
+  if (getppid() != parent) _exit(3);  // the parent died before the line above
 }
 
 }  // namespace mh

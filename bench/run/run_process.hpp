@@ -37,24 +37,24 @@ struct ProcessEnd {
   RunCost cost;
 };
 
-/// Why a process ended that reported nothing: by which signal or exit code, and what it was last
-/// doing.
+/// Why a process that reported no error ended: its signal or exit code, and what it was last doing.
 /// @param status  RunProcess::status()
 std::string unreported_end(const ProcessEnd& end, const std::string& status);
 
-/// A process of our own executable that executes one run. It dies with this one. On standard output
-/// it prints the share of the work done, one per line, and the names of long stages.
+/// A process of our own executable that executes one run. It dies with the process that started it.
+/// On standard output it prints the share of the work done, one per line, and the names of long
+/// stages.
 class RunProcess {
  public:
   /// @param log  file for its standard error
   RunProcess(const std::filesystem::path& executable, const std::vector<std::string>& arguments,
              std::filesystem::path log);
-  /// Kills it if it still runs.
+  /// Kills the process if it is still running.
   ~RunProcess();
   RunProcess(const RunProcess&) = delete;
   RunProcess& operator=(const RunProcess&) = delete;
 
-  /// Returns its end, once; nullopt while it runs.
+  /// Returns how it ended, once; nullopt while it is running.
   std::optional<ProcessEnd> poll();
   void kill();
 
@@ -64,7 +64,7 @@ class RunProcess {
   /// The run's latest status line; "" before the first.
   const std::string& status() const { return status_; }
   double age_s() const;
-  /// Seconds since it first reported progress: excludes light and other preparation.
+  /// Seconds since it first reported progress: excludes baking light and other preparation.
   double working_s() const;
   double rss_mb() const;
   int output() const { return output_; }  ///< readable when it has reported something
@@ -82,7 +82,7 @@ class RunProcess {
   std::chrono::steady_clock::time_point start_, first_share_;
 };
 
-/// Called by such a process, so that it is killed when `parent` dies.
+/// Called by a run's process, so that it is killed when `parent` dies.
 void die_with(pid_t parent);
 
 }  // namespace mh

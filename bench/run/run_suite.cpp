@@ -31,7 +31,7 @@ fs::path real_executable(const fs::path& executable) {
   return error ? executable : real;
 }
 
-/// Warns of missing files of finished runs, which will not be rewritten.
+/// Warns about missing files of finished runs, which will not be rewritten.
 void warn_missing_outputs(const Suite& suite, const BenchResults& results,
                           const BenchOptions& options) {
   std::size_t runs = 0;
@@ -50,9 +50,8 @@ void warn_missing_outputs(const Suite& suite, const BenchResults& results,
       counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
 }
 
-/// If a scene was changed and changed back, the existing files are from the run in between: they
-/// are removed, together with the result, so that the run is repeated; so are files next to a
-/// failure.
+/// If a scene was changed and changed back, the existing files are from the run in between. The
+/// result is then forgotten, so that the run is repeated; for a failed run, the files are removed.
 void forget_outdated_runs(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     const fs::path folder = out / job.spec.name;
@@ -93,7 +92,7 @@ void limit_sharing(std::vector<Job>& jobs, const BenchOptions& options) {
   }
 }
 
-/// Space for the images of each environment at work.
+/// Bytes available for the images of each environment in progress.
 std::uint64_t limit_of_images(const std::vector<Job>& jobs, const BenchOptions& options) {
   std::set<std::string> all;
   for (const Job& job : jobs) all.insert(job.images);
@@ -120,7 +119,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
     std::erase_if(unfinished,
                   [&](const Job& job) { return is_reused(before, job, options.out, reuse); });
   }
-  validate_inputs(unfinished, inputs, options.say);  // bad input leaves no file
+  validate_inputs(unfinished, inputs, options.say);  // bad input must not leave a file behind
   inputs.forget_scene();
 
   Store store(results);

@@ -33,16 +33,16 @@ struct BenchOptions {
   /// Metrics only: no occupancy map, no images and no files of runs.
   bool metrics_only = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
-  FolderHold* hold = nullptr;     ///< hold of `out`, kept after the runs; null: only while they run
+  FolderHold* hold = nullptr;     ///< on `out`, kept after the runs; null: held only while they run
   InputReader* inputs = nullptr;  ///< has read some of the inputs already; null: none
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
 
 /// Runs a suite into options.out / "results.sqlite". A finished run is never repeated. Several
-/// processes may do so at a time: they share the runs.
-/// @throws InputError if an input cannot be read or changes meanwhile, or if another suite is run
-/// in that folder; Interrupted on Ctrl-C.
+/// processes may do so at the same time: they share the runs.
+/// @throws InputError if an input cannot be read or changes meanwhile, or if another suite is
+/// running in that folder; Interrupted on Ctrl-C.
 BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                        const BenchOptions& options);
 

@@ -73,7 +73,7 @@ class SplitTable {
  private:
   /// Fills next_[low .. high], whose last share begins within [first, last]. The cost is convex in
   /// end_s_[end] - begin_s_[begin], both of which ascend: the best start does not decrease as the
-  /// end increases, so that the two halves share the candidates.
+  /// end increases, so the two halves split the candidates between them.
   void fill(std::size_t low, std::size_t high, std::size_t first, std::size_t last) {
     if (low > high) return;
     const std::size_t middle = (low + high) / 2;
@@ -88,12 +88,12 @@ class SplitTable {
     fill(middle + 1, high, begin_[middle], last);
   }
 
-  std::vector<double> begin_s_, end_s_;  // of a share that begins, ends at this run
-  std::vector<double> least_, next_;     // by the number of runs: with one part less; with it
-  std::vector<std::size_t> begin_;       // of the last part, by the number of runs
+  std::vector<double> begin_s_, end_s_;  // cost_s() is their difference
+  std::vector<double> least_, next_;  // lowest sum by the number of runs: without, with this part
+  std::vector<std::size_t> begin_;    // start of the last part, by the number of runs
 };
 
-/// The number if every bin is filled; the actual one is not known before the drive.
+/// The number if every bin is filled; the actual number is not known before the drive.
 double graded_queries(const RunSpec& run) {
   if (!run.graded) return 0;
   const GradedSpec& g = *run.graded;

@@ -15,22 +15,23 @@ struct Shard {
   std::size_t index = 1, of = 1;
 };
 
-/// "2/3". @throws InputError unless 1 <= i <= n.
+/// Reads "i/n", for example "2/3". @throws InputError unless 1 <= i <= n.
 Shard parse_shard(const std::string& text);
 
-/// Names the images that a run sees: the same text for runs of one environment at one level.
+/// Names the images that a run sees: the same text for runs of the same environment at the same
+/// level.
 std::string images_of(const RunSpec& run);
 
-/// Predicted processor time of a run, known before anything has run. It serves to balance shares;
+/// Predicted processor time of a run, known before anything has run. Used to balance shares;
 /// docs/measurements/cost_of_the_bench.md compares it with measured times.
 struct PredictedCost {
   std::string images;   ///< as images_of()
-  double images_s = 0;  ///< making these images; spent once by all runs that see them
+  double images_s = 0;  ///< making these images; spent once for all runs that see them
   double own_s = 0;     ///< tracking, queries, noise, episodes
 };
 
-/// Predicts from the lengths of the tours: `handheld:SEED:FRAMES` states one, others count as 600
-/// frames, all are cut by max_frames. Images of a recording cost nothing.
+/// Predicts from the lengths of the tours: `handheld:SEED:FRAMES` states its length, others count
+/// as 600 frames, and max_frames limits all. Images of a recording cost nothing.
 PredictedCost predicted_cost(const RunSpec& run);
 
 /// Consecutive runs, [begin, end).
@@ -43,7 +44,7 @@ struct PredictedShare {
 /// eighth powers of the shares' costs, which approximates minimizing the most expensive share. A
 /// share that starts in the middle of runs with the same images must render those images again.
 /// Every run is in exactly one share; with more parts than runs the last shares are empty.
-/// @param runs  those that see the same images are consecutive, as expand() orders them
+/// @param runs  runs that see the same images are consecutive, as expand() orders them
 /// @returns `parts` shares
 std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts);
 std::vector<PredictedShare> split_runs(std::span<const RunSpec> runs, std::size_t parts);

@@ -14,13 +14,14 @@ struct Interrupted {
 
 inline constexpr int kInterruptedCode = 130;  ///< exit code
 
-/// The line that an interrupted command ends with.
+/// The last line that an interrupted command prints.
 const char* interrupted_line(bool goes_on);
 
-/// From now on SIGINT, SIGTERM and SIGHUP end the program at once, with that line and code 130;
-/// while a SignalWatch exists, it handles them instead.
+/// From now on SIGINT, SIGTERM and SIGHUP end the program at once, with interrupted_line() and code
+/// 130; while a SignalWatch exists, it handles them instead.
 void tell_of_interrupts();
-/// From now on, tell_of_interrupts() says that the same command resumes from what is finished.
+/// From now on, the line printed after tell_of_interrupts() says that the same command resumes from
+/// what is finished.
 void interrupts_go_on();
 
 /// During its lifetime, records SIGINT, SIGTERM and SIGHUP instead of terminating.
@@ -31,7 +32,7 @@ class SignalWatch {
   SignalWatch(const SignalWatch&) = delete;
   SignalWatch& operator=(const SignalWatch&) = delete;
 
-  /// The signal that came last; 0 = none.
+  /// The last signal received; 0 = none.
   int signal() const;
 
  private:

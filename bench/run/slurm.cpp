@@ -32,8 +32,8 @@ std::optional<Store> store_in(const fs::path& folder) {
   return std::optional<Store>(std::in_place, folder / "results.sqlite");
 }
 
-/// Shares, from 1, some of whose runs are neither in `out` nor in the folder of the share.
-/// @param failed  a run that failed counts as finished
+/// Shares, counted from 1, with runs that are neither in `out` nor in the share's folder.
+/// @param failed  whether a failed run counts as finished
 std::vector<std::size_t> unfinished(const std::vector<Job>& jobs,
                                     const std::vector<PredictedShare>& shares, const fs::path& out,
                                     bool failed) {
@@ -55,7 +55,7 @@ std::vector<std::size_t> unfinished(const std::vector<Job>& jobs,
   return found;
 }
 
-/// The id that sbatch --parsable printed; empty before it has: "12", or "12;CLUSTER".
+/// The id in what sbatch --parsable printed, "12" or "12;CLUSTER"; empty if it has not printed yet.
 std::string job_id(const fs::path& file) {
   const std::string text = fs::exists(file) ? read_file(file) : "";
   return text.ends_with('\n') ? text.substr(0, text.find_first_of(";\n")) : "";
@@ -66,7 +66,7 @@ void cancel(const std::string& id, const fs::path& log) {
   while (!scancel.poll()) ::poll(nullptr, 0, kPollSlurm_ms);
 }
 
-/// Submits the array and waits until every task has ended, well or not.
+/// Submits the array and waits until every task has ended, successfully or not.
 void submit(const fs::path& folder, const std::vector<std::string>& words,
             const std::function<void(std::string_view)>& say) {
   const SignalWatch watch;
@@ -96,7 +96,7 @@ void submit(const fs::path& folder, const std::vector<std::string>& words,
   }
 }
 
-/// Removes files of runs that do not belong to their results; shares will bring the right ones.
+/// Removes files of runs that do not belong to their results; the shares bring the right ones.
 void remove_outdated(const Suite& suite, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     if (!shows_another_run(out / job.spec.name, job.key)) continue;
@@ -151,7 +151,7 @@ SlurmResults run_on_slurm(const Suite& suite, const SuiteOverrides& overrides,
       to_check.push_back(jobs[i]);
   for (const PredictedShare& share : shares)
     costs.push_back(fmt::format("{:.0f}", share.predicted_s));
-  validate_inputs(to_check, inputs, options.say);  // bad input leaves no file
+  validate_inputs(to_check, inputs, options.say);  // bad input must not leave a file behind
   inputs.forget_scene();
   options.say(fmt::format("{} in {} of {} s of processor time as predicted, {} unfinished",
                           counted(jobs.size(), "run"), counted(shares.size(), "share"),

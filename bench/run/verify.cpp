@@ -130,7 +130,7 @@ Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOp
     options.out = folder.path();
     options.cache.reset();
     options.jobs = jobs;
-    // First every run renders its own images, then they share them.
+    // In the first execution every run renders its own images; in the second, runs share them.
     options.images_limit_gb = share_before == 0 ? 0.0 : shared_gb;
     options.progress = [&](PoolProgress progress) {
       progress.share = share_before + 0.5 * progress.share;

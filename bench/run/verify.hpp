@@ -11,12 +11,12 @@ namespace mh {
 
 /// Where two executions of one suite first differ.
 struct Difference {
-  std::string run;    ///< empty: before any run
+  std::string run;    ///< empty: the results as a whole
   std::string phase;  ///< "world", "mapping", "held_out", "second_tour", "episodes" or "result"
   std::size_t frame = 0;
-  int restart = 0;    ///< of the mapping, when the frame was shown
+  int restart = 0;    ///< of the mapping, before the frame was shown
   std::string stage;  ///< "scene", "path", "order", "image", "matching", "pose", "map", "scores";
-                      ///< of episodes which
+                      ///< for episodes, which one
   friend bool operator==(const Difference&, const Difference&) = default;
 };
 

@@ -16,7 +16,7 @@
 #include "slam/io/json_text.hpp"
 #include "slam/io/settings_io.hpp"
 
-// Records as rows of SQL tables, by their lists of fields: the column definitions, and values in
+// Records as rows of SQL tables, via their lists of fields: the column definitions, and values in
 // both directions. Nested records are flattened into columns; a pose takes seven; a list is JSON
 // text; values that are unknown or not finite are null.
 
@@ -80,7 +80,7 @@ std::string columns_of() {
 /// Inserts rows into a table, value by value in column order.
 class RowWriter {
  public:
-  /// @param columns  without the digest
+  /// The rows have all columns of the table; SQL computes the digest.
   RowWriter(SQLite::Database& db, const std::string& table)
       : statement_(db, insert_row(table, column_count(db, table))) {}
 

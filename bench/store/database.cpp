@@ -29,8 +29,8 @@ std::unique_ptr<SQLite::Database> open(const std::string& name, int flags) {
   return database;
 }
 
-/// Switches to WAL mode. Two processes that open a new file at once would make each other's switch
-/// fail without waiting.
+/// Switches to WAL mode. Two processes that open a new file at the same time would make each
+/// other's switch fail without waiting.
 void enter_wal(SQLite::Database& db) {
   constexpr int kTries = 200;
   for (int tries = 1;; ++tries) {
@@ -45,8 +45,8 @@ void enter_wal(SQLite::Database& db) {
   }
 }
 
-/// Merging copies whole rows, so an extra or missing column is an error, and one of another type
-/// would change numbers. Other tables are harmless.
+/// Merging copies whole rows, so an extra or missing column is an error, and a column of a
+/// different type would change numbers. Additional tables are harmless.
 void require_schema(SQLite::Database& db, const fs::path& file) {
   SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   fresh.exec(schema());
@@ -68,7 +68,7 @@ void require_version(SQLite::Database& db, const fs::path& file) {
   const int version = version_of(db);
   if (version == kSchemaVersion) return;
   if (version == 0)
-    throw InputError(fmt::format("{}: is a database, but no results file", file.string()));
+    throw InputError(fmt::format("{}: is a database, but not a results file", file.string()));
   throw InputError(
       version > kSchemaVersion
           ? fmt::format("{}: has schema {}, this version of modelhouse reads {}: use a newer one",
@@ -89,7 +89,7 @@ fs::path log_of(const fs::path& file) {
   return file.string() + "-wal";
 }
 
-/// URI by which SQLite opens a file that no process writes, without a lock or a log.
+/// URI by which SQLite opens a file that no process is writing, without a lock or a log.
 std::string as_immutable(const fs::path& file) {
   std::string name = "file:";
   for (const char c : fs::absolute(file).string())

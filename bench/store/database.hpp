@@ -12,7 +12,7 @@
 namespace mh {
 
 // A results file as an SQLite database whose content has been checked.
-// @throws InputError if it is damaged, has another schema or is not a results file.
+// @throws InputError if it is damaged, has a different schema or is not a results file.
 
 /// Opens or creates the file.
 std::unique_ptr<SQLite::Database> open_to_write(const std::filesystem::path& file);

@@ -18,7 +18,7 @@ void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& e
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       throw InputError(fmt::format(
-          "{}: is damaged or no results file: put back a copy, or move it away and run again",
+          "{}: is damaged or not a results file: put back a copy, or move it away and run again",
           name));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
@@ -31,7 +31,7 @@ void throw_meaning(const std::filesystem::path& file, const SQLite::Exception& e
           fmt::format("{}: cannot be opened for writing: check folder and permissions", name));
     case SQLITE_IOERR:
       throw MachineError(
-          fmt::format("{}: its disk cannot be read or written: see to it and run again, what is "
+          fmt::format("{}: its disk cannot be read or written: fix it and run again, what is "
                       "finished is kept",
                       name));
     case SQLITE_NOMEM:

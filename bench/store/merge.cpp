@@ -19,11 +19,11 @@ namespace fs = std::filesystem;
 
 InputError made_otherwise(const fs::path& file, const std::string& run, const fs::path& than_in) {
   return InputError(
-      fmt::format("{}: run '{}' was made with other settings, input or code than in {}",
+      fmt::format("{}: run '{}' was made with settings, input or code different from those in {}",
                   file.string(), run, than_in.string()));
 }
 
-/// Checks that runs which both files have finished have the same results; their times may differ.
+/// Checks that runs that are finished in both files have the same results; their times may differ.
 void require_same_results(SQLite::Database& db, const fs::path& other, const fs::path& file) {
   std::string differs = "a.result <> b.result";
   for (const std::string_view table : kTablesOfRuns)
@@ -38,8 +38,8 @@ void require_same_results(SQLite::Database& db, const fs::path& other, const fs:
                       differs));
   if (found.executeStep())
     throw InputError(fmt::format(
-        "{}: run '{}' has another result than in {}, though all that decides it is the same: its "
-        "program does not repeat, or one of them is wrong; leave one out",
+        "{}: run '{}' has a different result from the one in {}, though all that determines it is "
+        "the same: its program is not repeatable, or one of them is wrong; leave one out",
         other.string(), found.getColumn(0).getString(), file.string()));
 }
 
@@ -55,9 +55,8 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
     const Suite suite = store.planned_suite();
     if (!first) first.emplace(suite, file);
     const auto differs = [&](const std::string& what, const auto& here, const auto& there) {
-      return InputError(
-          fmt::format("{}: {} {}, {} has {}: parts of one suite must not differ in it",
-                      file.string(), what, here, first->second.string(), there));
+      return InputError(fmt::format("{}: {} {}, {} has {}: parts of one suite must agree",
+                                    file.string(), what, here, first->second.string(), there));
     };
     if (suite.name != first->first.name)
       throw InputError(fmt::format("{}: holds results of the suite '{}', {} of '{}'", file.string(),
@@ -69,7 +68,7 @@ void Store::check_mergeable(const std::vector<fs::path>& files) {
     }
     if (suite.trials != first->first.trials)
       throw differs("was run with --trials", suite.trials, first->first.trials);
-    // A damaged run is found here, while its file can be named and nothing has been written.
+    // A damaged run is found here, while its file can be named and nothing has been written yet.
     const std::map<std::string, std::string> key_of(keys.begin(), keys.end());
     for (const RunSpec& spec : expand(suite))
       if (const auto key = key_of.find(spec.name);

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The fields of a run without rows of their own, as stored in `runs.result`.
+/// The fields of a run that have no rows of their own, as stored in `runs.result`.
 template <MaybeConst<RunResult> R, class Visit>
 void result_fields(R& run, Visit& v) {
   v("place", run.place);
@@ -131,7 +131,7 @@ void load_frames(SQLite::Database& db, const std::string& key, RunResult& run) {
   s.bind(1, key);
   Trajectory all;
   while (s.executeStep()) {
-    RowReader reader(s, 1);  // behind key
+    RowReader reader(s, 1);  // after key
     FrameRow row;
     fields(row, reader);
     if (row.truth) run.truth.push_back({row.stamp_ns, *row.truth});

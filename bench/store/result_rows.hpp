@@ -18,7 +18,7 @@ void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,
              const std::string& error, const std::string& result);
 void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run);
 void forget_rows(SQLite::Database& db, const std::string& key);
-/// @param file  that contains the database, for messages
+/// @param file  contains the database; for messages
 RunResult load_rows(SQLite::Database& db, const std::filesystem::path& file, const std::string& key,
                     const RunSpec& spec);
 

@@ -23,7 +23,7 @@ void append(std::string& bytes, char tag, T value) {
 }
 
 void append(std::string& bytes, sqlite3_value* value) {
-  constexpr double kExact = 9e15;  // integers up to here are exact
+  constexpr double kExact = 9e15;  // integers up to this are exact
   switch (sqlite3_value_type(value)) {
     case SQLITE_INTEGER:
       return append(bytes, 'n', static_cast<std::int64_t>(sqlite3_value_int64(value)));
@@ -59,7 +59,7 @@ void row_digest(sqlite3_context* context, int count, sqlite3_value** values) {
 struct Columns {
   std::string values;  ///< "'plan', position, name, key": the arguments of row_digest()
   std::string key;     ///< "position || ', ' || name": the name of a row
-  std::string digest;  ///< the last one
+  std::string digest;  ///< name of the last column
 };
 
 Columns columns_of(SQLite::Database& db, const std::string& table) {
@@ -75,7 +75,7 @@ Columns columns_of(SQLite::Database& db, const std::string& table) {
   return columns;
 }
 
-/// For a message: bytes of a damaged row may be anything.
+/// Makes text printable for a message: a damaged row may contain any bytes.
 std::string ascii(std::string text) {
   constexpr std::size_t kMost = 120;
   for (char& c : text)
@@ -107,7 +107,7 @@ void require_all_rows(SQLite::Database& db, const std::filesystem::path& file) {
       db, fmt::format("SELECT {} - (SELECT coalesce(sum(row_count), 0) FROM runs)", of_all));
   left.executeStep();
   if (left.getColumn(0).getInt64() != 0)
-    fail(fmt::format("{} are of a run that its table 'runs' has lost",
+    fail(fmt::format("{} belong to a run that its table 'runs' has lost",
                      counted(static_cast<std::size_t>(left.getColumn(0).getInt64()), "row")));
   SQLite::Statement plan(db,
                          "SELECT run_count, (SELECT count(*) FROM plan) AS found FROM suite "

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// `PRAGMA user_version` of a results file; a file with another one is refused.
+/// `PRAGMA user_version` of a results file; a file with a different one is refused.
 inline constexpr int kSchemaVersion = 15;
 
 /// The tables of a results file, as CREATE statements; docs/store.md explains each column. `runs`,
@@ -18,8 +18,8 @@ inline constexpr int kSchemaVersion = 15;
 /// the others (row_digest.hpp).
 std::string schema();
 
-/// A moment of a mapping tour: the camera's true pose and the system's final estimate. A
-/// recording's truth may have other stamps than its frames, or be unknown.
+/// One stamp of a mapping tour: the camera's true pose and the system's final estimate. A
+/// recording's truth may have stamps different from its frames', or be unknown.
 struct FrameRow {
   std::int64_t frame = 0;
   Stamp stamp_ns = 0;

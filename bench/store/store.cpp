@@ -41,8 +41,8 @@ std::string host() {
   return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
 }
 
-/// Start time of a process, in clock ticks since boot; 0 if there is none. Together with the
-/// process id this identifies a process, since ids are reused.
+/// Start time of a process, in clock ticks since boot; 0 if it does not exist. Together with the
+/// process id, this identifies a process, since ids are reused.
 std::int64_t start_of_process(std::int64_t process) {
   std::ifstream file(fmt::format("/proc/{}/stat", process));
   std::string text((std::istreambuf_iterator<char>(file)), {});
@@ -50,7 +50,7 @@ std::int64_t start_of_process(std::int64_t process) {
   if (after_name == std::string::npos) return 0;
   std::istringstream fields(text.substr(after_name + 2));
   std::string field;
-  for (int i = 0; i < 20; ++i) fields >> field;  // the 22nd of all
+  for (int i = 0; i < 20; ++i) fields >> field;  // the 22nd field of the line
   return fields ? std::strtoll(field.c_str(), nullptr, 10) : 0;
 }
 
@@ -184,7 +184,7 @@ Suite Store::planned_suite() const {
                                    file_.string()));
     return parse_suite(s.getColumn(1).getString(), s.getColumn(0).getString(),
                        overrides_from_json(parse_json<nlohmann::json>(s.getColumn(2).getString())),
-                       false);  // they may have been made on another machine
+                       false);  // the results may be from another machine
   });
 }
 

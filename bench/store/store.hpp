@@ -26,8 +26,8 @@ class TemporaryFolder;
 struct RunCost {
   double wall_s = 0;
   double cpu_s = 0;  ///< user and system time of its process
-  // Of cpu_s:
-  double slam_s = 0;      ///< inside the system under test, if it works in our process
+  // Parts of cpu_s:
+  double slam_s = 0;      ///< inside the system under test, if it runs in our process
   double frames_s = 0;    ///< making its frames: scene, light and drives included
   double products_s = 0;  ///< occupancy map, images and files of the run
   double max_rss_mb = 0;
@@ -40,10 +40,10 @@ enum class RunStatus { kDone, kFailed };
 using PlannedKeys = std::vector<std::pair<std::string, std::string>>;
 
 /// The results of a suite in one SQLite file (docs/store.md). A result is stored in one
-/// transaction: it is there completely or not at all, even if a process dies. Several processes may
-/// use one file. Errors state what to do: InputError for a file that is damaged, has another schema
-/// or is not a results file; MachineError for a full disk or a file that another process keeps
-/// locked.
+/// transaction: it is stored completely or not at all, even if a process dies. Several processes
+/// may use one file. Errors state what to do: InputError for a file that is damaged, has a
+/// different schema or is not a results file; MachineError for a full disk or a file that another
+/// process keeps locked.
 class Store {
  public:
   /// Opens or creates the file.
@@ -52,7 +52,7 @@ class Store {
   Store(Store&&) noexcept;
   /// Opens a file, or the one in a folder, without changing it: it may be in a read-only place. (A
   /// log that a killed process left next to it is applied, as SQLite does.)
-  /// @throws InputError if it does not exist; as check()
+  /// @throws InputError if it does not exist, or as check() does
   static Store open_to_read(const std::filesystem::path& file);
   /// @throws InputError naming file, table and row if a row differs from what was stored.
   void check() const;
@@ -60,10 +60,11 @@ class Store {
   /// Records the suite and which result belongs to which of its runs, replacing the earlier record.
   /// Results stay.
   void plan(const Suite& suite, const SuiteOverrides& overrides, const PlannedKeys& key_of_name);
-  /// Whether that is exactly the recorded suite.
+  /// Whether this is exactly the recorded suite.
   bool is_planned(const Suite& suite, const SuiteOverrides& overrides,
                   const PlannedKeys& key_of_name) const;
-  /// The recorded suite. @throws InputError if there is none, or if its files are gone.
+  /// The recorded suite. @throws InputError if there is none, or if no file matches a pattern
+  /// `files` of its environments.
   Suite planned_suite() const;
   PlannedKeys planned_keys() const;
 
@@ -75,10 +76,10 @@ class Store {
   /// has died, or is on another host and silent for kClaimLife_s.
   bool claim(const std::string& key);
   void release(const std::string& key);
-  void beat();  ///< this process's claims are alive
+  void beat();  ///< marks this process's claims as alive
   static constexpr int kClaimLife_s = 120;
 
-  /// Each ends the claim. A failed run's result is excluded from the tables.
+  /// Both end the claim. A failed run's result is excluded from the tables.
   void put(const std::string& key, const RunResult& run, const RunCost& cost);
   void put_failure(const std::string& key, const RunSpec& spec, const std::string& error,
                    const RunCost& cost);
@@ -91,12 +92,13 @@ class Store {
   /// The largest resident set of a finished run, MB; 0 if none.
   double largest_rss_mb() const;
 
-  /// Copies the results of another store that this one lacks; returns how many runs that were.
-  /// @throws InputError if a run of one name was planned with different settings, code or input.
+  /// Copies the results of another store that this one lacks; returns the number of runs copied.
+  /// @throws InputError if a run of the same name was planned with different settings, code or
+  /// input.
   std::size_t merge(const std::filesystem::path& other);
   /// Checks that all files can be merged. @throws InputError as merge() does, or if they are
-  /// results of different suites, or of one suite with different trials or other runs, or if one of
-  /// their results is damaged.
+  /// results of different suites, or of one suite with different trials or different runs, or if
+  /// one of their results is damaged.
   static void check_mergeable(const std::vector<std::filesystem::path>& files);
 
   /// Rows of a query, for exports: column names first.
@@ -120,7 +122,7 @@ class Store {
 struct BenchResults {
   std::vector<RunResult> runs;       ///< finished ones, in the order of expand(suite)
   std::vector<FailedRun> failed;     ///< failed ones, in the same order
-  std::vector<std::string> missing;  ///< names of the others, such as runs of other shards
+  std::vector<std::string> missing;  ///< names of the remaining runs, such as those of other shards
 };
 
 /// Loads the store's results for the runs of a suite.

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic = "MHCACHE2";
 constexpr std::size_t kHead = kMagic.size() + 2 * sizeof(std::uint64_t);
 
-/// Of an entry's content and name: under another name it is as good as damaged.
+/// Digest of an entry's content and name: under a different name an entry counts as damaged.
 std::uint64_t digest_of(const fs::path& file, std::string_view content) {
   const std::string name = (file.parent_path().filename() / file.filename()).string();
   return digest_bytes(content.data(), content.size(), digest_bytes(name.data(), name.size()));
@@ -50,7 +50,7 @@ constexpr std::string_view kMarkerText =
     "Signature: 8a477f597d28d172789f06886806bc55\n"
     "# The cache of modelhouse. It removes entries of its own from here, and nothing else.\n";
 
-/// Whether it is a file or folder itself, not a link to one.
+/// Whether this is itself a file (or, below, a folder), not a link to one.
 bool is_own_file(const fs::path& file) {
   std::error_code error;
   return fs::symlink_status(file, error).type() == fs::file_type::regular;
@@ -80,7 +80,8 @@ bool has_magic(const fs::path& file) {
          head == kMagic;
 }
 
-/// nullopt if the file is missing, truncated, damaged or another entry.
+/// Returns an entry's content; nullopt if the file is missing, truncated, damaged or a different
+/// entry.
 std::optional<std::string> unpack(const fs::path& file) {
   if (!is_own_file(file)) return std::nullopt;
   const ReadScope no_input(ReadScope::Outer::kIgnores);
@@ -136,7 +137,8 @@ fs::path Cache::own_folder() const {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(own, error))) {
     make_output_folder(folder_);
-    // Complete before it gets its name: another process sees either nothing or all of it.
+    // The folder is complete before it gets its name: another process sees either nothing or all of
+    // it.
     std::string fresh = (folder_ / fmt::format(".{}-XXXXXX", kOwnFolder)).string();
     if (mkdtemp(fresh.data()) == nullptr) throw_unwritable(own, errno);
     fs::permissions(fresh, fs::perms::all & ~fs::perms::group_write & ~fs::perms::others_write,
@@ -186,7 +188,7 @@ std::string Cache::get(std::string_view kind, std::string_view key,
   }
   std::string content = make();
   try {
-    // A file without an entry's header may be anybody's.
+    // A file without an entry's header may belong to someone else.
     const fs::path aside = file.string() + ".found";
     const bool nothing = is_own_file(file) && fs::file_size(file, error) == 0;
     if (fs::exists(fs::symlink_status(file, error)) && !has_magic(file) && !nothing) {

@@ -16,19 +16,19 @@ namespace mh {
 /// is read, and rebuilt if it is damaged. Several processes may share one folder: a process that
 /// requests an entry that another is building waits for it.
 ///
-/// Owns only what it wrote: everything is in its own subfolder of the given folder, under a marker
-/// file. Files there whose name or header is not an entry's are left alone, and no link is
-/// followed.
+/// Owns only what it wrote: everything is in its own subfolder of the given folder, which contains
+/// a marker file. Files there whose name or header is not an entry's are left alone, and links are
+/// not followed.
 class Cache {
  public:
   /// @param folder     created if missing, may contain other files; empty: nothing is cached
-  /// @param max_bytes  beyond this, least recently read entries are removed
+  /// @param max_bytes  beyond this, the least recently read entries are removed
   explicit Cache(std::filesystem::path folder = {}, std::uintmax_t max_bytes = kDefaultBytes);
 
   /// Returns the entry of that kind and key. A cache that cannot be written (full disk, no
   /// permission) costs time but never fails the work: the entry is computed and returned.
   /// @param kind  valid as a folder name: "light"
-  /// @param key   hexadecimal digest of everything that decides the entry, code included
+  /// @param key   hexadecimal digest of everything that determines the entry, code included
   std::string get(std::string_view kind, std::string_view key,
                   const std::function<std::string()>& make) const;
 
@@ -45,12 +45,14 @@ class Cache {
  private:
   /// Creates it if missing. @throws InputError if it cannot be created, or is not the cache's.
   std::filesystem::path own_folder() const;
-  /// Looks at all entries, but only once a share of the bound has been written since.
+  /// Looks at all entries, but only after a fraction of the bound has been written since the last
+  /// look.
   void keep_within_bounds(const std::filesystem::path& own, std::uintmax_t written_bytes) const;
 
   std::filesystem::path folder_;
   std::uintmax_t max_bytes_;
-  std::shared_ptr<std::atomic<std::uintmax_t>> unseen_bytes_;  // written since; shared by copies
+  // Written since the last look; shared by copies.
+  std::shared_ptr<std::atomic<std::uintmax_t>> unseen_bytes_;
 };
 
 }  // namespace mh

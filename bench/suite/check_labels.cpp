@@ -15,10 +15,10 @@ namespace mh {
 std::string check_labels(const Scene& scene, LabelMode labels) {
   if (labels != LabelMode::kBoxes && labels != LabelMode::kDetector) return "";
   if (std::ranges::all_of(scene.instance_of, [](InstanceId id) { return id == 0; }))
-    throw InputError(fmt::format(
-        "{}: labels '{}' are boxes around objects, and its faces belong to none: all would be "
-        "background; use 'exact' or 'none'",
-        scene.name, name(labels)));
+    throw InputError(
+        fmt::format("{}: labels '{}' are boxes around objects, but its faces belong to none: all "
+                    "would be background; use 'exact' or 'none'",
+                    scene.name, name(labels)));
   const auto& of = scene.instances;
   if (std::ranges::any_of(of, [](const Instance& i) { return is_coco(i.class_id); })) return "";
   return fmt::format(

@@ -8,9 +8,10 @@
 
 namespace mh {
 
-/// Checks whether boxes can be drawn in a scene, by a detector or exactly: that needs objects.
+/// Checks that a scene has objects to draw boxes around if the labels are boxes, exact or a
+/// detector's.
 /// @returns a warning if it has objects, but none of a class that a detector knows (COCO's);
-/// otherwise ""
+/// otherwise an empty string
 /// @throws InputError if it has no objects, so that everything would be background.
 std::string check_labels(const Scene& scene, LabelMode labels);
 

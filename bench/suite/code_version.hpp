@@ -11,7 +11,7 @@ std::string_view code_of_light();
 std::string_view code_of_detections();
 /// Digest of the sources that determine a run's result.
 std::string_view code_of_run();
-/// Digest of the sources that determine an audit of it, in addition.
+/// Digest of the additional sources that determine an audit of a run.
 std::string_view code_of_audit();
 /// `git describe` of what was built; empty outside a repository.
 std::string_view built_commit();

@@ -16,7 +16,8 @@ EntryNames read_names(YamlReader& node) {
   check_folder_name(node.at("category"), names.category);
   names.name = node.string("name", node.has("count") ? names.category + "-{i}" : names.category);
   if (count > 1 && names.name.find("{i}") == std::string::npos)
-    node.at("name").fail(fmt::format("'{}' needs an {{i}}: there are {} of it", names.name, count));
+    node.at("name").fail(
+        fmt::format("'{}' needs an {{i}}: there are {} of them", names.name, count));
   return names;
 }
 

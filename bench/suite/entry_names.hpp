@@ -17,7 +17,7 @@ struct EntryNames {
 /// @throws InputError at the place of a key that is missing or invalid.
 EntryNames read_names(YamlReader& node);
 
-/// Replaces each {i} by a number.
+/// Replaces each {i} with a number.
 std::string with_index(std::string text, int index);
 
 }  // namespace mh

@@ -13,7 +13,7 @@
 
 namespace mh {
 
-/// What is different when the robot is kidnapped from when it mapped.
+/// How the world in which the robot is kidnapped differs from the one that it mapped.
 struct EpisodeVariant {
   std::string name = "as_mapped";  ///< unique, valid as a folder name
   std::optional<std::filesystem::path> scene = {}, pedestrian = {}, level = {};
@@ -24,10 +24,12 @@ struct EpisodeVariant {
 template <MaybeConst<EpisodeVariant> V, class Visit>
 void sources(V& variant, Visit&& visit) {
   using enum SourceKind;
-  visit(WorldSource{"scene", kScene, "furniture moved, evening light", false, true}, variant.scene);
+  visit(WorldSource{"scene", kScene, "a different scene: furniture moved, evening light", false,
+                    true},
+        variant.scene);
   visit(WorldSource{"pedestrian", kPedestrian, "present during the episodes", false, true},
         variant.pedestrian);
-  visit(WorldSource{"level", kLevel, "of the robot's camera"}, variant.level);
+  visit(WorldSource{"level", kLevel, "for the robot's camera"}, variant.level);
 }
 
 template <MaybeConst<EpisodeVariant> V, class Visit>
@@ -60,13 +62,14 @@ template <MaybeConst<EpisodesSpec> E, class Visit>
 void episode_settings(E& episodes, Visit& v) {
   auto& [goals, starts, seed, limit_s, arrival_m, ticks_per_frame, dark_s, variants] = episodes;
   v("goals", goals, setting::required({}), "classes; each start draws one that the scene has");
-  v("starts", starts, {1, 100000}, "of each variant in each environment");
-  v("seed", seed, setting::kSeed, "of starts and noise");
+  v("starts", starts, {1, 100000}, "starts of each variant in each environment");
+  v("seed", seed, setting::kSeed, "seed of starts and noise");
   v("limit_s", limit_s, {1, 3600}, "simulated time of an episode");
   v("arrival_m", arrival_m, {0.5, 10},
     "success: the robot's center is at most this far from the object");
-  v("ticks_per_frame", ticks_per_frame, {1, 60}, "of the camera's 30 Hz: 3 are 10 Hz");
-  v("dark_s", dark_s, {0, 60}, "blank frames at the start; less than limit_s");
+  v("ticks_per_frame", ticks_per_frame, {1, 60},
+    "ticks of the camera's 30 Hz per frame: 3 gives 10 Hz");
+  v("dark_s", dark_s, {0, 60}, "time of blank frames at the start; less than limit_s");
 }
 
 template <MaybeConst<EpisodesSpec> E, class Visit>
@@ -76,8 +79,8 @@ void fields(E& episodes, Visit& v) {
 }
 
 /// Reads the section `episodes` of a suite.
-/// @throws InputError naming file, line, field and value: a goal that is no class (with
-/// suggestions), two variants of one name, a missing file.
+/// @throws InputError naming file, line, field and value: a goal that is not a class (with
+/// suggestions), two variants with the same name, a missing file.
 EpisodesSpec read_episodes(YamlReader node, const SuitePaths& paths);
 
 }  // namespace mh

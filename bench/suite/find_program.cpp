@@ -59,7 +59,7 @@ class Scanner {
     end_word();
     return std::move(tokens_);
   }
-  /// The environment variables that were met, with their values; absent: not set.
+  /// The environment variables found so far, with their values; absent if not set.
   const std::map<std::string, std::optional<std::string>>& variables() const { return variables_; }
 
  private:
@@ -79,7 +79,7 @@ class Scanner {
   void add(std::string_view more) {
     if (text_) *text_ += more;
   }
-  /// Skips past the next `end`; what comes before it is not understood.
+  /// Skips past the next `end`; the current word is then not understood.
   void skip_past(char end) {
     text_.reset();
     at_ = std::min(command_.find(end, at_), command_.size() - 1) + 1;
@@ -160,7 +160,7 @@ class Scanner {
     if (braced && (at_ == command_.size() || command_[at_] != '}')) return skip_past('}');
     if (braced) ++at_;
     const std::optional<std::string> value = value_of(name);
-    // Without quotes the shell splits a value at blanks and expands patterns in it.
+    // Without quotes, the shell splits a value at whitespace and expands patterns in it.
     if (!value || (!quoted && value->find_first_of(" \t\n*?[") != std::string::npos))
       text_.reset();
     else
@@ -200,11 +200,11 @@ std::string what_the_shell_starts(const std::string& word) {
 /// A word of a command and its role in it.
 struct Word {
   Token token;
-  bool program = false;    ///< the shell looks it up: the first of a simple command
+  bool program = false;    ///< the shell looks it up: the first word of a simple command
   bool elsewhere = false;  ///< it follows a `cd`, so its folder is unknown
 };
 
-/// The words that name what is run or read, except those that > or tee writes to.
+/// The words that name what is run or read; files that > or tee writes to are left out.
 std::vector<Word> words_of(const OutsideProgram& program) {
   std::vector<Word> words;
   bool begins = true, written = false, elsewhere = false, tee = false;
@@ -239,7 +239,7 @@ std::vector<Word> words_of(const OutsideProgram& program) {
 
 /// The path that a word refers to.
 fs::path place_of(const OutsideProgram& program, const std::string& text) {
-  return program.folder / text;  // absolute where `text` is
+  return program.folder / text;  // absolute if `text` is
 }
 
 }  // namespace
@@ -323,8 +323,8 @@ std::string unseen_program(const OutsideProgram& program) {
     if (std::ranges::any_of(seen, [&](const ProgramFile& f) { return f.word == word.token.raw; }))
       return {};
     return fmt::format(
-        "warning: outside program '{}': which file '{}' is cannot be seen: list it under `inputs`, "
-        "or its results stay when it changes",
+        "warning: outside program '{}': cannot tell which file '{}' is: list it under `inputs`, or "
+        "old results are kept when it changes",
         program.name, word.token.raw);
   }
   return {};

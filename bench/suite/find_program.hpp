@@ -23,16 +23,16 @@ struct ProgramFile {
   std::filesystem::path file;  ///< its path
 };
 
-/// Lists the command's first program that is not a shell builtin or keyword, as /bin/sh will find
-/// it; every other word of the command that names a regular file relative to the program's folder
-/// (also after a '='); library, settings and inputs. Each once. Quotes, backslashes, a leading ~
-/// and environment variables are understood. Left out: what does not exist or cannot be read, what
-/// > or tee writes to, relative words after a `cd`, and words with a placeholder, a pattern, a
-/// substitution or a variable that the command sets.
+/// Lists, each once: the command's first program that is not a shell builtin or keyword, as /bin/sh
+/// will find it; every other word of the command that names a regular file relative to the
+/// program's folder (also after a '='); the library, settings and inputs. Quotes, backslashes, a
+/// leading ~ and environment variables are understood. Left out are files that do not exist or
+/// cannot be read, those that > or tee writes to, relative words after a `cd`, and words with a
+/// placeholder, a pattern, a substitution or a variable that the command sets.
 std::vector<ProgramFile> files_of(const OutsideProgram& program);
 
-/// The environment variables that the command names, with their values; absent: not set. Those that
-/// it sets itself, and PWD, are left out.
+/// The environment variables that the command names, with their values; absent if not set.
+/// Variables that it sets itself, and PWD, are left out.
 std::map<std::string, std::optional<std::string>> variables_of(const OutsideProgram& program);
 
 /// Returns a warning if a command that names no inputs starts a program that is not among its

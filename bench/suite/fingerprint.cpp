@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// As Linux names it; "unknown" elsewhere.
+/// The processor's name as Linux reports it; "unknown" elsewhere.
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   std::string line;

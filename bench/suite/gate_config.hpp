@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// How far a measure may get worse: the greater of the two limits. Both 0: not at all.
+/// How much worse a measure may get: the greater of the two limits. If both are 0, not at all.
 struct Tolerance {
   double absolute = 0;  ///< in the measure's unit
   double relative = 0;  ///< of the baseline's median

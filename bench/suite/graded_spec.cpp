@@ -18,7 +18,7 @@ void check_edges(const YamlReader& node, const std::vector<double>& edges) {
   if (edges.size() < 2) node.fail("are the edges of bins: at least two are needed");
   for (std::size_t i = 1; i < edges.size(); ++i)
     if (edges[i] <= edges[i - 1])
-      node.fail(fmt::format("{} follows {}: edges must grow", edges[i], edges[i - 1]));
+      node.fail(fmt::format("{} follows {}: edges must increase", edges[i], edges[i - 1]));
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ GradedSpec read_graded(YamlReader node) {
   const std::size_t queries =
       bins(graded.distance_m) * bins(graded.angle_deg) * graded.per_bin * graded.speed.size();
   if (queries > kMostQueries)
-    node.fail(fmt::format("asks {} in each place, at most {} can be",
+    node.fail(fmt::format("asks {} in each place, at most {} are allowed",
                           counted(queries, "query", "queries"), kMostQueries));
   return graded;
 }

@@ -13,12 +13,12 @@ namespace mh {
 /// Queries drawn by their distance and angle from the nearest mapped view, the same number in each
 /// cell of a grid of both.
 struct GradedSpec {
-  std::vector<double> distance_m, angle_deg;  ///< edges of the bins, growing
-  std::size_t per_bin = 10;                   ///< queries of each pair of bins
+  std::vector<double> distance_m, angle_deg;  ///< edges of the bins, increasing
+  std::size_t per_bin = 10;                   ///< queries in each pair of bins
   std::uint64_t seed = 0;                     ///< of the draw
-  /// Where mapping was a scan by hand: its multiples at which each query's scan is played.
+  /// If mapping was a handheld scan: multiples of its speed at which each query's scan is played.
   std::vector<double> speed = {1.0};
-  /// A view of which the mapped frames show less (share of its surface) is counted, not asked.
+  /// A view is counted, not asked, if the mapped frames show less than this share of its surface.
   double least_shown = 0.05;
   friend bool operator==(const GradedSpec&, const GradedSpec&) = default;
 };
@@ -28,18 +28,18 @@ void fields(G& graded, Visit& v) {
   auto& [distance_m, angle_deg, per_bin, seed, speed, least_shown] = graded;
   using setting::required;
   v("distance_m", distance_m, required({0, 100}),
-    "edges of the bins of distance from the nearest mapped view");
-  v("angle_deg", angle_deg, required({0, 180}), "edges of the bins of angle from it");
-  v("per_bin", per_bin, {1, 1000}, "queries of each pair of bins");
-  v("seed", seed, setting::kSeed, "of the draw");
+    "edges of the bins of the distance from the nearest mapped view");
+  v("angle_deg", angle_deg, required({0, 180}), "edges of the bins of the angle from it");
+  v("per_bin", per_bin, {1, 1000}, "queries in each pair of bins");
+  v("seed", seed, setting::kSeed, "seed of the draw");
   v("speed", speed, {0.1, 10},
-    "multiples of the speed at which each query's scan by hand is played");
+    "multiples of the speed at which each query's handheld scan is played");
   v("least_shown", least_shown, {0, 1},
-    "a view of which the mapped frames show less (share of its surface) is counted, not asked");
+    "a view is counted, not asked, if the mapped frames show less than this share of its surface");
 }
 
-/// Index of the bin that a value falls into; the number of bins if into none. Bins contain their
-/// lower edge.
+/// Index of the bin that a value falls into; the number of bins if it falls into none. Bins contain
+/// their lower edge.
 std::size_t bin_of(const std::vector<double>& edges, double value);
 inline std::size_t bins(const std::vector<double>& edges) {
   return edges.empty() ? 0 : edges.size() - 1;

@@ -30,10 +30,10 @@ struct InputDigest {
   /// scene, robot, mapping_tour, query_tour, vocabulary, level; "SYSTEM: WORD" for a file or a
   /// variable that an outside program's command names.
   std::string name;
-  /// Of everything that was read for it, and of what was looked for but not found
+  /// Digest of everything that was read for it, and of what was looked for but not found
   /// (bench/suite/inputs.hpp).
   std::uint64_t digest = 0;
-  std::vector<FileDigest> files = {};  ///< that were read, sorted, without duplicates
+  std::vector<FileDigest> files = {};  ///< files that were read, sorted, without duplicates
   friend bool operator==(const InputDigest&, const InputDigest&) = default;
 };
 

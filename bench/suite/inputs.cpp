@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file's path relative to the folder of what names it, so that it does not depend on where that
-/// is.
+/// A file's path relative to the folder of the source that names it, so that it does not depend on
+/// where that folder is.
 std::string name_from(const fs::path& source, const fs::path& file) {
   if (is_generated(source)) return file.filename().string();
   std::error_code error;
@@ -35,7 +35,7 @@ std::string name_from(const fs::path& source, const fs::path& file) {
   return fs::absolute(file, error).lexically_normal().lexically_relative(folder).generic_string();
 }
 
-/// Equal words: equal reading, so that one file is read once.
+/// The names of the kinds: a file is read once per kind.
 constexpr Names<SourceKind, 6> kKinds{{{"scene", SourceKind::kScene},
                                        {"motion", SourceKind::kMotion},
                                        {"tour", SourceKind::kTour},
@@ -77,7 +77,7 @@ std::vector<InputDigest> inputs_of_program(const SystemSpec& system) {
 std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
   std::vector<InputDigest> inputs;
   if (e.is_recorded()) {
-    // Its content depends on the files next to it, too.
+    // What is read of a recording depends on the files given with it, too.
     const std::string beside = fmt::format("{} {} {}", e.settings.value_or("").string(),
                                            e.classes.value_or("").string(), e.topics);
     const auto add = [&](const char* name, const std::string& sequence) {
@@ -96,7 +96,7 @@ std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
     return inputs;
   }
   for (const bool of_scenes :
-       {false, true})  // they take the longest: what else is wrong is said first
+       {false, true})  // scenes take the longest: other errors are reported first
     sources(e, [&](const WorldSource& source, const std::optional<fs::path>& path) {
       if (path && (source.kind == SourceKind::kScene) == of_scenes)
         inputs.push_back(this->source(source.key, source.kind, *path, e.frame));
@@ -155,8 +155,8 @@ bool InputReader::share_images(const std::string& a, const std::string& b) const
 std::shared_ptr<const Scene> InputReader::scene(const fs::path& file, const SceneFrame& frame) {
   if (scene_ == nullptr || scene_source_ != std::pair(file, frame)) {
     say_(fmt::format("reading {}", file.string()));
-    forget_scene();                     // before the next: two may not fit in memory
-    std::vector<std::string> warnings;  // reported only here: the runs load it again
+    forget_scene();                     // before loading the next: two may not fit in memory
+    std::vector<std::string> warnings;  // reported only here: the runs load the scene again
     scene_ = std::make_shared<const Scene>(load_scene(file, &warnings, frame));
     scene_source_ = {file, frame};
     for (const std::string& warning : warnings) warn(warning);
@@ -180,7 +180,7 @@ void InputReader::load(SourceKind kind, const fs::path& file, const SceneFrame& 
     case SourceKind::kScene:
       if (is_generated(file))  // depends only on its name; expensive to create
         return static_cast<void>(parse_generated(file.string()));
-      forget_scene();  // only what is read is noted
+      forget_scene();  // to read it again: only what is read is noted
       return static_cast<void>(scene(file, frame));
     case SourceKind::kMotion:
       return check_motion(file);

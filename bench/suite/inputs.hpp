@@ -37,11 +37,11 @@ auto noted(std::vector<InputDigest>& inputs, std::string name, const std::filesy
 /// outside systems only.
 std::vector<InputDigest> inputs_of_program(const SystemSpec& system);
 
-/// Reads the inputs of runs before they start, each source once. The digests are those that
-/// build_world() will note.
+/// Reads the inputs of runs before they start, each source once. The digests equal those that
+/// build_world() will record.
 class InputReader {
  public:
-  /// @param say  receives which scene is being read
+  /// @param say  receives what is being read, and warnings
   explicit InputReader(std::function<void(std::string_view)> say = [](std::string_view) {})
       : say_(std::move(say)) {}
 
@@ -53,18 +53,18 @@ class InputReader {
   /// Only those of the variants of episodes.
   std::vector<InputDigest> inputs_of(const EpisodesSpec& episodes);
 
-  /// One of them alone.
+  /// A single input.
   InputDigest level(const std::filesystem::path& file);
   InputDigest vocabulary(const std::filesystem::path& file);
   InputDigest detector(const DetectorSpec& spec);
   const std::vector<InputDigest>& program(const SystemSpec& system);
 
   /// Whether two recordings have most images of the shorter one in common, whatever their files are
-  /// called. @pre inputs_of() their environments
+  /// called. @pre inputs_of() was called for their environments
   bool share_images(const std::string& a, const std::string& b) const;
 
-  /// Returns a scene by its file, not lit; the last one requested is cached. Repairs made to it are
-  /// reported once, a line each.
+  /// Returns the scene in a file, without light; the last one requested is cached. Each repair made
+  /// to it is reported once.
   std::shared_ptr<const Scene> scene(const std::filesystem::path& file, const SceneFrame& frame);
   void forget_scene() { scene_.reset(); }  ///< frees its memory
 

@@ -21,9 +21,9 @@
 #include "slam/io/setting.hpp"
 #include "slam/io/words.hpp"
 
-// Records as JSON, by their lists of fields (slam/io/fields.hpp). Values that are unknown or not
-// finite become null, a digest 16 hexadecimal digits, a pose [x, y, z, qx, qy, qz, qw], a word that
-// of words(value).
+// Records as JSON, via their lists of fields (slam/io/fields.hpp). Values that are unknown or not
+// finite become null, a digest becomes 16 hexadecimal digits, a pose [x, y, z, qx, qy, qz, qw], an
+// enumerator its word in words(value).
 
 namespace mh {
 

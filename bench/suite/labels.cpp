@@ -33,7 +33,7 @@ std::string with_labels(const Labels& labels) {
 
 namespace {
 
-/// A name that is no kind of labels.
+/// Returns the name if it is valid and not a kind of labels.
 std::string own_name(const YamlReader& node, const std::string& called) {
   check_folder_name(node, called);
   if (value_of(called, words(LabelMode{})))

@@ -26,13 +26,13 @@ constexpr std::string_view name(LabelMode labels) {
   return name_of(labels, words(labels));
 }
 
-/// The origin of a run's labels: a kind that is drawn of a scene or recorded, or a real detector,
-/// whose labels replace those of the frames (then the kind is kNone). A kind that is drawn may have
-/// faults of its own: a dose of them.
+/// The origin of a run's labels: a kind that is rendered from a scene or recorded, or a real
+/// detector, whose labels replace those of the frames (the kind is then kNone). A rendered kind may
+/// have label noise of its own, called a dose.
 struct Labels {
   LabelMode mode = LabelMode::kNone;
   std::optional<DetectorSpec> detector = {};
-  std::optional<LabelNoiseConfig> dials = {};  ///< in place of the level's
+  std::optional<LabelNoiseConfig> dials = {};  ///< label noise in place of the level's
   std::string called = {};  ///< name of a detector or a dose in reports, unique in its suite
 
   Labels() = default;
@@ -53,20 +53,20 @@ void fields(L& labels, Visit& v) {
   v("called", called);
 }
 
-/// "exact", "none"; the own name of a detector or a dose.
+/// "exact", "none"; for a detector or a dose, its own name.
 std::string name(const Labels& labels);
 /// "exact labels", "labels from boxes", "no labels", "labels from yolox_nano", "exact labels,
 /// confused_25"
 std::string with_labels(const Labels& labels);
 
-/// Reads a kind of labels; or a mapping: `of` (a kind that is drawn of a scene), `name` and fields
-/// of LabelNoiseConfig, or that of read_detector() with `name`, which defaults to that of the
-/// network's or the boxes' file.
+/// Reads a kind of labels, or a mapping: either `of` (a kind that is rendered from a scene), `name`
+/// and fields of LabelNoiseConfig, or the fields of read_detector() and `name`, which defaults to
+/// the name of the network's or the boxes' file.
 /// @param folder  what its paths are relative to
 /// @throws InputError naming file, line and value
 Labels read_label_source(YamlReader node, const std::filesystem::path& folder);
 
-/// The sensors of a level as a run with these labels has them.
+/// A level's sensors with the labels' own noise, if they have any.
 SensorConfig with_dials(SensorConfig level, const Labels& labels);
 
 /// The file that a detector is named after: its network or its boxes.

@@ -14,14 +14,14 @@
 
 namespace mh {
 
-/// The elements of a list. @throws InputError if there is none.
+/// The elements of a list. @throws InputError if it is empty.
 inline std::vector<YamlReader> items_of(const YamlReader& node) {
   std::vector<YamlReader> items = node.items();
   if (items.empty()) node.fail("is empty: at least one is needed");
   return items;
 }
 
-/// @param values  of the items of the list. @throws InputError at the first that repeats another.
+/// @param values  of the list's items. @throws InputError at the first that repeats an earlier one.
 template <class T>
 void require_distinct(const YamlReader& list, const std::vector<T>& values) {
   const std::vector<YamlReader> items = list.items();

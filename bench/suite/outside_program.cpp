@@ -19,7 +19,7 @@ constexpr std::string_view kOfDataset[] = {"dataset", "associations", "settings"
                                            "labels",  "trajectory",   "seed"};
 constexpr std::string_view kOfConversation[] = {"settings", "seed"};
 
-/// Copies text, replacing each {word} by what `replace` returns. A brace after a dollar sign
+/// Copies text, replacing each {word} with what `replace` returns. A brace after a dollar sign
 /// belongs to the shell.
 std::string replace_placeholders(std::string_view text,
                                  const std::function<std::string(std::string_view)>& replace) {
@@ -42,9 +42,10 @@ std::string replace_placeholders(std::string_view text,
   return result;
 }
 
-/// The first placeholder within single quotes, or within double quotes without a blank next to it,
-/// as written: the quotes of its value would end the former and be literal in the latter. A command
-/// for another shell ("sh -c") has blanks and may contain some. Empty if there is none.
+/// The first part of a command in single quotes, or in double quotes and without a space, that
+/// contains a placeholder: the quotes around its value would end the former and be literal in the
+/// latter. A command for another shell ("sh -c") contains spaces and may contain placeholders.
+/// Empty if there is none.
 std::string quoted_placeholder(const std::string& command) {
   for (std::size_t at = command.find_first_of("'\"\\"); at < command.size();
        at = command.find_first_of("'\"\\", at)) {
@@ -98,9 +99,9 @@ void validate(const OutsideProgram& program) {
     return std::string();
   });
   if (const std::string quoted = quoted_placeholder(program.command); !quoted.empty())
-    fail(fmt::format("{} stands within quotes: its value comes quoted", quoted));
+    fail(fmt::format("{} is inside quotes: its value is already quoted", quoted));
   if (dataset && !writes_trajectory)
-    fail("{trajectory} is missing: where is it to write its poses?");
+    fail("{trajectory} is missing: where should the program write its poses?");
 }
 
 std::string described(const OutsideProgram& program) {

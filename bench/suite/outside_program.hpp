@@ -16,7 +16,7 @@ namespace mh {
 /// How the bench communicates with an outside system.
 enum class OutsideMode {
   kTrajectory,    ///< receives a recorded folder, writes a trajectory
-  kConversation,  ///< receives frame after frame over standard input and output
+  kConversation,  ///< receives frames one at a time over standard input, replies on standard output
 };
 constexpr Names<OutsideMode, 2> words(OutsideMode) {
   return {{{"trajectory", OutsideMode::kTrajectory}, {"conversation", OutsideMode::kConversation}}};
@@ -33,13 +33,12 @@ struct OutsideProgram {
   OutsideMode mode = OutsideMode::kTrajectory;
   std::filesystem::path folder = ".";  ///< the suite's: where the command runs
   double run_limit_s = 3600, reply_limit_s = 60, memory_limit_mb = 0, disk_limit_mb = 4096;
-  /// Files that it reads in addition to those that the command names, relative to its folder.
+  /// Files that it reads in addition to those that the command names, relative to `folder`.
   std::vector<std::string> inputs = {};
-  /// A shared library in place of a command, relative to the folder: modelhouse-library-host speaks
-  /// for it.
+  /// A shared library in place of a command, relative to `folder`: modelhouse-library-host runs it.
   std::string library = {};
-  std::string settings = {};  ///< of the library, relative to the folder; empty: none
-  /// Files and folders that it must not see; not from the suite.
+  std::string settings = {};  ///< of the library, relative to `folder`; empty: none
+  /// Files and folders that it must not see; not read from the suite.
   std::vector<std::filesystem::path> hidden = {};
   std::string place = {};  ///< "suite.yaml:12", for messages; empty: not from a file
   bool is_library() const { return !library.empty(); }
@@ -49,8 +48,8 @@ struct OutsideProgram {
 /// "outside program 'orb' (./orb {settings})", "outside library 'mine' (libmine.so)": for messages.
 std::string described(const OutsideProgram& program);
 
-/// Lists the limits of a program: visit(key, value, range, meaning, the only mode that it applies
-/// to; none: both).
+/// Lists the limits of a program: visit(key, value, range, meaning, mode), where `mode` is the only
+/// one that the limit applies to; absent: both.
 template <MaybeConst<OutsideProgram> P, class Visit>
 void limits(P& p, Visit&& visit) {
   const auto both = std::optional<OutsideMode>();
@@ -68,7 +67,8 @@ void limits(P& p, Visit&& visit) {
         both);
 }
 
-/// What describes it to another process: all but what only the process that starts it knows.
+/// Describes it to another process: all members but `hidden` and `place`, which only the process
+/// that starts it uses.
 template <MaybeConst<OutsideProgram> P, class Visit>
 void fields(P& program, Visit& v) {
   auto& [name, command, mode, folder, run_limit_s, reply_limit_s, memory_limit_mb, disk_limit_mb,
@@ -98,7 +98,7 @@ std::string shell_quoted(std::string_view value);
 std::string expand_command(
     std::string_view command,
     const std::vector<std::pair<std::string_view, std::string>>& placeholders);
-/// The same for one placeholder; the others stay.
+/// Like expand_command(), but for one placeholder; the others stay.
 std::string fill_in(std::string_view command, std::string_view placeholder, std::string_view value);
 
 }  // namespace mh

@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// Reported facts of a path. NaN: unknown, since the path was cut or recorded.
+/// Reported facts about a path. NaN: unknown, since the path was cut or recorded.
 struct PathFacts {
   std::size_t frames = 0;
   std::size_t true_poses = 0;  ///< frames whose true pose is known
@@ -30,11 +30,11 @@ void fields(P& path, Visit& v) {
   v("max_penetration_m", max_penetration_m);
 }
 
-/// Graded queries of one pair of bins, by index.
+/// Graded queries in one pair of bins, given by their indices.
 struct GradedCell {
   std::size_t distance = 0, angle = 0;
-  std::size_t asked = 0;   ///< poses, each at every speed
-  std::size_t hidden = 0;  ///< drawn, but the mapped frames show nothing of what they see
+  std::size_t asked = 0;   ///< poses, each asked at every speed
+  std::size_t hidden = 0;  ///< drawn, but the mapped frames show too little of what they see
 };
 
 template <MaybeConst<GradedCell> C, class Visit>
@@ -46,7 +46,7 @@ void fields(C& cell, Visit& v) {
   v("hidden", hidden);
 }
 
-/// What a run records of its place, so that its results can be read without the world.
+/// What a run records about its place, so that its results can be read without the world.
 struct PlaceFacts {
   std::string scene, robot;  ///< their names
   std::uint64_t scene_digest = 0, path_digest = 0, vocabulary_digest = 0;
@@ -55,8 +55,8 @@ struct PlaceFacts {
   std::optional<PathFacts> query_tour;
   std::vector<GradedCell> graded = {};  ///< empty: no graded queries
   bool cut = false;                     ///< the tours were cut after RunSpec::max_frames
-  /// What of its recordings could not be used, or was repaired, one line each, without the place
-  /// where they lie.
+  /// A line about each part of its recordings that could not be used or was repaired, without their
+  /// path.
   std::vector<std::string> notes = {};
   std::vector<InputDigest> inputs;
 };

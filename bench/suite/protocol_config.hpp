@@ -32,9 +32,9 @@ constexpr std::array<std::pair<std::string_view, OnFailure>, 2> words(OnFailure)
 /// What a query's answer is compared with.
 enum class QueryTruth {
   kLocal,  ///< the nearest mapped frame's estimate, propagated to the query by the true motion
-  /// Interpolated by time between the estimates of the mapped frames before and after (section 3.2
+  /// Interpolated in time between the estimates of the mapped frames before and after (section 3.2
   /// of the paper: "based on the camera poses with neighboring frames"). Needs no ground truth, but
-  /// inherits the errors of the estimates. Without two near neighbors: kLocal.
+  /// inherits the errors of the estimates. Without two near neighbors, kLocal applies.
   kInterpolated,
 };
 
@@ -42,10 +42,10 @@ constexpr std::array<std::pair<std::string_view, QueryTruth>, 2> words(QueryTrut
   return {{{"local", QueryTruth::kLocal}, {"interpolated", QueryTruth::kInterpolated}}};
 }
 
-/// What the attempts of one query differ in. RANSAC's draws differ in any case.
+/// How the attempts of one query differ. RANSAC's draws differ in any case.
 enum class Attempts {
   kSameFrame,  ///< the same frame again, with its noise
-  kNewNoise,   ///< the same moment rendered with independent noise in every attempt
+  kNewNoise,   ///< the same view with independent noise in every attempt
 };
 
 constexpr std::array<std::pair<std::string_view, Attempts>, 2> words(Attempts) {
@@ -72,7 +72,7 @@ struct ProtocolConfig {
   friend bool operator==(const ProtocolConfig&, const ProtocolConfig&) = default;
 };
 
-/// What only queries depend on: maps made under other values are the same.
+/// Settings that affect only queries: maps made with different values are the same.
 inline constexpr const char* kProtocolOfQueries[] = {"query_attempts",    "attempts",
                                                      "max_blank_frames",  "correct_distance_m",
                                                      "correct_angle_deg", "truth"};
@@ -96,21 +96,19 @@ void fields(C& c, Visit& v) {
     "when tracking is lost, the feed goes back (rewind) or on (continue)");
   v("rewind_frames", rewind_frames, {1, 100000}, "how far the feed goes back after a failure");
   v("restarts_per_frame", restarts_per_frame, {0, 1000},
-    "failed restarts after which the frame that failed is dropped");
+    "failed restarts after which the failing frame is dropped");
   v("reset", reset, {},
-    "after a dropped frame: set the count of restarts to zero (counter), or discard the map too "
-    "(map)");
+    "after a dropped frame: reset the count of restarts (counter), or discard the map, too (map)");
   v("hopeless_after", hopeless_after, {0, 100000},
-    "frames dropped in a row after which those that follow are shown once, until one is tracked; "
-    "0: "
-    "never");
+    "after this many frames dropped in a row, each frame is shown only once until one is tracked; "
+    "0: never");
   v("max_effort", max_effort, {1, 1000},
     "mapping stops after this many track calls per frame of the sequence");
-  v("query_attempts", query_attempts, {1, 1000}, "times that a test frame is shown");
+  v("query_attempts", query_attempts, {1, 1000}, "how many times a test frame is shown");
   v("attempts", attempts, {},
-    "they repeat the same frame (same_frame), or show its moment with new noise (new_noise)");
+    "repeat the same frame (same_frame), or show the same view with new noise (new_noise)");
   v("max_blank_frames", max_blank_frames, {1, 100000},
-    "blank frames shown at most until the system is lost");
+    "blank frames shown until the system is lost, at most");
   v("correct_distance_m", correct_distance_m, setting::kLength_m,
     "largest position error of a correct answer");
   v("correct_angle_deg", correct_angle_deg, {0, 180}, "largest rotation error of a correct answer");

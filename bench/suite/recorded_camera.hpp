@@ -22,12 +22,12 @@ std::function<RecordedCamera(const std::filesystem::path&)> camera_reader(Settin
 /// Whether a settings file has a camera. @throws InputError if it is not a settings file.
 bool settings_have_camera(const std::filesystem::path& file);
 
-/// The value of a depth pixel at one meter, if a settings file states it. @throws InputError if it
-/// is not a settings file.
+/// The value of a depth pixel at one meter, if the settings file states it. @throws InputError if
+/// it is not a settings file.
 std::optional<double> stated_depth_per_meter(const std::filesystem::path& file);
 
 /// The same configuration, with calibrations read from settings files.
-/// @param read  receives all settings in the one that has the camera; may be null
+/// @param read  receives all settings in the file that has the camera; may be null
 RecordingConfig with_settings(RecordingConfig config, Settings* read);
 
 /// Opens one of an environment's recordings, by its name, and digests all of it.

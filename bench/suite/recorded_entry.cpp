@@ -36,7 +36,7 @@ std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int i
       node.fail(error.what());
     }
   }();
-  if (!is_there(found)) node.fail(fmt::format("'{}' is not there", found.string()));
+  if (!is_there(found)) node.fail(fmt::format("'{}' does not exist", found.string()));
   if (reader.is_of_folders() && !is_folder(found))
     node.fail(fmt::format("'{}' is not a folder", found.string()));
   if (topics && !reader.has_topics)
@@ -66,7 +66,7 @@ struct BesideFrames {
     if (topics) check_topics(*topics);
     const auto refuse = [&](const char* key) {
       if (const auto other = node.find(key))
-        other->fail("is of a simulated scene: a recording brings its own");
+        other->fail("is for simulated scenes: a recording has its own");
     };
     const Environment none;
     sources(none, [&](const WorldSource& source, const auto&) { refuse(source.key); });
@@ -89,8 +89,8 @@ Environment recorded_environment(std::string name, std::string category, std::st
   return e;
 }
 
-/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording,
-/// and a pattern that matches nothing, which is an error unless it may.
+/// Finds the recordings that match a pattern, sorted by name; notes folders without a recording. A
+/// pattern that matches nothing is an error, or only noted if `may_be_absent`.
 std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const SuitePaths& paths,
                                             bool may_be_absent, std::vector<std::string>& notes) {
   const auto [layout, path] = split_sequence(pattern.as_string());
@@ -105,7 +105,7 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
     } catch (const InputError& error) {
       pattern.fail(error.what());
     }
-    if (!is_there(place)) pattern.fail(fmt::format("'{}' is a link to nothing", place.string()));
+    if (!is_there(place)) pattern.fail(fmt::format("'{}' is a broken link", place.string()));
     const auto readers = sequence_readers();
     const auto reader = std::ranges::find_if(readers, [&](const SequenceReader* r) {
       return (layout.empty() || layout == r->name) && r->recognizes(place);
@@ -113,12 +113,12 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
     if (reader != readers.end())
       found.push_back({join_sequence(layout, place),
                        (*reader)->scene_type ? (*reader)->scene_type(place) : ""});
-    else if (is_folder(place))  // a file is a list or a table next to the recordings
+    else if (is_folder(place))  // files are lists or tables next to the recordings
       others.push_back(name);
   }
   if (found.empty() && !may_be_absent)
     pattern.fail(fmt::format("no recording matches '{}'", full.string()));
-  if (found.empty()) notes.push_back(fmt::format("{}: left out: not there", full.string()));
+  if (found.empty()) notes.push_back(fmt::format("{}: left out: it does not exist", full.string()));
   if (!others.empty())
     notes.push_back(fmt::format("{}: left out: {} without a recording, the first: {}",
                                 pattern.as_string(), counted(others.size(), "folder"), others[0]));
@@ -175,13 +175,13 @@ std::vector<Environment> read_pattern_entry(YamlReader node, const SuitePaths& p
   if (categories.empty()) node.string("category");  // reports that it is missing
   std::optional<std::string> fixed;
   if (const auto category = node.find("category")) {
-    if (!categories.empty()) category->fail("stands beside `categories`: one of them is enough");
+    if (!categories.empty()) category->fail("is given together with `categories`: give only one");
     check_folder_name(*category, category->as_string());
     fixed = category->as_string();
   }
   const bool may_be_absent = node.boolean("may_be_absent", false);
   const BesideFrames beside(node, paths);
-  if (beside.queries) beside.queries->fail("is of one recording, not of a pattern");
+  if (beside.queries) beside.queries->fail("is for one recording, not for a pattern");
   node.finish();
 
   const std::string text = pattern.as_string();

@@ -17,8 +17,8 @@ std::vector<Environment> read_recorded_entry(YamlReader node, const SuitePaths& 
 std::vector<Environment> read_pattern_entry(YamlReader node, const SuitePaths& paths,
                                             Environments& all);
 
-/// The path of a recording in one form, however it was written: without a trailing slash and, if
-/// `paths.must_exist`, with links resolved.
+/// The path of a recording in canonical form: without a trailing slash and, if `paths.must_exist`,
+/// with links resolved.
 std::string place_of(const std::string& sequence, const SuitePaths& paths);
 
 }  // namespace mh

@@ -15,13 +15,13 @@ namespace mh {
 /// @param inputs  what was read for it (bench/suite/inputs.hpp)
 std::string run_key(const RunSpec& spec, std::span<const InputDigest> inputs);
 
-/// Checks that what was read for a run is what its key was made of.
+/// Checks that what was read for a run matches its key.
 /// @throws InputChanged naming the run.
 void require_key(const RunSpec& spec, std::span<const InputDigest> read, const std::string& key);
 [[noreturn]] void throw_changed(const RunSpec& spec);
 
-/// The same for a run's finished map: omits what affects only its queries, so that runs that differ
-/// in nothing else share the map.
+/// Like run_key(), but for a run's finished map: omits what affects only its queries, so that runs
+/// that differ in nothing else share the map.
 std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs);
 
 /// The spec as stored with a result: names instead of paths, so that it does not depend on where

@@ -25,14 +25,14 @@ struct RunSpec {
   int trial = 0;
   std::uint64_t seed = 0;  ///< of the trial
   SharedSlamConfig slam;   ///< mapping settings; neutral for the plain system
-  /// Settings of the queries: for each, one pass over all queries on the same map. At least one.
+  /// Settings of the queries, at least one: each gets a pass over all queries on the same map.
   std::vector<SemanticConfig> points;
   ProtocolConfig protocol;
   std::vector<Sense> senses = {};
   std::optional<GradedSpec> graded = {};
   std::optional<EpisodesSpec> episodes = {};  ///< asked after the queries
-  /// Of the frames of a run with episodes: they make the objects of the robot's map, even if the
-  /// system sees none.
+  /// Labels of the frames of a run with episodes: the objects of the robot's map are made from
+  /// them, even if the system sees no labels.
   Labels map_labels = {};
   std::optional<std::size_t> max_frames;
 };
@@ -66,8 +66,7 @@ nlohmann::ordered_json to_json(const RunSpec& spec);
 /// The inverse. @throws InputError if the JSON was not created by to_json.
 RunSpec run_spec_from_json(const nlohmann::ordered_json& json);
 
-/// The labels that the frames of a run are made with. A system without labels is shown none of
-/// them.
+/// The labels that the frames of a run are made with. A system without labels is shown none.
 inline const Labels& labels_of_frames(const RunSpec& run) {
   return run.episodes ? run.map_labels : run.labels;
 }
@@ -81,8 +80,8 @@ std::vector<SharedSlamConfig> parameter_points(const Suite& suite);
 
 /// Returns every run, ordered by environment, level, trial, parameters, system, labels. The plain
 /// system never uses labels (its own test checks this), so it runs once and is compared with every
-/// kind of label. A parameter that a system ignores adds no runs and no points for it: of a sweep,
-/// the plain system takes the points that differ in alpha or beta, an outside program none.
+/// kind of label. A parameter that a system ignores adds no runs and no points for it: from a
+/// sweep, the plain system takes the points that differ in alpha or beta, an outside program none.
 std::vector<RunSpec> expand(const Suite& suite);
 
 }  // namespace mh

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Files = std::map<std::string, fs::path>;
 
-/// Lists files below `folder` with the extension, by name; `nested`: one folder deeper.
+/// Adds the files in `folder` that have this extension, by name.
 void collect(const fs::path& folder, std::string_view ending, Files& files) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))
@@ -116,7 +116,7 @@ fs::path data_folder() {
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     const fs::path installed = (program.parent_path() / MH_DATA_FROM_PROGRAM).lexically_normal();
     if (!error && fs::is_directory(installed / "bench/suites", error)) return installed;
-    // In the Python package, which is installed among the data.
+    // The Python package is installed among the data.
     if (Dl_info here{}; dladdr(reinterpret_cast<const void*>(&data_folder), &here) != 0) {
       const fs::path data =
           (fs::absolute(here.dli_fname).parent_path() / "../..").lexically_normal();

@@ -11,18 +11,20 @@ namespace mh {
 enum class Shipped { kSuite, kScene, kTour, kRobot, kLevel, kVocabulary, kSettings };
 
 /// The folder that contains bench/suites, scenes, robots, sim/sensors/levels and assets: that of
-/// the installed package next to the executable (../share/modelhouse), otherwise the source tree.
+/// the installed package next to the executable (../share/modelhouse) or of the Python package,
+/// otherwise the source tree.
 std::filesystem::path data_folder();
 
-/// The names of everything shipped of a kind, in alphabetical order: a file's name without its
-/// extension; model_house for the scene house.yaml in its folder, model_house/mapping for a tour in
-/// the folder tours next to it.
+/// The names of everything of a kind that is shipped, in alphabetical order: a file's name without
+/// its extension; for a scene house.yaml, the name of its folder (model_house); for a tour in
+/// `tours` next to it, both (model_house/mapping).
 std::vector<std::string> shipped_names(Shipped what);
 
 /// The file that a user's word refers to: the file of that name if it exists, otherwise what is
 /// shipped under that name ("pepper") or path ("bench/suites/ci.yaml"). A path that does not exist
 /// is returned unchanged, for its reader to refuse.
-/// @throws InputError if a word without '/' and '.' is neither, with suggestions.
+/// @throws InputError with suggestions if a word without '/' and '.' is neither a file nor a
+/// shipped name.
 std::filesystem::path find_shipped(const std::string& word, Shipped what);
 
 /// The file shipped under that name; empty if there is none.

@@ -66,7 +66,7 @@ Environment& only_environment(Suite& suite, const char* option) {
     throw InputError(fmt::format("{}: {} needs a suite of one environment, this has {}",
                                  suite.file.string(), option, suite.environments.size()));
   if (suite.environments.front().is_recorded())
-    throw InputError(fmt::format("{}: {} is of scenes, and '{}' is a recording",
+    throw InputError(fmt::format("{}: {} is for scenes, but '{}' is a recording",
                                  suite.file.string(), option, suite.environments.front().name));
   return suite.environments.front();
 }
@@ -81,7 +81,7 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
       levels.push_back(named_file(level, paths, Shipped::kLevel));
       const std::string name = level_name(levels.back());
       if (!names.insert(name).second) level.fail(fmt::format("'{}' is listed twice", name));
-      if (name == kRecordedLevel) level.fail("is what the level of recordings is called");
+      if (name == kRecordedLevel) level.fail("is reserved for the level of recordings");
     }
   } else if (const auto named = yaml.find("levels")) {
     named->fail("are settings of simulated sensors: a suite of recordings has none");
@@ -90,13 +90,14 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
   return levels;
 }
 
-/// Boxes of files are of the frames of one sequence.
+/// Boxes from a file belong to the frames of one sequence, so no environment may have a second.
 void check_boxes(const YamlReader& node, const Labels& labels, const Suite& suite) {
   if (!labels.detector || labels.detector->boxes.empty()) return;
   for (const Environment& e : suite.environments)
     if (e.query_tour || e.queries)
       node.fail(fmt::format(
-          "boxes are of the frames of one sequence, and '{}' has a second to be queried", e.name));
+          "boxes belong to the frames of one sequence, but '{}' has a second one for queries",
+          e.name));
 }
 
 /// Reads the kinds of labels: each must fit some environment, and each environment needs at least
@@ -116,7 +117,7 @@ std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
       continue;
     node.fail(labels.mode == LabelMode::kRecorded
                   ? "'recorded' labels are a recording's (`sequence`), and no environment is one"
-                  : fmt::format("'{}' labels are drawn of a simulated scene; recordings have "
+                  : fmt::format("'{}' labels are rendered from a simulated scene; recordings have "
                                 "'recorded' ones, a detector's or 'none'",
                                 name(labels)));
   }
@@ -128,8 +129,8 @@ std::vector<Labels> read_labels(const YamlReader& list, const Suite& suite,
   return all;
 }
 
-/// A study states its design before its evaluation begins, and its suite names that text by digest:
-/// a design that changed meanwhile is refused.
+/// A study states its design before its evaluation begins, and its suite gives the digest of that
+/// text: a design that has changed since is refused.
 void check_design(YamlReader study, const SuitePaths& paths) {
   const fs::path file = named_file(study.at("design"), paths);
   const std::string stated = study.string("xxh3");
@@ -160,12 +161,12 @@ std::string value_of(const std::string& name, const SuiteOverrides& overrides) {
   const auto value = overrides.set.find(name);
   if (value == overrides.set.end())
     throw InputError(fmt::format(
-        "'${{{0}}}' is not set: --set {0}=VALUE does{1}", name,
+        "'${{{0}}}' is not set: use --set {0}=VALUE{1}", name,
         overrides.set.empty() ? "" : fmt::format(" (set is '{}')", overrides.set.begin()->first)));
   return value->second;
 }
 
-/// The section `parameters` that --vary stands for: on one map where that is possible.
+/// The section `parameters` that is equivalent to --vary: on one map if that is possible.
 YamlReader sweep_of(const std::map<std::string, std::string>& vary) {
   const bool fixed =
       std::ranges::all_of(vary, [](const auto& of) { return of.first.starts_with("semantics."); });
@@ -186,15 +187,15 @@ std::vector<Sense> read_senses(YamlReader& yaml, const std::vector<Environment>&
     for (const Environment& e : environments) {
       if (sense == Sense::kImu) continue;
       if (e.is_recorded() || !is_driven(e.mapping_tour))
-        node.fail(fmt::format("is of a robot that drives, and '{}' is {}", e.name,
-                              e.is_recorded() ? "a recording" : "mapped by hand"));
+        node.fail(fmt::format("is for a robot that drives, but '{}' is {}", e.name,
+                              e.is_recorded() ? "a recording" : "a handheld scan"));
     }
   }
   return senses;
 }
 
 /// Reads "ORB-SLAM2: {rgbd_dataset_freiburg1_desk: 0.016}" and so on. The names may be of
-/// environments that are not at hand.
+/// environments that are not available.
 std::map<std::string, std::map<std::string, double>> read_published_ate(YamlReader& yaml) {
   std::map<std::string, std::map<std::string, double>> published;
   if (auto systems = yaml.find("published_ate_m"))
@@ -232,7 +233,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     if (!asked.contains(name))
       throw InputError(
           fmt::format("{}: --set {}: nothing in it is called ${{{}}}{}", file.string(), name, name,
-                      is_setting(name) ? "; a setting of SLAM stands in the suite, under `slam:`"
+                      is_setting(name) ? "; SLAM settings go into the suite, under `slam:`"
                                        : did_you_mean(name, {asked.begin(), asked.end()})));
   const SuitePaths paths{file.parent_path(), files_must_exist, overrides.found};
 
@@ -284,10 +285,10 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
           "Sweep over tuning rooms, in a suite without 'study', and state the point chosen");
     if (!any_system_varies(suite))
       sweep->fail(
-          "no system of the suite uses what is varied: the plain one ignores what is of "
-          "labels, an outside one all settings of SLAM");
+          "no system of the suite uses what is varied: the plain one ignores settings of labels, "
+          "an outside one all SLAM settings");
   }
-  if (yaml.has("episodes")) suite.protocol = live_feed();  // nobody takes a robot back
+  if (yaml.has("episodes")) suite.protocol = live_feed();  // a driving robot cannot rewind
   SettingsReader protocol(yaml);
   protocol.section("protocol");
   fields(suite.protocol, protocol);
@@ -298,7 +299,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     for (const Environment& e : suite.environments)
       if (e.query_tour || e.queries) {
         suite.notes.push_back(
-            fmt::format("{}: protocol.test_interval is 0: no frame is queried, not even of the "
+            fmt::format("{}: protocol.test_interval is 0: no frame is queried, not even from the "
                         "second tour of '{}'",
                         file.string(), e.name));
         break;
@@ -309,13 +310,13 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     for (const Environment& e : suite.environments)
       if (e.is_recorded())
         graded->fail(
-            fmt::format("queries are drawn from a scene, and '{}' is a recording", e.name));
+            fmt::format("queries are drawn from a scene, but '{}' is a recording", e.name));
   }
   if (const auto episodes = yaml.find("episodes")) {
     suite.episodes = read_episodes(*episodes, paths);
     for (const Environment& e : suite.environments)
       if (e.is_recorded())
-        episodes->fail(fmt::format("a robot drives in a scene, and '{}' is a recording", e.name));
+        episodes->fail(fmt::format("a robot drives in a scene, but '{}' is a recording", e.name));
   }
   if (const auto check = yaml.find("check")) {
     std::vector<std::string> names_of_all;

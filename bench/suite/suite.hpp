@@ -30,13 +30,13 @@ constexpr Names<Published, 1> words(Published) {
   return {{{"table2", Published::kTable2}}};
 }
 
-/// What a robot's other sensors tell the systems under test.
+/// A robot's other sensors, whose readings are given to the systems under test.
 enum class Sense { kOdometry, kImu, kLaser };
 constexpr Names<Sense, 3> words(Sense) {
   return {{{"odometry", Sense::kOdometry}, {"imu", Sense::kImu}, {"laser", Sense::kLaser}}};
 }
 
-/// By which share of a system's answers it is judged.
+/// The share of a system's answers by which it is judged.
 enum class Measure { kCorrect, kSuccess };
 constexpr Names<Measure, 2> words(Measure) {
   return {{{"correct", Measure::kCorrect}, {"success", Measure::kSuccess}}};
@@ -69,36 +69,36 @@ struct Suite {
   SharedSlamConfig slam;
   Sweep sweep;
   ProtocolConfig protocol;
-  std::vector<Sense> senses;             ///< given while mapping, besides the camera
+  std::vector<Sense> senses;             ///< given while mapping, in addition to the camera
   std::optional<GradedSpec> graded;      ///< asked in every environment
-  std::optional<EpisodesSpec> episodes;  ///< the same, of a robot that drives by its map
+  std::optional<EpisodesSpec> episodes;  ///< also in every environment: a robot drives by its map
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;
   Measure measure = Measure::kCorrect;
   std::optional<double> non_inferiority_margin;
   std::optional<Published> published;
-  /// ATE (RMSE, m) that others published: system, then environment. Shown beside the measured ones.
+  /// ATE (RMSE, m) that others published, by system, then environment. Shown next to the measured
+  /// ones.
   std::map<std::string, std::map<std::string, double>> published_ate_m;
   GateConfig gate;                         ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;   ///< truncates the tours: for a quick look
   bool scene_replaced = false;             ///< SuiteOverrides::scene was set
   std::map<std::string, std::string> set;  ///< as in SuiteOverrides
   FoundRecordings found;                   ///< recordings that the suite's patterns matched
-  std::vector<std::string> notes;          ///< what it leaves out, one line each
+  std::vector<std::string> notes;          ///< a line about each thing left out
 };
 
 /// Lists the settings of a suite that are single values.
 template <MaybeConst<Suite> S, class Visit>
 void fields(S& suite, Visit& v) {
   v("trials", suite.trials, {1, 1000}, "repeats; trial t uses seed + t");
-  v("seed", suite.seed, setting::kSeed, "of the first trial");
+  v("seed", suite.seed, setting::kSeed, "seed of the first trial");
   v("measure", suite.measure, {},
-    "the share of a system's answers that decides which system is better; the other one is shown, "
-    "too");
+    "the share of a system's answers that decides which system is better; the other is shown, too");
   v("non_inferiority_margin", suite.non_inferiority_margin, setting::kShare,
-    "stated in advance: a system is not worse if the interval of its share minus the other's lies "
-    "above minus this");
+    "fixed in advance: a system is not worse if the interval of its share minus the other's lies "
+    "above the negative of this");
   v("published", suite.published, {}, "figures of the paper to show below the measured ones");
 }
 
@@ -110,7 +110,7 @@ struct SuiteOverrides {
   std::optional<std::size_t> max_frames = {};
   /// Values that replace `${name}` in the suite's text.
   std::map<std::string, std::string> set = {};
-  /// A sweep in the place of the section `parameters`: settings and their values, "500,1000".
+  /// A sweep in place of the section `parameters`: settings and their values, "500,1000".
   std::map<std::string, std::string> vary = {};
   /// For a suite read back from a results file: what its patterns found, so as not to search again.
   FoundRecordings found = {};

@@ -44,7 +44,8 @@ void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
     // Checked before allocation: two long lists would use all memory.
     const std::size_t count = sweep.points.size() * items.size();
     if (count > kMaxPoints)
-      list.fail(fmt::format("makes {}, at most {} can be", counted(count, "point"), kMaxPoints));
+      list.fail(
+          fmt::format("makes {}, at most {} are allowed", counted(count, "point"), kMaxPoints));
     std::vector<SlamConfig> points;
     for (const SlamConfig& point : sweep.points)
       for (const YamlReader& item : items) {
@@ -86,14 +87,14 @@ void read_sobol(YamlReader node, const SlamConfig& base, Sweep& sweep) {
   }
 }
 
-/// Refuses points at which gamma or a mass of labels would not act as stated.
+/// Refuses points at which gamma or a label mass would not have the effect that the suite states.
 void check_weights(const YamlReader& node, const Sweep& sweep) {
   const auto varies = [&](std::string_view setting) {
     return std::ranges::find(sweep.varied, setting) != sweep.varied.end();
   };
   const auto has_mass = [](const SlamConfig& point) { return point.semantics.label_mass != 0; };
   if (varies(kLabelMass) && !std::ranges::all_of(sweep.points, has_mass))
-    node.fail(fmt::format("{}: 0 is no mass: it leaves the weight to {}", kLabelMass, kGamma));
+    node.fail(fmt::format("{}: 0 is not a mass: it leaves the weight to {}", kLabelMass, kGamma));
   if (varies(kGamma) && sweep.map == SweepMap::kFixed &&
       std::ranges::any_of(sweep.points, has_mass))
     node.fail(fmt::format("{} does nothing on a fixed map where {} is not 0", kGamma, kLabelMass));

@@ -12,12 +12,13 @@
 
 namespace mh {
 
-/// Whether a sweep varies only the parameters of the queries, on one map built with the suite's
-/// own, or rebuilds the map for each point. Every table states which.
+/// Whether a sweep varies only the parameters of the queries, on one map built with the suite's own
+/// settings, or rebuilds the map for each point. Every table states which.
 enum class SweepMap { kFixed, kRebuilt };
 std::string_view name(SweepMap map);
 
-/// The points of a sweep over SLAM settings. None: only the suite's own settings.
+/// The points of a sweep over SLAM settings. If there are none, only the suite's own settings are
+/// used.
 struct Sweep {
   SweepMap map = SweepMap::kFixed;
   std::vector<std::string> varied;  ///< full names (slam/config/by_name.hpp), in the suite's order
@@ -36,24 +37,25 @@ Sweep read_sweep(YamlReader node, const SlamConfig& base);
 /// their full names.
 std::string_view shown_name(std::string_view setting);
 
-/// How much labels weigh in equation 1: as a factor, or as the share of a vector's mass that it is
-/// to give. The same factor weighs otherwise with another vocabulary, detector or place.
+/// How much labels weigh in equation 1, given as a factor or as the share of a vector's mass that
+/// labels should have. The same factor has a different effect with a different vocabulary, detector
+/// or place.
 inline constexpr std::string_view kGamma = "semantics.gamma", kLabelMass = "semantics.label_mass";
 inline bool weighs_labels(std::string_view setting) {
   return setting == kGamma || setting == kLabelMass;
 }
 
-/// The value of a setting there: numbers to four digits.
+/// The value of a setting in tables and images: numbers to four digits.
 std::string shown_value(const SlamConfig& config, std::string_view setting);
 
-/// Those that the sweep varies: "gamma 1, features.count 500".
+/// The settings that the sweep varies, with their values: "gamma 1, features.count 500".
 std::string shown_point(const Sweep& sweep, const SlamConfig& point);
 
 /// The maximum number of settings that a Sobol sequence can vary.
 inline constexpr std::size_t kSobolDimensions = 8;
 
 /// Point `index` of the Sobol sequence (Sobol, 1967; direction numbers of Joe and Kuo, 2008),
-/// shifted digitally by the seed: each dyadic interval of each dimension contains its share of
+/// digitally shifted by the seed: each dyadic interval of each dimension contains its share of
 /// every 2^k points. @returns coordinates in [0, 1)
 std::array<double, kSobolDimensions> sobol_point(std::uint32_t index, std::uint64_t seed);
 

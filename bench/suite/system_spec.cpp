@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// What a suite may call a system of ours.
+/// The names by which a suite may call our own systems.
 constexpr Names<SystemKind, 2> kOurs{words(SystemKind{})[0], words(SystemKind{})[1]};
 static_assert(name_of(SystemKind::kOutside, kOurs) == "?");
 
@@ -32,7 +32,7 @@ void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& p
   program.library = node.string("library");
   if (program.library.empty()) node.at("library").fail("is empty");
   for (const char* key : {"command", "protocol"})
-    if (const auto other = node.find(key)) other->fail("is of a command: this is a library");
+    if (const auto other = node.find(key)) other->fail("is for a command, but this is a library");
   if (const auto settings = node.find("settings")) {
     named_file(*settings, paths);
     program.settings = settings->as_string();
@@ -61,7 +61,7 @@ std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
   return all;
 }
 
-/// Reads one of ours under another name.
+/// Reads one of our systems under another name.
 void read_variant(YamlReader& node, SystemSpec& spec) {
   spec.kind = one_of(node.at("system"), kOurs);
   YamlReader slam = node.at("slam");
@@ -117,7 +117,7 @@ std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths) {
   spec.repeatable = node.boolean("repeatable", spec.repeatable);
   std::vector<SystemSpec> all{spec};
   if (const auto vary = node.find("vary")) {
-    if (is_library) vary->fail("is of a command: a library reads its `settings`");
+    if (is_library) vary->fail("is for a command: a library reads its `settings`");
     all = varied(spec, *vary);
   }
   node.finish();

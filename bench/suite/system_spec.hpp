@@ -28,12 +28,12 @@ constexpr std::string_view name(SystemKind kind) {
 struct SystemSpec {
   SystemKind kind = SystemKind::kSemantic;
   std::string name = "semantic";
-  std::optional<OutsideProgram> outside = {};  ///< of an outside system, and only of one
-  /// Settings of its own, by full name (slam/config/by_name.hpp), in place of the suite's: only of
-  /// ours under another name.
+  std::optional<OutsideProgram> outside = {};  ///< set for an outside system only
+  /// Its own settings, by full name (slam/config/by_name.hpp), in place of the suite's: only for
+  /// one of our systems under another name.
   std::vector<std::pair<std::string, YamlReader>> settings = {};
 
-  /// Equal runs give equal bits. If not, the gate judges it by the spread over its runs.
+  /// Equal runs give equal bits. If false, the gate judges the system by the spread over its runs.
   bool repeatable = true;
 
   // Its capabilities; no other code checks its kind.
@@ -52,8 +52,8 @@ struct SystemSpec {
   bool weighs_labels() const { return takes_settings() && sees_labels(); }
 };
 
-/// What a run is described by: its own settings are already among the run's, and whether it is
-/// repeatable matters only to the gate.
+/// The members that describe a run: the system's own settings are already among the run's, and
+/// `repeatable` matters only to the gate.
 template <MaybeConst<SystemSpec> S, class Visit>
 void fields(S& system, Visit& v) {
   auto& [kind, name, outside, settings, repeatable] = system;
@@ -62,14 +62,15 @@ void fields(S& system, Visit& v) {
   v("outside", outside);
 }
 
-/// Reads `semantic`, `plain`, one of these under another name with settings of its own, {name,
+/// Reads `semantic`, `plain`, or one of these under another name with its own settings, {name,
 /// system: plain, slam: {...}}, or a mapping {name, command, protocol: trajectory | conversation}
 /// with `run_limit_s`, `reply_limit_s`, `memory_limit_mb`, `disk_limit_mb` to override defaults,
-/// `repeatable: false`, and `inputs`, a list of files. The command runs in the suite's folder. Or a
-/// mapping {name, library} with `settings`, a file, and the rest of these keys.
-/// @returns that system; a command with `vary: {n: [500, 1000]}` is one for each combination of
-/// values, which stand for {n} in it and in names: "orb_n_500", "orb_n_1000"
-/// @throws InputError naming file, line, field and value; an input that must exist and does not.
+/// `repeatable: false`, and `inputs`, a list of files. The command runs in the suite's folder. A
+/// mapping {name, library} has `settings`, a file, and the rest of these keys.
+/// @returns that system; for a command with `vary: {n: [500, 1000]}`, one for each combination of
+/// values, which replace {n} in the command and appear in the names: "orb_n_500", "orb_n_1000"
+/// @throws InputError naming file, line, field and value; also for an input that must exist but
+/// does not.
 std::vector<SystemSpec> read_systems(YamlReader node, const SuitePaths& paths);
 
 }  // namespace mh

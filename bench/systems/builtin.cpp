@@ -51,7 +51,7 @@ SystemReport as_report(const StepReport& step, const SlamState& state) {
 
 class BuiltinSession : public RelocalizationSession {
  public:
-  /// @param stale_scores  what earlier sessions left, and this one leaves to the next; may be null
+  /// @param stale_scores  left by earlier sessions, and by this one for the next; may be null
   BuiltinSession(const SlamState& frozen, const StepObservers& observers,
                  StaleScores* stale_scores = nullptr)
       : frozen_(frozen), observers_(observers), stale_scores_(stale_scores) {
@@ -64,7 +64,7 @@ class BuiltinSession : public RelocalizationSession {
   }
 
  private:
-  const SlamState& frozen_;  // the system that opened the session outlives it, like the observers
+  const SlamState& frozen_;  // the system that opened the session outlives it, as do the observers
   const StepObservers& observers_;
   StaleScores* stale_scores_;
   Tracker tracker_;
@@ -151,13 +151,14 @@ class BuiltinSystem : public System {
   }
 
  private:
-  /// What the queries so far left under these settings; null if the settings do not use it.
+  /// The scores that queries have left so far under these settings; null if the settings do not use
+  /// them.
   StaleScores* stale_scores() const {
     if (state_.config.relocalize.neighbor_scores != NeighborScores::kAsReleased) return nullptr;
     const SemanticConfig& settings = state_.config.semantics;
     for (auto& [of, scores] : stale_scores_)
       if (of == settings) return &scores;
-    // At first as mapping left them.
+    // Initially as mapping left them.
     return &stale_scores_.emplace_back(settings, state_.tracker.stale_scores).second;
   }
 
@@ -175,8 +176,8 @@ class BuiltinSystem : public System {
   std::unique_ptr<SlamState> own_;
   SlamState& state_;
   BuiltinOptions options_;
-  /// Under NeighborScores::kAsReleased sessions do share this, by the settings of the queries: they
-  /// depend on their order. Sessions hold pointers into it.
+  /// Under NeighborScores::kAsReleased, sessions with the same query settings share these scores
+  /// and so depend on their order. Sessions hold pointers into it.
   mutable std::list<std::pair<SemanticConfig, StaleScores>> stale_scores_;
   bool found_ = false;  ///< a frame was tracked in this map
   bool frozen_ = false;

@@ -10,7 +10,7 @@
 namespace mh {
 
 /// Modelhouse's own SLAM, semantic or plain depending on the configuration.
-/// @param points  settings of its queries, for use_point(); none: those of `config`
+/// @param points  settings of its queries, for use_point(); if empty, those of `config`
 /// @throws InputError / std::invalid_argument if camera or configuration are out of range.
 std::unique_ptr<System> make_builtin_system(const Camera& camera, const SlamConfig& config,
                                             std::shared_ptr<const Vocabulary> vocabulary,
@@ -19,14 +19,14 @@ std::unique_ptr<System> make_builtin_system(const Camera& camera, const SlamConf
 struct BuiltinOptions {
   StepObservers observers = {};
   /// When tracking is lost, a map of at most this many keyframes is discarded at the first lost
-  /// frame that can start another, as the original ORB-SLAM2 does: such a map is soon rebuilt, and
-  /// a place seen briefly may never be seen again. 0: never.
+  /// frame that can start a new one, as the original ORB-SLAM2 does: such a map is soon rebuilt,
+  /// whereas a place seen briefly may never be seen again. 0: never.
   int small_map = 0;
-  std::vector<SemanticConfig> points = {};  ///< as above
+  std::vector<SemanticConfig> points = {};  ///< as for make_builtin_system()
 };
 
-/// The same on a state that the caller owns and that outlives the system: a map that was loaded or
-/// will be saved.
+/// Like the function above, on a state that the caller owns and that outlives the system: a map
+/// that was loaded or will be saved.
 std::unique_ptr<System> make_builtin_system(SlamState& state, const BuiltinOptions& options);
 
 }  // namespace mh

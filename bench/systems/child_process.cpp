@@ -44,7 +44,7 @@ void close_if_open(int& fd) {
   fd = -1;
 }
 
-/// Contents of a folder: total size of its files, whether folders are nested too deep to be
+/// Contents of a folder: total size of its files, and whether folders are nested too deep to be
 /// searched.
 struct Contents {
   double mb = 0;
@@ -92,7 +92,7 @@ std::vector<fs::path> needed_by(const OutsideProgram& program, const fs::path& f
   return needed;
 }
 
-/// The beginning of a text in one line of printable characters.
+/// The beginning of a text as one line of printable characters.
 std::string told(std::string text, std::size_t most) {
   const bool cut = text.size() > most;
   if (cut) text.resize(most);
@@ -120,8 +120,9 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   if (talk == Talk::kOverPipes) {
     // A socket, not a pipe: writing to a program that has exited must return an error, not raise
     // SIGPIPE.
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in) != 0) machine("no socket");
-    if (pipe2(out, O_CLOEXEC) != 0) machine("no pipe");
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in) != 0)
+      machine("cannot create a socket");
+    if (pipe2(out, O_CLOEXEC) != 0) machine("cannot create a pipe");
   } else {
     in[1] = open("/dev/null", O_RDONLY | O_CLOEXEC);
   }
@@ -153,7 +154,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::fail(std::string_view what) {
   watcher_->end_all();
   const std::vector<fs::path> folders = {folder_, log_.parent_path()};
-  // Its file may have been replaced by now.
+  // Read through the open file: the one of this name may have been replaced.
   std::string said = last_line_of(log_file_);
   if (said.starts_with("modelhouse: ")) said.clear();  // the watcher's note; reported separately
   said = told(without_folders(std::move(said), folders), kMostSaid);
@@ -199,7 +200,7 @@ std::string ChildProcess::ending(int wait_ms) {
     case WatchedEnd::kEnded:
       break;
   }
-  // A shell reports the signal that ended its own command this way.
+  // A shell reports the signal that ended its command as exit code 128 + signal.
   if ((WIFSIGNALED(end->value) && WTERMSIG(end->value) == SIGXFSZ) ||
       WEXITSTATUS(end->value) == 128 + SIGXFSZ)
     return fmt::format("wrote a file of more than {:g} MB, its limit", program_.disk_limit_mb);

@@ -14,8 +14,8 @@
 
 namespace mh {
 
-/// Opens a new file for what a program prints, replacing an earlier one; -1 and errno if that
-/// fails.
+/// Opens a new file for what a program prints, replacing an earlier one; returns -1 and sets errno
+/// if that fails.
 int new_log(const std::filesystem::path& file);
 
 /// An outside program running under a watcher, with limits on time, memory and disk use. The
@@ -26,7 +26,7 @@ class ChildProcess {
  public:
   enum class Talk { kNo, kOverPipes };
 
-  /// Starts `command` by /bin/sh in program.folder.
+  /// Starts `command` with /bin/sh in program.folder.
   /// @param talk    kOverPipes: send() and read_line() reach its standard input and output; kNo: it
   ///                reads nothing and its output goes to the log. Its standard error always goes to
   ///                the log.
@@ -41,7 +41,7 @@ class ChildProcess {
 
   /// Writes a line. `doing` describes the work in messages: "track (request 7)".
   void send(std::string_view line, std::string_view doing);
-  /// Reads the next line of its output, without the newline; an error if none comes within the
+  /// Reads the next line of its output, without the newline; an error if none arrives within the
   /// limit.
   std::string read_line(double limit_s, std::string_view doing);
   /// Waits until it ends. Anything but exit code 0 within the limit is an error.
@@ -62,7 +62,7 @@ class ChildProcess {
 
  private:
   void check_limits(std::string_view doing);
-  /// Describes how it ended; waits for that.
+  /// Describes how it ended; waits at most `wait_ms` for its end.
   std::string ending(int wait_ms);
   bool ended_well();
 
@@ -70,7 +70,7 @@ class ChildProcess {
   const std::string command_;
   const std::filesystem::path log_, folder_;
   double size_before_mb_ = 0;                        ///< of the folder
-  std::chrono::steady_clock::time_point next_look_;  ///< check of its limits
+  std::chrono::steady_clock::time_point next_look_;  ///< when to check its limits again
   int to_child_ = -1, from_child_ = -1, log_file_ = -1;
   std::optional<Watcher> watcher_;
   std::string unread_;

@@ -26,7 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Request = nlohmann::ordered_json;
-using Json = nlohmann::json;  // of a reply; with many keys, the cost stays linear in its length
+// Of a reply: even with many keys, the cost stays linear in its length.
+using Json = nlohmann::json;
 
 constexpr int kProtocol = 1;
 constexpr const char* kLibraryHost = "modelhouse-library-host";
@@ -40,7 +41,7 @@ std::string shortened(std::string_view line, std::size_t most = 120) {
   return line.size() > most ? text + "..." : text;
 }
 
-/// k4 to k6 only where they are not 0.
+/// Contains k4 to k6 only if they are not all 0.
 Request json_of(const Camera& camera) {
   const Distortion& d = camera.distortion;
   Request json = {{"width", camera.width_px},
@@ -60,7 +61,7 @@ Request json_of(const Camera& camera) {
   return json;
 }
 
-/// Starts the program that speaks for a library. It lies beside this program.
+/// Command that starts a library's host, a program next to this one.
 std::string host_command(const OutsideProgram& program, std::uint64_t seed) {
   const auto quoted = [&](const fs::path& file) {
     return shell_quoted(fs::absolute(file).string());
@@ -110,7 +111,7 @@ class Conversation {
     const auto id = reply.find("id");
     if (id == reply.end() || !id->is_number_integer())
       fail(fmt::format("gave no request number (\"id\") in '{}'", shortened(line)));
-    if (*id != number_) fail(fmt::format("replied to request {}, which was not asked", id->dump()));
+    if (*id != number_) fail(fmt::format("replied to request {}, which was not sent", id->dump()));
     for (const auto& [key, value] : reply.items())
       if (key != "id" && !known.contains(key))
         fail(fmt::format("gave an unknown key '{}'", shortened(key)));
@@ -195,8 +196,8 @@ class Conversation {
     if (is_nested_too_deep(line))
       fail(fmt::format("nested its reply more than {} levels deep: '{}'", kDeepestJson,
                        shortened(line)));
-    if (line.find('\0') != std::string::npos)  // a parser takes it for the end
-      fail(fmt::format("wrote what is not a line of JSON: '{}'", shortened(line)));
+    if (line.find('\0') != std::string::npos)  // a parser would take it for the end
+      fail(fmt::format("wrote something that is not a line of JSON: '{}'", shortened(line)));
     Json reply;
     std::vector<std::set<std::string>> keys;  // of the open objects, innermost last
     std::string doubled;
@@ -215,7 +216,7 @@ class Conversation {
       const bool nan = small.starts_with("{") && (small.find("nan") != std::string::npos ||
                                                   small.find("inf") != std::string::npos);
       fail(fmt::format("wrote {}: '{}'",
-                       nan ? "a number that is not finite" : "what is not a line of JSON",
+                       nan ? "a number that is not finite" : "something that is not a line of JSON",
                        shortened(line)));
     }
     if (!reply.is_object()) fail(fmt::format("wrote no JSON object: '{}'", shortened(line)));
@@ -234,7 +235,8 @@ class Conversation {
                        shortened(it->dump())));
     for (std::size_t k = 0; k < v.size(); ++k) {
       if (!(*it)[k].is_number())
-        fail(fmt::format("gave a pose that is not of numbers: {}", shortened(it->dump())));
+        fail(
+            fmt::format("gave a pose that does not consist of numbers: {}", shortened(it->dump())));
       v[k] = (*it)[k];
     }
     return told_pose(v, [this](const std::string& what) { fail(what); });

@@ -11,11 +11,11 @@
 namespace mh {
 
 /// An outside program as a system under test: each call becomes a line of JSON on the program's
-/// standard input, replied to by a line on its standard output (docs/outside_systems.md). Starts
-/// the program and sends the greeting; the program ends when the system is destroyed. The program
+/// standard input, answered by a line on its standard output (docs/outside_systems.md). Starts the
+/// program and sends the greeting; the program ends when the system is destroyed. The program
 /// receives 31 bits of a frame's stream as its seed.
 ///
-/// A program has a single map, so only the session opened last may be fed.
+/// A program has a single map, so only the most recently opened session may be fed.
 /// @param log   file for what the program writes to its standard error
 /// @throws InputError if validate(program) does; OutsideError, here and in every call, if the
 ///         program fails: it exits, hangs, uses too much memory, or sends an invalid reply.

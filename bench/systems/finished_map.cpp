@@ -42,7 +42,7 @@ FinishedMap decode_finished_map(const std::string& bytes, const std::string& nam
   FinishedMap map;
   std::string volume;
   reader(map.outcome.calls, map.outcome, map.system, volume);
-  reader.require(reader.at_end(), "it goes on after its end");
+  reader.require(reader.at_end(), "it has data after its end");
   std::istringstream stream(volume);
   map.volume = std::make_shared<const VoxelMap>(VoxelMap::read_ot(stream, name));
   return map;

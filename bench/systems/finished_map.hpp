@@ -13,7 +13,7 @@ namespace mh {
 struct FinishedMap {
   std::string system;  ///< System::save()
   MappingOutcome outcome;
-  std::shared_ptr<const VoxelMap> volume;  ///< as RunResult::volume
+  std::shared_ptr<const VoxelMap> volume;  ///< as in RunResult::volume
 };
 
 /// Converts to bytes and back, exactly.

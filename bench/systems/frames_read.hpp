@@ -8,9 +8,9 @@
 
 namespace mh {
 
-/// Which files of a folder have been opened since this object was made, by any process (inotify):
-/// how far a program is in a recording, whether or not it reports it. Counts nothing if the system
-/// has no watch left.
+/// Counts the files of a folder that any process has opened since this object was made (inotify).
+/// This shows how far a program is in a recording, whether or not it reports it. Counts nothing if
+/// the system has no inotify watches left.
 class FramesRead {
  public:
   explicit FramesRead(const std::filesystem::path& folder);

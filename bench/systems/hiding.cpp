@@ -40,7 +40,7 @@ bool put(const char* file, std::string_view text) {
 
 /// @returns 0, or errno of the call that failed
 int enter_namespace(const std::string& user_map, const std::string& group_map) {
-  const bool root = geteuid() == 0;  // in a user namespace it could not read files of other users
+  const bool root = geteuid() == 0;  // in a user namespace, root could not read other users' files
   if (unshare(root ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS) != 0) return errno;
   const bool mapped =
       root || (put("/proc/self/setgroups", "deny") && put("/proc/self/uid_map", user_map) &&
@@ -50,7 +50,7 @@ int enter_namespace(const std::string& user_map, const std::string& group_map) {
   return mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) == 0 ? 0 : errno;
 }
 
-/// Gives this process a shared memory with nothing in it but one folder, or nothing at all.
+/// Gives this process its own shared memory, which contains one folder or nothing.
 /// @returns 0, or errno of the call that failed: then nothing has changed
 int make_memory_private(const std::string& of_own) {
   if (of_own.empty())
@@ -74,7 +74,7 @@ int cover(const char* folder) {
   return mount("tmpfs", folder, "tmpfs", kHow, "mode=0755") == 0 ? 0 : errno;
 }
 
-/// Why hiding does not work here, tried in a process that ends at once; 0 if it does.
+/// The errno with which hiding fails here, tried in a process that ends at once; 0 if it works.
 int why_not(const std::string& user_map, const std::string& group_map) {
   const pid_t trial = _Fork();
   if (trial < 0) return errno;

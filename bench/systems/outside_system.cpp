@@ -76,7 +76,7 @@ SystemReport OutsideSystem::reported(Question what, std::uint64_t session, const
                                      RandomStream stream, TrackStatus with_pose) const {
   SystemReport report = ask(what, session, frame, stream);
   check_told(report, [this](const std::string& fault) { fail(fault); });
-  if (report.map_reset && frozen_) fail("gave up a map that must not change any more");
+  if (report.map_reset && frozen_) fail("dropped a map that must not change any more");
   report.status = report.world_from_camera ? with_pose : TrackStatus::kLost;
   return report;
 }

@@ -21,8 +21,8 @@ using Refuse = std::function<void(const std::string& what)>;
 /// non-finite values and a quaternion far from unit length.
 SE3 told_pose(const std::array<double, 7>& values, const Refuse& refuse);
 
-/// Refuses candidate counts that grow from step to step, a failure stage together with a pose, and
-/// a keyframe without one.
+/// Refuses candidate counts that grow from step to step, a failure stage with a pose, a keyframe or
+/// the stage kVerified without a pose, and more inliers than keypoints.
 void check_told(const SystemReport& report, const Refuse& refuse);
 
 /// The seed that an outside system receives: 31 bits of a frame's stream, which fit an int
@@ -32,7 +32,7 @@ inline int told_seed(RandomStream stream) {
 }
 
 /// An outside system that is queried frame by frame. The poses that it reports are kept here. It
-/// has a single map, so only the session opened last may be fed.
+/// has a single map, so only the most recently opened session may be fed.
 class OutsideSystem : public System {
  public:
   SystemReport track(const RgbdFrame& frame, RandomStream stream) final;
@@ -57,7 +57,7 @@ class OutsideSystem : public System {
   SystemReport reported(Question what, std::uint64_t session, const RgbdFrame& frame,
                         RandomStream stream, TrackStatus with_pose) const;
   void take(const Trajectory& finished);
-  /// When a session begins: a second after the last frame of the mapping.
+  /// Stamp at which a session begins: a second after the last frame of the mapping.
   Stamp after_mapping_ns() const {
     constexpr Stamp kSecond_ns = 1'000'000'000;
     return shown_.empty() ? 0 : *shown_.rbegin() + kSecond_ns;

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "12 1695378394123456789": size and time of a file itself, not of what a link names.
+/// "12 1695378394123456789": size and time of a file itself, not of a link's target.
 std::optional<std::string> state_of(const fs::path& file) {
   struct stat s {};
   if (lstat(file.c_str(), &s) != 0) return std::nullopt;
@@ -35,15 +35,15 @@ bool is_true_folder(const fs::path& path) {
   return fs::symlink_status(path, error).type() == fs::file_type::directory;
 }
 
-/// Grants us all permissions to a program's folder, which the program may have removed.
+/// Restores all our permissions on a program's folder, which the program may have removed.
 void open_up(const fs::path& folder) {
   std::error_code error;
   fs::permissions(folder, fs::perms::owner_all, fs::perm_options::add, error);
 }
 
-/// Lists each file as "SIZE TIME NAME" and each folder as "NAME/", one per line; opens the folders
-/// up. Names that contain a newline, and folders that are too deep, are left out and therefore
-/// never removed.
+/// Lists each file as "SIZE TIME NAME" and each folder as "NAME/", one per line; calls open_up()
+/// for the folders. Names that contain a newline, and folders that are too deep, are left out and
+/// therefore never removed.
 std::string list_of(const fs::path& folder) {
   std::string list;
   std::error_code error;
@@ -63,7 +63,7 @@ std::string list_of(const fs::path& folder) {
   return list;
 }
 
-/// Moves a folder to an unused name, also across disks. In that case, anything that is not a file,
+/// Moves a folder to an unused name, even across disks. Across disks, anything that is not a file,
 /// folder or link, or is nested too deep, is left out.
 void move_folder(const fs::path& from, const fs::path& to) {
   std::error_code error;
@@ -86,7 +86,7 @@ void move_folder(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Whether a name is inside the folder, not through a link.
+/// Whether a name leads to a place inside the folder, and not through a link.
 bool leads_within(const fs::path& folder, const fs::path& name) {
   if (name.empty() || name.is_absolute()) return false;
   fs::path way = folder;
@@ -164,7 +164,7 @@ void ProgramFolder::move_to_run() {
     std::error_code error;
     if (fs::exists(fs::symlink_status(place, error))) continue;
     move_folder(path_, place);
-    // Last, since a copy has its own times. A file that the program put there is removed.
+    // Last, since copied files have new times. A file that the program put in its place is removed.
     remove_tree((place / kList).c_str());
     fs::remove(place / kList, error);
     write_atomically(place / kList, list_of(place));

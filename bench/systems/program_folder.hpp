@@ -13,17 +13,17 @@ inline constexpr int kDeepestFolder = 100;
 
 /// The folder given to an outside program, for its dataset and its output. It is new for each run
 /// and below TMPDIR (/var/tmp if that is not set), not below a folder with results, so that the
-/// program meets neither the ground truth nor the remains of an earlier run. At the end it is moved
+/// program finds neither the ground truth nor the remains of an earlier run. At the end it is moved
 /// into the run's folder, as `outside`.
 ///
-/// Before that, the remains of an earlier run are removed there: the files it contained when it was
-/// moved, unless they changed since. If anything else is there, it stays, and the new folder
-/// becomes `outside.2`, and so on.
+/// Before that, the remains of an earlier run are removed from `outside`: the files that it
+/// contained when it was moved, unless they have changed since. If it contains anything else, it
+/// stays, and the new folder becomes `outside.2`, and so on.
 class ProgramFolder {
  public:
-  /// @param run  exists; the program never learns its path
+  /// @param run  the run's folder, which exists; the program never learns its path
   explicit ProgramFolder(const std::filesystem::path& run);
-  /// Also moves it, if possible.
+  /// Also moves the folder, if possible.
   ~ProgramFolder();
   ProgramFolder(const ProgramFolder&) = delete;
   ProgramFolder& operator=(const ProgramFolder&) = delete;
@@ -40,7 +40,7 @@ class ProgramFolder {
   const std::filesystem::path run_;
   const TemporaryFolder work_;
   const std::filesystem::path path_;
-  const std::string identity_;  ///< of that folder, which the program could replace
+  const std::string identity_;  ///< of the folder, which the program could replace
 };
 
 }  // namespace mh

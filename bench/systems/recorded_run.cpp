@@ -34,17 +34,17 @@ std::optional<Stamp> frame_of(Stamp stamp_ns, std::span<const Stamp> frames) {
   return best;
 }
 
-/// The trajectory that the program wrote: a file in its own folder, not the target of a link.
+/// The trajectory that the program wrote: a file in its own folder, not a link out of it.
 /// @param home  the folder's canonical path, before the program ran
 std::string written_text(const fs::path& home, ChildProcess& child) {
-  constexpr std::uintmax_t kLongest = std::uintmax_t{64} << 20;  // one is about 1e5 bytes
+  constexpr std::uintmax_t kLongest = std::uintmax_t{64} << 20;  // a trajectory is about 1e5 bytes
   const fs::path trajectory = home / kTrajectory;
   std::error_code error;
   if (!fs::exists(trajectory, error)) child.fail("ended well but wrote no trajectory");
   require_readable(trajectory);
   const fs::path file = fs::canonical(trajectory, error);
   if (error || *file.lexically_relative(home).begin() == "..")
-    child.fail("made its trajectory a link out of its folder");
+    child.fail("made its trajectory a link to outside its folder");
   if (const auto bytes = fs::file_size(file, error); bytes > kLongest)
     child.fail(
         fmt::format("wrote a trajectory of {} MB, {} MB is the most", bytes >> 20, kLongest >> 20));
@@ -59,7 +59,7 @@ bool tracked_nothing(const std::string& trajectory) {
   return true;
 }
 
-/// Replaces the stamps of the poses by those of the frames that they belong to.
+/// Replaces the stamps of the poses with those of the frames that they belong to.
 Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frames,
                              ChildProcess& child) {
   std::size_t strange = 0;
@@ -70,8 +70,8 @@ Trajectory with_frame_stamps(Trajectory trajectory, std::span<const Stamp> frame
     if (frame) pose.stamp_ns = *frame;
   }
   if (first_strange)
-    child.fail(fmt::format("wrote {} of {} poses at stamps of no frame, the first at {}", strange,
-                           trajectory.size(), format_stamp(*first_strange)));
+    child.fail(fmt::format("wrote {} of {} poses at stamps that match no frame, the first at {}",
+                           strange, trajectory.size(), format_stamp(*first_strange)));
   for (std::size_t i = 1; i < trajectory.size(); ++i)
     if (trajectory[i].stamp_ns == trajectory[i - 1].stamp_ns)
       child.fail(

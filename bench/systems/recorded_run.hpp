@@ -17,7 +17,7 @@ inline constexpr Stamp kStampTolerance_ns = 1'000'000;
 
 /// Writes a folder in TUM's layout for an outside program: images, lists, labels of the frames that
 /// have them, calibration. It does not contain the ground truth. @returns the stamps, in order.
-/// @param frame  delivers frame i of the list; nullopt omits it
+/// @param frame  returns frame i; nullopt omits it
 std::vector<Stamp> write_dataset(const std::filesystem::path& folder, const Camera& camera,
                                  std::size_t count,
                                  const std::function<std::optional<RgbdFrame>(std::size_t)>& frame);

@@ -49,8 +49,8 @@ bool ScratchFolder::is_in_place() const {
 std::string ScratchFolder::write(const char* name, std::string_view content) const {
   const auto reason = [&](int error) {
     if (error == ENOSPC || error == EDQUOT) throw_unwritable(path_ / name, error);
-    if (error == EISDIR) return fmt::format("put a folder in the place of its {}", name);
-    if (error == EEXIST) return fmt::format("put another file in the place of its {}", name);
+    if (error == EISDIR) return fmt::format("replaced its {} with a folder", name);
+    if (error == EEXIST) return fmt::format("replaced its {} with another file", name);
     return fmt::format("left its {} unwritable: {}", name, std::generic_category().message(error));
   };
   if (!is_in_place()) return "removed the folder of its images";

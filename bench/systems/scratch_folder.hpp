@@ -8,8 +8,8 @@
 namespace mh {
 
 /// A temporary folder, in memory if possible, in which a program may do anything. Each write
-/// creates a new file in this same folder: nothing that the program put in place of a file, or of
-/// the folder, is opened or followed. Removed at the end, whatever the program did to it.
+/// creates a new file in the original folder: nothing that the program put in place of a file, or
+/// of the folder, is opened or followed. Removed at the end, whatever the program did to it.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -18,8 +18,8 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Writes a file in place of the one by that name.
-  /// @returns what the program did that prevents it; empty: it is written
+  /// Writes a file, replacing the one of that name.
+  /// @returns what the program did to prevent it; empty if the file was written
   /// @throws DiskFullError
   [[nodiscard]] std::string write(const char* name, std::string_view content) const;
 

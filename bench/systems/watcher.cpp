@@ -33,7 +33,7 @@ namespace {
 // ---- in the forked processes: only system calls, since other threads of the bench may hold locks
 
 /// Fields 4 and 24 of /proc/PID/stat: parent and resident pages. Field 2, a name in parentheses,
-/// may contain blanks and parentheses.
+/// may contain spaces and parentheses.
 struct ProcessFacts {
   pid_t parent = -1;
   long resident_pages = 0;
@@ -189,7 +189,7 @@ class Watch {
 
   /// Children of a killed process are reparented to this process, which kills them in turn.
   void end_all() {
-    constexpr int kMost = 2000;  // of 1 ms and more; other users' processes cannot be killed
+    constexpr int kMost = 2000;  // rounds of at least 1 ms; other users' processes cannot be killed
     const pid_t self = getpid();
     if (!ended_) kill(-child_, SIGKILL);
     for (int tries = 0; tries < kMost && reap(); ++tries) {
@@ -208,7 +208,7 @@ class Watch {
       if (too_much_) continue;
       const auto room = command_.log_limit_bytes - written_;
       const auto fits = std::min<std::uint64_t>(room, static_cast<std::uint64_t>(size));
-      if (write(command_.log, buffer, fits) < 0) continue;  // a full disk fails elsewhere
+      if (write(command_.log, buffer, fits) < 0) continue;  // a full disk is reported elsewhere
       written_ += fits;
       if (fits == static_cast<std::uint64_t>(size)) continue;
       constexpr char kWhy[] = "\nmodelhouse: the program wrote too much and was stopped\n";
@@ -263,7 +263,7 @@ void Watcher::end_all() {
   send(life_, "q", 1, MSG_NOSIGNAL);
   close(life_);
   // The command may have stopped the watcher, and may do so again until it is killed.
-  constexpr int kPatience = 10000;  // of 1 ms
+  constexpr int kPatience = 10000;  // rounds of 1 ms
   for (int tries = 0; waitpid(process_, nullptr, tries < kPatience ? WNOHANG : 0) == 0; ++tries) {
     kill(process_, tries + 1 < kPatience ? SIGCONT : SIGKILL);
     poll(nullptr, 0, 1);

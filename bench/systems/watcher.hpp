@@ -10,8 +10,7 @@ namespace mh {
 
 class Hiding;
 
-/// A command to run under a watcher; everything it points to must outlive only the call that starts
-/// it.
+/// A command to run under a watcher; what it points to need only outlive the call that starts it.
 struct WatchedCommand {
   const char* folder = nullptr;   ///< where it runs
   const char* command = nullptr;  ///< for /bin/sh
@@ -21,7 +20,7 @@ struct WatchedCommand {
   std::uint64_t log_limit_bytes = 0;
   std::uint64_t file_limit_bytes = 0;  ///< per file that it writes; 0: unlimited
   const char* scratch = "";            ///< removed if this process ends before the watcher
-  const Hiding* hiding = nullptr;      ///< from the command; null: nothing
+  const Hiding* hiding = nullptr;      ///< hides files from the command; null: nothing is hidden
 };
 
 /// How a watched command ended.
@@ -39,9 +38,9 @@ struct WatchedEnd {
 /// A process between this one and a command: the parent of the command and of whatever the command
 /// leaves behind (PR_SET_CHILD_SUBREAPER), in whatever session or process group. It kills all of
 /// them when the command has ended, when this object is destroyed, or when this process ends, for
-/// whatever reason. Only processes that another process started (a daemon on request), or that this
-/// user may not kill, escape; if the watcher itself is killed, all but the command's own process
-/// escape.
+/// whatever reason. Only processes that another process started (such as a daemon, on request), or
+/// that this user may not kill, escape; if the watcher itself is killed, all but the command's own
+/// process escape.
 class Watcher {
  public:
   /// @throws MachineError if the process cannot be started

@@ -1,21 +1,21 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""SLAM by laser scans alone: each is matched to a map of all before it; a lost robot is looked for
-wherever it has been.
+"""SLAM from laser scans alone: each scan is matched to a map of all before it; a lost robot is
+searched for wherever it has been.
 
 The images are not read. Needs `senses: [laser]` and numpy: apt-get install python3-numpy. With
-`senses: [laser, odometry]` the wheels predict the motion.
+`senses: [laser, odometry]`, wheel odometry predicts the motion.
 """
 import numpy as np
 
 from modelhouse.system import Reply, System, serve
 
-CELL_M = 0.05      # of the map, a square of CELLS cells around the start
+CELL_M = 0.05      # cells of the map, a square of CELLS x CELLS cells around the start
 CELLS = 1200
-SIGMA_M = 0.07     # by which a ray's end is spread
-KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # the map grows by scans this far from all before
-LEAST_ENDS = 20    # of a scan, to be of use
-LEAST_SHARE = 0.85  # of them that must be where others were, for a pose to be believed
+SIGMA_M = 0.07     # standard deviation of the blur of a ray's end
+KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # a scan this far from all in the map is added
+LEAST_ENDS = 20    # ray ends that a scan needs to be useful
+LEAST_SHARE = 0.85  # of a scan's ends that must match the map for a pose to be believed
 
 
 def planar(pose):
@@ -28,7 +28,7 @@ def planar(pose):
 
 
 def flat(pose):
-    """x, y and heading of a 4 x 4 matrix."""
+    """x, y and heading from a 4 x 4 matrix."""
     return np.array([pose[0, 3], pose[1, 3], np.arctan2(pose[1, 0], pose[0, 0])])
 
 
@@ -55,14 +55,14 @@ class Map:
 
     def __init__(self):
         self.ends = np.zeros((CELLS, CELLS), np.float32)
-        self.seen_from = []  # poses of the scans that it is made of
+        self.seen_from = []  # poses of the scans in it
         reach = int(3 * SIGMA_M / CELL_M)
         off = np.arange(-reach, reach + 1) * CELL_M
         self.stamp = np.exp(-0.5 * (off[:, None] ** 2 + off[None, :] ** 2) / SIGMA_M ** 2)
         self.reach = reach
 
     def cells(self, pose, ends):
-        """Row and column of each end, of one pose or of many (N x 3); those outside are moved in."""
+        """Row and column of each end, for one pose or many (N x 3), clipped to the map."""
         pose = np.asarray(pose)[..., None, :]
         c, s = np.cos(pose[..., 2]), np.sin(pose[..., 2])
         x = pose[..., 0] + c * ends[:, 0] - s * ends[:, 1]
@@ -72,11 +72,11 @@ class Map:
         return into(y), into(x)
 
     def score(self, poses, ends):
-        """How well the ends fit, by pose; a wall that was seen often counts little more."""
+        """How well the ends fit, for each pose; a wall that was seen often counts only a little more."""
         return np.log1p(self.ends[self.cells(poses, ends)]).mean(axis=-1)
 
     def share(self, pose, ends):
-        """Of the ends, how many are where others were."""
+        """The share of the ends that are where earlier ends were."""
         return (self.ends[self.cells(pose, ends)] > 0.5).mean()
 
     def add(self, pose, ends):
@@ -92,7 +92,7 @@ class Map:
         return np.all((np.hypot(away[:, 0], away[:, 1]) > KEYFRAME_M) | (away[:, 2] > KEYFRAME_RAD))
 
     def refine(self, pose, ends, step_m, step_rad):
-        """Climbs to the best pose nearby, by ever smaller steps."""
+        """Climbs to the best pose nearby, in ever smaller steps."""
         best, steps = self.score(pose, ends), np.array([step_m, step_m, step_rad])
         around = np.array(np.meshgrid(*[[-1, 0, 1]] * 3)).reshape(3, -1).T
         while steps[0] > 0.002:
@@ -105,7 +105,7 @@ class Map:
         return pose
 
     def search(self, ends):
-        """The best pose near any that the map was seen from, in any direction."""
+        """The best pose near any from which the map was seen, with any heading."""
         if len(ends) < LEAST_ENDS:
             return np.zeros(3)
         few = ends[::max(1, len(ends) // 90)]
@@ -161,7 +161,7 @@ class LaserSlam(System):
         return planar(found) @ laser_from_camera if self.is_believed(found, ends) else None
 
     def is_believed(self, pose, ends):
-        """Whether enough of a scan fits; the first one has nothing to fit to."""
+        """Whether enough of a scan fits the map; the first scan only needs enough ends."""
         fits = not self.map.seen_from or self.map.share(pose, ends) > LEAST_SHARE
         return len(ends) >= LEAST_ENDS and fits
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""RGB-D SLAM of Open3D's parts: odometry from keyframe to frame, loops between keyframes, a pose graph.
-(Its dense tracking against a model needs a filter that Debian's build lacks on a CPU.)
+"""RGB-D SLAM built from Open3D's parts: odometry from keyframe to frame, loop closures between keyframes,
+a pose graph. (Open3D's dense tracking against a model needs a filter that Debian's CPU build lacks.)
 Needs apt-get install python3-open3d
 """
 import os
@@ -14,14 +14,14 @@ from modelhouse.system import Reply, System, serve
 
 STEP = 2                               # every second pixel: a quarter of the time
 FAR_M = 4.0                            # depth beyond is noise
-KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # a frame so far from the last keyframe becomes one
-LOST_M, LOST_RAD = 0.3, 0.3            # between two frames no camera moves so far
-LOOP_M, LOOP_RAD, LOOP_GAP = 0.8, 0.5, 15  # keyframes so near that were made apart may be a loop
-LOOP_ERROR_M, LOOP_ERROR_RAD = 0.3, 0.2    # beyond that it would contradict the path: refused
+KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # a frame this far from the last keyframe becomes one
+LOST_M, LOST_RAD = 0.3, 0.3            # no camera moves this far between two frames
+LOOP_M, LOOP_RAD, LOOP_GAP = 0.8, 0.5, 15  # keyframes this close, but this many apart, may close a loop
+LOOP_ERROR_M, LOOP_ERROR_RAD = 0.3, 0.2    # a loop with a larger error contradicts the path: rejected
 
 
 def size_of(motion):
-    """Length (m) and angle (rad)."""
+    """Length (m) and angle (rad) of a motion."""
     return (np.linalg.norm(motion[:3, 3]),
             np.arccos(np.clip((np.trace(motion[:3, :3]) - 1) / 2, -1, 1)))
 

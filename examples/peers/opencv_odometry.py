@@ -8,12 +8,12 @@ import numpy as np
 
 from modelhouse.system import Reply, System, serve
 
-KEYFRAME_M, KEYFRAME_RAD = 0.10, 0.10  # a frame so far from the last keyframe becomes one
-FAR_M, FAR_RAD = 0.3, 0.3              # between two frames no camera moves so far: lost
+KEYFRAME_M, KEYFRAME_RAD = 0.10, 0.10  # a frame this far from the last keyframe becomes one
+FAR_M, FAR_RAD = 0.3, 0.3              # no camera moves this far between two frames: lost
 
 
 def size_of(motion):
-    """Length (m) and angle (rad)."""
+    """Length (m) and angle (rad) of a motion."""
     return (np.linalg.norm(motion[:3, 3]),
             np.arccos(np.clip((np.trace(motion[:3, :3]) - 1) / 2, -1, 1)))
 
@@ -23,7 +23,7 @@ class OpenCvOdometry(System):
         cv2.setNumThreads(1)
         self.odometry = cv2.rgbd.RgbdICPOdometry_create(self.camera.matrix.astype(np.float32))
         self.keyframe, self.world_from_keyframe = None, np.eye(4)
-        self.key_from_now = np.eye(4)  # the last frame, by the keyframe
+        self.key_from_now = np.eye(4)  # the last frame's pose relative to the keyframe
 
     def reset(self):
         self.start()
@@ -38,7 +38,7 @@ class OpenCvOdometry(System):
         now = (gray, depth, mask)
         if self.keyframe is None:
             return self.begin(now, self.world_from_keyframe @ self.key_from_now)
-        # OpenCV's motion takes points of the first image to the second.
+        # OpenCV's motion maps points of the first image to the second.
         found, motion = self.odometry.compute(*now, *self.keyframe, None, self.key_from_now)
         meters, angle = size_of(np.linalg.inv(self.key_from_now) @ motion) if found else (1, 1)
         if not found or meters > FAR_M or angle > FAR_RAD:

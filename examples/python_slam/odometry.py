@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""RGB-D odometry from frame to frame, with keyframes to recover by: a SLAM system as small as can
-take part in a suite.
+"""RGB-D odometry from frame to frame, with keyframes for recovery: about the smallest SLAM system
+that can take part in a suite.
 
 Reads a folder in TUM's layout, writes a trajectory in TUM's format (camera to world, the first
 frame at the origin). Needs numpy and OpenCV: apt-get install python3-opencv
@@ -14,7 +14,7 @@ import numpy as np
 
 
 def read_camera(settings):
-    """The 3 x 3 matrix K, distortion, and steps per meter of depth, from ORB-SLAM2's keys."""
+    """The 3 x 3 matrix K, distortion, and depth steps per meter, from a file with ORB-SLAM2's keys."""
     file = cv2.FileStorage(settings, cv2.FILE_STORAGE_READ)
     fx, fy, cx, cy, *distortion = (
         file.getNode(f"Camera.{key}").real() for key in "fx fy cx cy k1 k2 p1 p2".split())
@@ -30,14 +30,14 @@ def find_keypoints(orb, image, depth_m, k, distortion):
     pixels = np.array([keypoint.pt for keypoint in keypoints])
     columns, rows = np.rint(pixels).astype(int).T
     z = depth_m[rows, columns]
-    near = (z > 0.3) & (z < 5.0)  # beyond that a structured-light sensor's depth is noise
+    near = (z > 0.3) & (z < 5.0)  # beyond that, a structured-light sensor's depth is noise
     rays = cv2.undistortPoints(pixels[:, None], k, distortion)[:, 0]
     points = np.column_stack([rays * z[:, None], z])
     return pixels[near], descriptors[near], points[near]
 
 
 def estimate_motion(before, now, k, distortion):
-    """now_from_before as a 4 x 4 matrix; None where too few keypoints agree on one."""
+    """now_from_before as a 4 x 4 matrix; None if too few keypoints agree on one."""
     _, descriptors_before, points_before = before
     pixels, descriptors, _ = now
     if len(descriptors_before) < 20 or len(descriptors) < 20:
@@ -59,7 +59,7 @@ def estimate_motion(before, now, k, distortion):
 
 
 def recover(now, keyframes, last, k, distortion):
-    """world_from_camera of a frame that does not follow the last one, by a keyframe near to it."""
+    """world_from_camera of a frame that cannot be matched to the one before, from a keyframe near it."""
     near = sorted(keyframes, key=lambda of: np.linalg.norm(of[1][:3, 3] - last[:3, 3]))
     for features, world_from_keyframe in near[:20]:
         motion = estimate_motion(features, now, k, distortion)
@@ -76,7 +76,7 @@ def is_new(world_from_camera, keyframes):
 
 
 def quaternion(rotation):
-    """x, y, z, w of a rotation matrix."""
+    """The quaternion x, y, z, w of a rotation matrix."""
     vector = cv2.Rodrigues(rotation)[0].ravel()
     half_angle = np.linalg.norm(vector) / 2
     return [*(vector * np.sinc(half_angle / np.pi) / 2), np.cos(half_angle)]

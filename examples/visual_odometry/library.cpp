@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In the process of the bench: a shared library with one function (docs/outside_systems.md).
+// Runs in the bench's process: a shared library with one function (docs/outside_systems.md).
 #include <modelhouse/system.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ mh_system* mh_make_system(const mh_setup* setup) try {
                      .rewind = rewind,
                      .reset = reset,
                      .freeze = freeze,
-                     .trajectory = nullptr,   // the replies are all there is
+                     .trajectory = nullptr,   // the replies suffice
                      .begin_query = nullptr,  // relocalize() keeps no state:
                      .blank = nullptr,        // nothing to forget or to lose
                      .relocalize = relocalize,

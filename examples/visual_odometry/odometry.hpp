@@ -11,7 +11,7 @@
 #include <opencv2/features2d.hpp>
 
 /// A small RGB-D visual odometry: each frame is matched to a keyframe (ORB, ratio test) and
-/// localized by PnP, or where that fails, by wheel odometry, if there is any. No bundle adjustment,
+/// localized by PnP or, where that fails, from wheel odometry, if available. No bundle adjustment,
 /// no loop closing: an example of a user's own system, not a competitor.
 namespace example {
 
@@ -24,9 +24,9 @@ struct Camera {
 /// Reads Camera.fx, ... from a settings file. @throws cv::Exception if it cannot be read.
 Camera read_settings(const std::string& file);
 
-/// From x, y, z, qx, qy, qz, qw.
+/// The pose given as x, y, z, qx, qy, qz, qw.
 cv::Affine3d pose_of(const std::array<double, 7>& values);
-/// x, y, z, qx, qy, qz, qw.
+/// The pose as x, y, z, qx, qy, qz, qw.
 std::array<double, 7> pose_values(const cv::Affine3d& pose);
 /// The same as text, with all digits that a double has.
 std::string pose_numbers(const cv::Affine3d& pose, char separator);

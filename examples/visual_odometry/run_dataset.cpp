@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Where the wheels place the camera, by stamp, if the folder says it.
+/// Where the wheels place the camera, by stamp; empty if the folder has no odometry.
 std::map<std::string, cv::Affine3d> read_wheels(const std::string& file) {
   std::map<std::string, cv::Affine3d> wheels;
   std::ifstream lines(file);

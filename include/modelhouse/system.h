@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A SLAM system as a shared library (docs/outside_systems.md, "Library"), loaded by a process of
- * its own beside the bench. C99 and C++; this header is self-contained, so a copy of it is all you
+/* A SLAM system as a shared library (docs/outside_systems.md, "Library"), loaded by a separate
+ * process next to the bench. C99 and C++; this header is self-contained, so a copy of it is all you
  * need.
  *
  * The library defines mh_make_system(). A suite names the library:
@@ -66,13 +66,13 @@ typedef struct mh_frame {
   const uint8_t* labels; /**< class id per pixel; NULL if the run has no labels */
   int32_t seed;          /**< seeds all randomness of this call, >= 0; each attempt has its own */
   /* New members come last, so that a library that was built before them still works. */
-  /** Where the wheels alone place the camera; their world drifts. NULL: no odometry. */
+  /** Camera pose by wheel odometry alone, in a world that drifts. NULL: no odometry. */
   const struct mh_pose* odometry;
-  /** What the inertial sensor delivered since the frame before (after rewind(): since the frame
-   * before this one in the sequence), in order. */
+  /** What the inertial sensor delivered since the previous frame (after rewind(): since the frame
+   * that precedes this one in the sequence), in order. */
   const struct mh_imu* imu;
   int32_t imu_count; /**< 0: none */
-  /** What the robot's lasers measure at the stamp; also in queries. */
+  /** What the robot's lasers measure at the stamp; given in queries, too. */
   const struct mh_laser* lasers;
   int32_t laser_count; /**< 0: none */
 } mh_frame;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Modelhouse from Python: a simulated robot, recordings, SLAM and its equations as arrays, and a base
-class for a SLAM system of one's own (System, serve), which needs numpy alone."""
+"""Modelhouse from Python: a simulated robot, recordings, SLAM, its equations on arrays, and a base
+class for your own SLAM system (System, serve), which needs only numpy."""
 from typing import TYPE_CHECKING, Any
 
 from .environments import KidnapEnv, SearchEnv

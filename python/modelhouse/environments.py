@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Object search and kidnapping in the shape of gymnasium environments; needs none of it."""
+"""Object search and kidnapping with the interface of gymnasium environments; gymnasium is not needed."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
@@ -12,12 +12,13 @@ if TYPE_CHECKING:
 
 
 class SearchEnv:
-    """A robot is put somewhere and is to find an object of a class: it has arrived when it stops
-    within arrival_m of one, with no wall between.
+    """A robot is put somewhere and must find an object of a class: it has arrived when it stops
+    within arrival_m of one, with no wall in between.
 
     An action is (vx, vy, wz, stop): m/s and rad/s in the base's frame, held for dt seconds; stop > 0
-    ends the episode. The reward is SPL at its end (Anderson et al., arXiv 1807.06757): 0 without
-    success, else the shortest way over the way driven; before, 0. It is cut off after limit_s."""
+    ends the episode. The last reward is the SPL (Anderson et al., arXiv 1807.06757): 0 without success,
+    else the length of the shortest path divided by that of the path driven; all others are 0. The
+    episode is cut off after limit_s."""
 
     def __init__(self, simulation: Simulation, goals: Sequence[str], dt: float = 0.1,
                  limit_s: float = 240, arrival_m: float = 1.0) -> None:
@@ -29,8 +30,8 @@ class SearchEnv:
 
     def reset(self, *, seed: Optional[int] = None,
               options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
-        """Puts the robot somewhere else; the same seed is the same start. Returns what it senses after
-        a moment at rest, and `goal`."""
+        """Puts the robot somewhere else; the same seed gives the same start. Returns what it senses
+        after a step at rest, and `goal`."""
         number = self._episodes if seed is None else seed
         self._episodes += 1
         self.start = self.simulation.draw_start(self.goals, number, self.arrival_m)
@@ -42,7 +43,7 @@ class SearchEnv:
         """Returns observation, reward, terminated, truncated and info: `goal`, and at the end
         `success` and `spl`."""
         if self.start is None:
-            raise RuntimeError("reset() begins an episode")
+            raise RuntimeError("no episode has begun: call reset() first")
         vx, vy, wz, stop = (float(number) for number in action)
         seen = self.simulation.step(vx, vy, wz, self.dt)
         truth = self.simulation.truth()
@@ -59,11 +60,12 @@ class SearchEnv:
 
 
 class KidnapEnv:
-    """A robot is carried somewhere in the dark and is to say where it is.
+    """A robot is carried somewhere in the dark and must say where it is.
 
     An action is (vx, vy, wz, answer): m/s and rad/s held for dt seconds, and world_from_camera of the
-    last frame (4 x 4), or None to look further. An answer ends the episode: the reward is 1 if it is
-    within 0.25 m and 10 degrees of the truth, as the bench judges, else -1. It is cut off after limit_s.
+    last frame (4 x 4), or None to keep looking. An answer ends the episode: the reward is 1 if it is
+    within 0.25 m and 10 degrees of the truth, as in the bench, else -1. The episode is cut off after
+    limit_s.
     """
 
     def __init__(self, simulation: Simulation, dt: float = 0.1, limit_s: float = 60,
@@ -74,7 +76,7 @@ class KidnapEnv:
 
     def reset(self, *, seed: Optional[int] = None,
               options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
-        """Carries the robot to where the seed says; `options`: {"pose": (x, y, heading)} says it itself.
+        """Carries the robot to a place drawn from the seed, or to options["pose"], (x, y, heading), if given.
         Returns what it senses when the light is on again."""
         self._episodes += 1
         self.simulation.reset((options or {}).get("pose"), self._episodes if seed is None else seed)

@@ -11,22 +11,22 @@ from typing import Any, Dict, List, Sequence, Tuple, Union
 
 
 class Results:
-    """What `modelhouse bench` wrote into a folder. Tables are pandas.DataFrame if pandas is there, else
-    a dict of lists by column.
+    """What `modelhouse bench` wrote into a folder. Tables are pandas.DataFrame if pandas is installed,
+    else a dict of lists by column.
 
-    Raises FileNotFoundError if the folder holds no results.sqlite, ValueError if that is something else."""
+    Raises FileNotFoundError if the folder has no results.sqlite, ValueError if that file is something else."""
 
     def __init__(self, folder: Union[str, "os.PathLike[str]"]) -> None:
         self.folder = pathlib.Path(folder)
         file = self.folder if self.folder.suffix == ".sqlite" else self.folder / "results.sqlite"
         if not file.is_file():
-            raise FileNotFoundError(f"{file}: there are no results")
+            raise FileNotFoundError(f"{file}: does not exist, so there are no results")
         self._database = sqlite3.connect(file.absolute().as_uri() + "?mode=ro", uri=True)
         try:
             self._database.execute("SELECT key, name FROM runs LIMIT 1")
             self._database.execute("SELECT key, point, name, value FROM metrics LIMIT 1")
         except sqlite3.DatabaseError as error:
-            raise ValueError(f"{file}: is no results file of this version ({error})") from None
+            raise ValueError(f"{file}: is not a results file of this version ({error})") from None
 
     def sql(self, query: str, parameters: Sequence[Any] = ()) -> Any:
         """The rows of any query over the tables of docs/store.md."""
@@ -40,22 +40,22 @@ class Results:
         return pandas.DataFrame(rows, columns=columns)
 
     def runs(self) -> Any:
-        """A line per run: name, environment, system, labels, level, trial, status and more."""
+        """One row per run: name, environment, system, labels, level, trial, status and more."""
         return self.sql("SELECT * FROM runs ORDER BY name")
 
     def metrics(self) -> Any:
-        """A line per run, parameter point and metric: run, point, name, value."""
+        """One row per run, parameter point and metric: run, point, name, value."""
         return self.sql("SELECT runs.name AS run, environment, system, labels, level, trial, point, "
                         "metrics.name AS name, value FROM metrics JOIN runs USING (key) "
                         "ORDER BY runs.name, point, metrics.name")
 
     def queries(self) -> Any:
-        """A line per query: what was asked, answered and true."""
+        """One row per query: what was asked, the answer and the truth."""
         return self.sql("SELECT runs.name AS run, queries.* FROM queries JOIN runs USING (key) "
                         "ORDER BY runs.name, point, query_set, frame")
 
     def frames(self) -> Any:
-        """A line per frame of the mapping tours: true and estimated poses."""
+        """One row per frame of the mapping tours: true and estimated poses."""
         return self.sql("SELECT runs.name AS run, frames.* FROM frames JOIN runs USING (key) "
                         "ORDER BY runs.name, frame")
 

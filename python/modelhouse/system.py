@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A SLAM system in Python: subclass System, then serve() an object of it. Needs numpy alone.
+"""A SLAM system in Python: subclass System, then serve() an instance of it. Needs only numpy.
 
     class Mine(System):
         def track(self, frame):
@@ -29,7 +29,7 @@ Pose = Union[npt.NDArray[np.floating[Any]], Sequence[float]]
 
 
 def matrix(numbers: Sequence[float]) -> Floats:
-    """The 4 x 4 transform of x y z (m) and a unit quaternion x y z w."""
+    """The 4 x 4 transform from x y z (m) and a unit quaternion x y z w."""
     x, y, z, w = numbers[3:]
     pose = np.eye(4)
     pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -40,21 +40,21 @@ def matrix(numbers: Sequence[float]) -> Floats:
 
 
 def numbers(pose: Pose) -> List[float]:
-    """x y z (m) and the unit quaternion x y z w of a 4 x 4 transform; seven numbers are kept.
+    """x y z (m) and the unit quaternion x y z w of a 4 x 4 transform; seven numbers are returned as they are.
 
-    Raises ValueError if it is neither, holds a number that is not finite, or is no rigid motion."""
+    Raises ValueError if it is neither, holds a number that is not finite, or is not a rigid motion."""
     given = np.asarray(pose, dtype=np.float64)
     if given.shape not in ((4, 4), (7,)) or not np.isfinite(given).all():
-        raise ValueError(f"no pose: expected 4 x 4 or 7 finite numbers, got shape {given.shape}")
+        raise ValueError(f"not a pose: expected 4 x 4 or 7 finite numbers, got shape {given.shape}")
     if given.shape == (7,):
         if abs(np.linalg.norm(given[3:]) - 1) > 1e-3:
-            raise ValueError("no pose: its quaternion is not of unit length")
+            raise ValueError("not a pose: its quaternion is not of unit length")
         return [float(number) for number in given]
     if (np.abs(given[:3, :3].T @ given[:3, :3] - np.eye(3)).max() > 1e-3
             or np.linalg.det(given[:3, :3]) < 0 or (given[3] != (0, 0, 0, 1)).any()):
-        raise ValueError("no pose: its rotation is none, or its last row is not 0 0 0 1")
+        raise ValueError("not a pose: its rotation part is not a rotation, or its last row is not 0 0 0 1")
     r = given[:3, :3]
-    # Its largest eigenvalue's vector is the quaternion (Bar-Itzhack, 2000); the lower half counts.
+    # The eigenvector of the largest eigenvalue is the quaternion (Bar-Itzhack, 2000); eigh reads the lower half.
     four = np.zeros((4, 4))
     four[np.diag_indices(4)] = [r[0, 0] - r[1, 1] - r[2, 2], r[1, 1] - r[0, 0] - r[2, 2],
                                 r[2, 2] - r[0, 0] - r[1, 1], np.trace(r)]
@@ -75,7 +75,7 @@ class Camera:
     cy: float
     distortion: Tuple[float, ...]  #: k1 k2 p1 p2 k3, and k4 k5 k6 if they are not 0, as in OpenCV
     fps: float
-    depth_per_meter: float  #: steps of a depth image in one meter
+    depth_per_meter: float  #: steps of a depth image per meter
 
     @property
     def matrix(self) -> Floats:
@@ -94,8 +94,8 @@ class Laser:
 
 
 class Frame:
-    """What the camera and, if the suite gives them, other sensors deliver at a moment. Images are
-    read when they are first asked for, which must be before the reply: the next frame replaces them.
+    """What the camera and, if the suite provides them, other sensors deliver at one time. Images are
+    read when they are first used, which must be before the reply: the next frame replaces them.
     """
 
     def __init__(self, request: Dict[str, Any], depth_per_meter: float) -> None:
@@ -104,20 +104,20 @@ class Frame:
         self._read: Dict[str, Any] = {}
         self.is_over = False
         self.stamp = float(request["stamp"])  #: s
-        self.stamp_text: str = request["stamp"]  #: the same to the nanosecond
-        self.seed: int = request["seed"]  #: of all randomness in this call
+        self.stamp_text: str = request["stamp"]  #: the same as text, to the nanosecond
+        self.seed: int = request["seed"]  #: for all randomness in this call
 
     def _image(self, name: str) -> npt.NDArray[Any]:
         if name not in self._read:
             if self.is_over:
-                raise RuntimeError(f"the {name} image of an earlier frame: read it before the reply")
+                raise RuntimeError(f"the {name} image is of an earlier frame: read it before the reply")
             self._read[name] = _read_image(self._request[name])
         image: npt.NDArray[Any] = self._read[name]
         return image
 
     @property
     def color(self) -> npt.NDArray[np.uint8]:
-        """(H, W, 3), red green blue."""
+        """(H, W, 3); red, green, blue."""
         return self._image("color")
 
     @property
@@ -130,27 +130,27 @@ class Frame:
 
     @property
     def labels(self) -> Optional[npt.NDArray[np.uint8]]:
-        """(H, W), the class of each pixel, 0 unknown; None if the run has no labels."""
+        """(H, W), the class of each pixel, 0 if unknown; None if the run has no labels."""
         return self._image("labels") if "labels" in self._request else None
 
     @property
     def odometry(self) -> Optional[Floats]:
         """4 x 4: where the wheels alone place the camera, in a world that drifts; None if the suite
-        does not give it."""
+        does not provide it."""
         pose = self._request.get("odometry")
         return None if pose is None else matrix(pose)
 
     @property
     def imu(self) -> Floats:
         """(N, 7): stamp (s), angular rate (rad/s), specific force (m/s^2), in the camera's axes,
-        since the frame before."""
+        since the previous frame."""
         readings = self._request.get("imu", [])
         return np.array([[float(number) for number in reading]
                          for reading in readings]).reshape(-1, 7)
 
     @property
     def lasers(self) -> List[Laser]:
-        """The scans at the stamp; empty if the suite gives none."""
+        """The scans at the stamp; empty if the suite provides none."""
         return [Laser(scan["name"], matrix(scan["camera_from_laser"]),
                       scan["first_rad"] + scan["step_rad"] * np.arange(len(scan["ranges_m"])),
                       np.array(scan["ranges_m"]), (scan["limits_m"][0], scan["limits_m"][1]))
@@ -159,13 +159,13 @@ class Frame:
 
 @dataclass
 class Reply:
-    """What a system may say of a frame beside its pose; what is None is unknown."""
+    """What a system may report about a frame: its pose and more. None means unknown."""
     pose: Optional[Pose] = None  #: world_from_camera; None: lost
     keyframe: bool = False       #: it became a keyframe: its depth is added to the occupancy map
     keypoints: Optional[int] = None
     inliers: Optional[int] = None
     map: int = 0                 #: number of the map that the pose is in
-    map_reset: bool = False      #: the map was discarded, a new one begins with this frame
+    map_reset: bool = False      #: the map was discarded; a new one begins with this frame
     stage: Optional[str] = None  #: no_candidate, matches, pnp, inliers or verified
     candidates: Dict[str, int] = field(default_factory=dict)  #: keyframes, c1, c2, c3, final
 
@@ -181,15 +181,15 @@ class System:
 
     def track(self, frame: Frame) -> Union[Pose, Reply, None]:
         """The next frame of the mapping tour. Returns world_from_camera as 4 x 4 or as x y z qx qy qz
-        qw, in a world that stays the same; None if it is lost."""
+        qw, in a world that stays the same; None if tracking is lost."""
         raise NotImplementedError
 
     def relocalize(self, frame: Frame) -> Union[Pose, Reply, None]:
-        """Finds a frame in the frozen map; nothing of an earlier query may help."""
+        """Localizes a frame in the frozen map; it must not use anything from earlier queries."""
         return None
 
     def blank(self, frame: Frame) -> Union[Pose, Reply, None]:
-        """A black frame before a query. One that still returns a pose is shown another."""
+        """A black frame before a query. A system that still returns a pose is shown another one."""
         return None
 
     def rewind(self) -> None:
@@ -199,14 +199,14 @@ class System:
         """Forgets everything, the map included."""
 
     def freeze(self) -> Optional[List[Tuple[str, Pose]]]:
-        """The map must not change any more. May return the finished trajectory: Frame.stamp_text and
-        pose of each tracked frame; None: the replies count."""
+        """From now on, the map must not change. May return the final trajectory: Frame.stamp_text and
+        pose of each tracked frame; None: the poses in the replies count."""
         return None
 
 
 def serve(system: System) -> None:
-    """Speaks for a system until the bench is done (docs/outside_systems.md, "Conversation mode").
-    What the system prints goes to the log. An exception ends the run with its last line."""
+    """Answers the bench for a system until the bench is done (docs/outside_systems.md, "Conversation
+    mode"). What the system prints goes to the log. An exception ends the run; its last line is reported."""
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1)
     sys.stdout.flush()
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
@@ -214,7 +214,7 @@ def serve(system: System) -> None:
         request = json.loads(line)
         try:
             text = json.dumps({"id": request["id"], **_answer(system, request)}, allow_nan=False)
-        except BaseException as error:  # whatever it is, the bench is to be told
+        except BaseException as error:  # whatever it is, the bench must be told
             traceback.print_exc()
             what = traceback.format_exception_only(type(error), error)[-1].strip()
             print(json.dumps({"id": request["id"], "error": what.replace("\n", " ")}), file=replies)
@@ -254,7 +254,7 @@ def _fields(reply: Reply) -> Dict[str, Any]:
     said: Dict[str, Any] = {"pose": None if reply.pose is None else numbers(reply.pose)}
     for name in ("keypoints", "inliers"):
         if (number := getattr(reply, name)) is not None:
-            said[name] = operator.index(number)  # numpy's integers, too; no others
+            said[name] = operator.index(number)  # accepts numpy's integers, too, but no other numbers
     if reply.stage is not None:
         said["stage"] = reply.stage
     for name in ("keyframe", "map_reset"):
@@ -268,7 +268,7 @@ def _fields(reply: Reply) -> Dict[str, Any]:
 
 
 def _read_image(file: str) -> npt.NDArray[Any]:
-    """A binary PGM or PPM as the bench writes them."""
+    """Reads a binary PGM or PPM as written by the bench."""
     data = pathlib.Path(file).read_bytes()
     kind, width, height, most = data[:60].split(maxsplit=4)[:4]
     pixel = np.dtype(">u2" if int(most) > 255 else "u1")

@@ -16,13 +16,13 @@ namespace mh {
 /// the wheel's own (1 + scale_spread * normal), plus slip: a normal error of variance
 /// slip_per_sqrt_m^2 times the distance. The poses are integrated from the readings. So the drift
 /// of a straight drive of length L is scale * L along it on average, and its random part grows with
-/// the root of L, as in Martinelli, "The odometry error of a mobile robot with a synchronous drive
-/// system", ICRA 2002.
+/// the square root of L, as in Martinelli, "The odometry error of a mobile robot with a synchronous
+/// drive system", ICRA 2002.
 class WheelOdometer {
  public:
   WheelOdometer(const WheelBase& wheels, const OdometryErrors& errors, std::uint64_t seed);
 
-  /// Drives to the next pose. @returns odom_from_base; at first it is world_from_base itself
+  /// Drives to the next pose. @returns odom_from_base, initially world_from_base itself
   const SE3& drive_to(const SE3& world_from_base);
   /// The base was lifted to another pose: its wheels did not turn.
   void lift_to(const SE3& world_from_base) { before_ = world_from_base; }

@@ -50,8 +50,8 @@ Camera read_lens(YamlReader& yaml) {
   camera.cy_px = 0.5 * (camera.height_px - 1);
   camera.rate_hz = lens.rate_hz;
   camera.baseline_m = lens.baseline_m;
-  // That of the levels: a Kinect's 0.0019 z^2 m (Nguyen et al., 3DIMPVT 2012) is 0.08 px at
-  // fx = 577 px, rounded up.
+  // As in the sensor levels: a Kinect's 0.0019 z^2 m (Nguyen et al., 3DIMPVT 2012) is 0.08 px at fx
+  // = 577 px, rounded up.
   camera.disparity_sigma_px = 0.1;
   camera.disparity_sigma_is_given = true;
   return camera;
@@ -188,18 +188,17 @@ class EquipmentReader {
       const Joint& wheel = joint(name);
       if (std::ranges::find(wheels.wheels, wheel.name, &WheelBase::Wheel::joint) !=
           wheels.wheels.end())
-        name.fail(fmt::format("'{}' stands here twice", wheel.name));
+        name.fail(fmt::format("'{}' is listed twice", wheel.name));
       const SE3 base_from_wheel = e_.base_from(wheel.child);
       const Eigen::Vector3d axle = base_from_wheel.rotation() * wheel.axis;
       constexpr double kSteep = 0.5;  // 30 degrees: cambered wheels roll, a steered axis does not
       if (wheel.kind != Joint::Kind::kTurning || std::abs(axle.z()) > kSteep)
         name.fail(fmt::format(
-            "joint '{}' is no wheel's: it {}", wheel.name,
+            "joint '{}' is not a wheel joint: it {}", wheel.name,
             wheel.kind == Joint::Kind::kTurning ? "turns about an upright axis" : "does not turn"));
       if (const std::string steered = steered_by(wheel); !steered.empty())
         name.fail(fmt::format(
-            "joint '{}' hangs on joint '{}', which steers it: leave `wheels` out, such a base is "
-            "not known",
+            "joint '{}' is steered by joint '{}': leave out `wheels`, such bases are not supported",
             wheel.name, steered));
       if (!(wheel.velocity > 0))
         name.fail(fmt::format("the URDF limits the velocity of joint '{}' to 0", wheel.name));

@@ -17,7 +17,7 @@
 
 namespace mh {
 
-/// Limits of a base. Those of velocity, acceleration and jerk are in any direction for an
+/// Limits of a base. Those on velocity, acceleration and jerk apply in any direction for an
 /// omnidirectional base; a differential one drives only forward and backward.
 struct BaseLimits {
   double max_velocity_m_per_s = 0.35;
@@ -51,9 +51,9 @@ struct WheelBase {
 
 /// Errors of wheel odometry. See odometry.hpp.
 struct OdometryErrors {
-  double scale = 0.0;            ///< of all wheels' radius: 0.01 = 1 % too long
-  double scale_spread = 0.0;     ///< of each wheel's, a normal draw per seed
-  double slip_per_sqrt_m = 0.0;  ///< m of error after 1 m of rim, growing with its root
+  double scale = 0.0;            ///< common to all wheels: 0.01 = 1 % too long
+  double scale_spread = 0.0;     ///< standard deviation between wheels, per seed
+  double slip_per_sqrt_m = 0.0;  ///< m of error after 1 m of rim travel, growing with its root
 };
 
 /// A fan of rays in a plane.
@@ -102,9 +102,9 @@ struct HeadJoints {
 struct Equipment {
   KinematicTree tree;
   SE3 base_from_root;                    ///< of the tree
-  std::optional<WheelBase> wheels = {};  ///< without: omnidirectional, without odometry
+  std::optional<WheelBase> wheels = {};  ///< none: omnidirectional, no odometry
   std::optional<HeadJoints> head = {};
-  std::string depth_camera_link;  ///< which the camera of Robot is mounted on; empty: the base
+  std::string depth_camera_link;  ///< where Robot::camera is mounted; empty: the base
   std::vector<MountedCamera> cameras;
   std::vector<std::string> bumpers;  ///< links where the shell makes contact first
   std::vector<LaserScanner> lasers;
@@ -130,7 +130,7 @@ struct Robot {
   SE3 base_from_camera;                        ///< optical frame: x right, y down, z forward
   std::shared_ptr<const Equipment> equipment;  ///< null if the file names no URDF
 
-  /// Null if it has none.
+  /// Its wheels; null if it has none.
   const WheelBase* wheels() const {
     return equipment && equipment->wheels ? &*equipment->wheels : nullptr;
   }
@@ -142,7 +142,7 @@ struct Robot {
 };
 
 /// Reads robots/<name>/<name>.yaml. @throws InputError naming file, line, field and value.
-/// @param warnings  what is odd in its files, a line each
+/// @param warnings  receives a line for each oddity in its files; may be null
 Robot load_robot(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr);
 
 }  // namespace mh

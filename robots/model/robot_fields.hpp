@@ -20,8 +20,9 @@ template <MaybeConst<Robot> R, class Visit>
 void body_fields(R& robot, Visit& v) {
   v("mass_kg", robot.mass_kg, setting::required({0.1, 1000}), "of the whole robot");
   v("footprint_radius_m", robot.footprint_radius_m, setting::required({0.02, 2}),
-    "a disc that holds it, seen from above");
-  v("height_m", robot.height_m, setting::required({0.05, 3}), "what it must pass under");
+    "of a disc that contains the robot, seen from above");
+  v("height_m", robot.height_m, setting::required({0.05, 3}),
+    "of the robot, which must fit under obstacles");
 }
 
 template <MaybeConst<BaseLimits> C, class Visit>
@@ -29,13 +30,13 @@ void fields(C& c, Visit& v) {
   auto& [max_velocity_m_per_s, max_acceleration_m_per_s2, max_turn_rad_per_s,
          max_turn_acceleration_rad_per_s2, max_jerk_m_per_s3, max_turn_jerk_rad_per_s3] = c;
   v("max_velocity_m_per_s", max_velocity_m_per_s, setting::required({0.01, 5}),
-    "in any direction; of a differential base: ahead and back");
+    "in any direction; for a differential base, forward and backward");
   v("max_acceleration_m_per_s2", max_acceleration_m_per_s2, setting::required({0.01, 20}), "");
   v("max_turn_rad_per_s", max_turn_rad_per_s, setting::required({0.01, 10}), "");
   v("max_turn_acceleration_rad_per_s2", max_turn_acceleration_rad_per_s2,
     setting::required({0.01, 50}), "");
-  v("max_jerk_m_per_s3", max_jerk_m_per_s3, {0.01, 1000}, "without: not limited");
-  v("max_turn_jerk_rad_per_s3", max_turn_jerk_rad_per_s3, {0.01, 1000}, "without: not limited");
+  v("max_jerk_m_per_s3", max_jerk_m_per_s3, {0.01, 1000}, "default: not limited");
+  v("max_turn_jerk_rad_per_s3", max_turn_jerk_rad_per_s3, {0.01, 1000}, "default: not limited");
 }
 
 /// The RGB-D camera as data sheets describe it.
@@ -87,7 +88,8 @@ void fields(C& c, Visit& v) {
   v("field_of_view_deg", field_of_view_deg, setting::required({0.1, 360}),
     "from first to last ray");
   v("sigma_m", sigma_m, {0, 1}, "standard deviation of a range's noise");
-  v("sigma_share", sigma_share, {0, 0.5}, "the same as a share of the range; the larger counts");
+  v("sigma_share", sigma_share, {0, 0.5},
+    "the same, as a share of the range; the larger of the two applies");
 }
 
 /// Fields of a sonar, without its link and range.
@@ -99,23 +101,24 @@ template <MaybeConst<ConeFields> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [field_of_view_deg, resolution_m] = c;
   v("field_of_view_deg", field_of_view_deg, setting::required({1, 170}), "of the cone");
-  v("resolution_m", resolution_m, setting::required({0, 1}), "step of a reading");
+  v("resolution_m", resolution_m, setting::required({0, 1}), "quantization step of a reading");
 }
 
 template <MaybeConst<OdometryErrors> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [scale, scale_spread, slip_per_sqrt_m] = c;
-  v("scale", scale, setting::required({-0.5, 0.5}), "of all wheels: 0.01 = 1 % too long");
-  v("scale_spread", scale_spread, setting::required({0, 0.2}), "of each wheel's, drawn by seed");
+  v("scale", scale, setting::required({-0.5, 0.5}), "of all wheels: 0.01 reads 1 % too long");
+  v("scale_spread", scale_spread, setting::required({0, 0.2}),
+    "standard deviation of each wheel's own scale, drawn by seed");
   v("slip_per_sqrt_m", slip_per_sqrt_m, setting::required({0, 0.5}),
-    "m of error after 1 m of rim, growing with its root");
+    "standard deviation in m after 1 m at the rim; grows with the square root of that distance");
 }
 
 template <MaybeConst<CollisionReflex> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [ahead_m, aside_m] = c;
-  v("ahead_m", ahead_m, setting::required({0, 3}), "from the shell, along its way");
-  v("aside_m", aside_m, setting::required({0, 3}), "to either side of its way");
+  v("ahead_m", ahead_m, setting::required({0, 3}), "from the shell, in the direction of travel");
+  v("aside_m", aside_m, setting::required({0, 3}), "to either side of that path");
 }
 
 }  // namespace mh

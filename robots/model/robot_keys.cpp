@@ -40,10 +40,10 @@ std::vector<RobotKey> robot_keys() {
   const CollisionReflex reflex;
   KeyLister list;
   list.mapping("");
-  list.add("name", "word", "how results call it");
+  list.add("name", "word", "the robot's name in results");
   list.add("base", "mapping", "the body that drives");
   list.add("camera", "mapping", "the RGB-D camera");
-  list.add("equipment", "mapping", "what hangs on the links of a URDF: other sensors", false);
+  list.add("equipment", "mapping", "what is mounted on the links of a URDF: other sensors", false);
 
   list.mapping("base");
   body_fields(robot, list);
@@ -62,18 +62,18 @@ std::vector<RobotKey> robot_keys() {
     list.add(key, value, meaning, false);
   };
   list.add("urdf", "file", "relative to the robot's file");
-  add_part("base_link", "link", "the base's frame, on the floor; without: the URDF's root");
-  add_part("wheels", "mapping", "without: drives in any direction, without odometry");
+  add_part("base_link", "link", "the base's frame, on the floor; default: the URDF's root");
+  add_part("wheels", "mapping", "if absent, the robot drives in any direction and has no odometry");
   add_part("head", "mapping", "joints that move the camera");
   add_part("depth_camera_link", "link",
-           "optical frame of the RGB-D camera; without: no head moves it");
-  add_part("cameras", "mapping", "further color cameras by name");
-  add_part("bumpers", "list of links", "where the shell is felt");
-  add_part("lasers", "mapping", "laser scanners by name");
-  add_part("sonars", "mapping", "sonars by name");
+           "optical frame of the RGB-D camera; if absent, no head moves the camera");
+  add_part("cameras", "mapping", "more color cameras, by name");
+  add_part("bumpers", "list of links", "where the shell makes contact first");
+  add_part("lasers", "mapping", "laser scanners, by name");
+  add_part("sonars", "mapping", "sonars, by name");
   add_part("imu_link", "link", "where the IMU sits");
-  add_part("odometry", "mapping", "how wheel odometry errs; without: not at all");
-  add_part("collision_reflex", "mapping", "where the robot stops by itself");
+  add_part("odometry", "mapping", "errors of wheel odometry; default: none");
+  add_part("collision_reflex", "mapping", "how close an obstacle must be to stop the robot");
 
   list.mapping("equipment.wheels");
   list.add("joints", "list of joints",
@@ -92,12 +92,12 @@ std::vector<RobotKey> robot_keys() {
   rate_fields(camera, list);
 
   list.mapping("equipment.lasers.NAME");
-  list.add("link", "link", "rays leave along x, turned about z");
+  list.add("link", "link", "rays leave along x, rotated about z");
   fields(fan, list);
   list.add("range_m", "2 numbers", "nearest and farthest reading");
 
   list.mapping("equipment.sonars.NAME");
-  list.add("link", "link", "looks along x");
+  list.add("link", "link", "the sonar looks along x");
   fields(cone, list);
   list.add("range_m", "2 numbers", "nearest and farthest reading");
 

@@ -88,7 +88,7 @@ class Places {
   }
   /// Throws urdfdom's message, with the first link or joint that it applies to.
   [[noreturn]] void fail_somewhere(const std::string& what) const {
-    // Each is parsed with all materials: with very many of both that takes too long.
+    // Each part is parsed with all materials, which takes too long if there are very many of both.
     constexpr std::size_t kMostBytes = 50'000'000;
     if (materials_.size() * (links_.size() + joints_.size()) > kMostBytes)
       throw InputError(fmt::format("{}: {}", file_, what));
@@ -136,7 +136,7 @@ class Places {
                          stub(parent) + (child == parent ? "" : stub(child)) + text_of(joint));
     const auto [other, first] = way_up_.emplace(child, Way{name, parent});
     if (!first)
-      fail_at_joint(name, fmt::format("link '{}' hangs on two joints, '{}' and '{}'", child,
+      fail_at_joint(name, fmt::format("link '{}' is the child of two joints, '{}' and '{}'", child,
                                       other->second.joint, name));
     hanging_.push_back(child);
   }
@@ -147,8 +147,7 @@ class Places {
          way = way_up_.find(way->second.parent))
       if (!passed.insert(way->first).second)
         fail_at_joint(way->second.joint,
-                      fmt::format("link '{}' hangs in a circle of joints, no way leads to it from "
-                                  "a root",
+                      fmt::format("link '{}' is part of a cycle of joints, which no root leads to",
                                   way->first));
     leads_up_.merge(passed);
   }
@@ -163,7 +162,7 @@ class Places {
 
   std::string file_;
   std::map<std::string, int> line_of_link_, line_of_joint_;
-  // The text of each as in a URDF of its own.
+  // The text of each element, as in a URDF of its own.
   std::string materials_;
   std::vector<std::pair<std::string, std::string>> links_, joints_;  // name, text
   std::map<std::string, Way> way_up_;                                // by child
@@ -264,8 +263,9 @@ Joint read_joint(const urdf::Joint& from, const Places& places) {
   return joint;
 }
 
-/// Sorts joints so that each one's parent link precedes it: the order of repeated passes, each
-/// taking every joint whose parent is known. They form a tree (Places).
+/// Sorts joints so that each one's parent link precedes it: in the order in which repeated passes
+/// would take them if each pass took every joint whose parent is known. The joints form a tree
+/// (checked by Places).
 std::vector<Joint> from_root(std::vector<Joint> joints, const std::string& root) {
   std::multimap<std::string_view, std::size_t> below;  // by parent
   for (std::size_t i = 0; i < joints.size(); ++i) below.emplace(joints[i].parent, i);

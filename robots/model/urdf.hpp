@@ -26,7 +26,7 @@ struct Joint {
   Kind kind = Kind::kFixed;
   SE3 parent_from_child;                            ///< at position 0
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the child's frame
-  // Radians, meters, per second; newton meters or newtons. Without limits: infinite.
+  // rad or m, the same per second, N m or N; infinite without limits.
   double lower = 0, upper = 0, velocity = 0, effort = 0;
 };
 
@@ -37,7 +37,7 @@ struct KinematicTree {
   std::vector<Joint> joints = {};  ///< parents before children
 
   double mass_kg() const;
-  /// @throws InputError if there is no joint of that name.
+  /// @throws InputError if there is no joint with this name.
   const Joint& joint(std::string_view name) const;
   /// Returns the pose of a link with the joints at these positions, omitted ones at 0. Positions
   /// beyond a joint's limits are used unchanged. @throws InputError if there is no such link or
@@ -48,7 +48,7 @@ struct KinematicTree {
 /// Reads a URDF with urdfdom. @throws InputError naming file and link or joint: not XML or not a
 /// URDF, a joint to a missing link, a link with two parents, a cycle of joints, a negative mass,
 /// reversed limits.
-/// @param warnings  of inertias that no body has: nothing here uses them
+/// @param warnings  receives a line for each inertia that no body can have (none is used here)
 KinematicTree load_urdf(const std::filesystem::path& file,
                         std::vector<std::string>* warnings = nullptr);
 

@@ -13,8 +13,8 @@
 namespace mh {
 namespace {
 
-/// Tolerance for axles to count as parallel, or as across the base: 1 degree, since URDFs round pi
-/// / 2.
+/// Tolerance for axles to count as parallel to each other or to the base's y: 1 degree, since URDFs
+/// round pi / 2.
 constexpr double kAskew = 0.0175;
 
 /// @pre three wheels
@@ -58,7 +58,7 @@ std::string find_kind(WheelBase& base) {
           "parallel axles",
           wheels.size());
     base.kind = WheelBase::Kind::kOmnidirectional;
-    // Meters. If all wheels point at one place, for example, the base turns about it unhindered.
+    // In meters. If all wheels roll toward one point, for example, the base turns about it freely.
     if (std::abs(rims_from_twist(base).determinant()) < 1e-6)
       return "the axles of these wheels leave a direction in which no rim moves";
     return "";
@@ -67,13 +67,13 @@ std::string find_kind(WheelBase& base) {
     return "the axles of these wheels are parallel, but not to the base's y: it would not drive "
            "ahead";
   if (wheels.size() > kMostWheels)
-    return fmt::format("has {} joints: at most {} drive a base", wheels.size(), kMostWheels);
+    return fmt::format("has {} joints: a base may have at most {}", wheels.size(), kMostWheels);
   base.kind = WheelBase::Kind::kDifferential;
   base.middle_m.setZero();
   for (const WheelBase::Wheel& wheel : wheels)
     base.middle_m += wheel.place_m / static_cast<double>(wheels.size());
   const auto on_side = [&](double side) {
-    constexpr double kLeast_m = 0.005;  // beside the middle
+    constexpr double kLeast_m = 0.005;  // to the side of the middle
     return std::ranges::count_if(wheels, [&](const WheelBase::Wheel& wheel) {
       return side * (wheel.place_m.y() - base.middle_m.y()) > kLeast_m;
     });
@@ -82,7 +82,7 @@ std::string find_kind(WheelBase& base) {
       left != right || 2 * left != std::ssize(wheels))
     return fmt::format(
         "has {} joints on parallel axles, {} on the left and {} on the right: a differential base "
-        "has as many on either side",
+        "has the same number on each side",
         wheels.size(), left, right);
   return "";
 }
@@ -124,7 +124,7 @@ JerkLimiter::JerkLimiter(const BaseLimits& limits, double step_s, const WheelBas
     : limits_(limits), step_s_(step_s) {
   if (wheels == nullptr) return;
   most_m_per_s_ = wheels->max_rim_m_per_s;
-  // At rest and turning by 1 rad/s, a rim moves as fast as it is far from the middle.
+  // When the base turns in place at 1 rad/s, a rim's speed equals its distance from the middle.
   const bool ahead_only = wheels->kind == WheelBase::Kind::kDifferential;
   reach_m_ = rim_speeds_m_per_s(*wheels, ahead_only ? twist_of(*wheels, 0, 1) : Twist2d(0, 0, 1))
                  .cwiseAbs()
@@ -166,9 +166,10 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
       turn_acceleration_rad_per_s2_ +
       std::clamp(turn_wanted - turn_acceleration_rad_per_s2_, -turn_unit, turn_unit);
 
-  // Turning the acceleration aside takes time in which the speed keeps growing: it starts only if
-  // reducing the acceleration directly would still end within the limits. Otherwise it is reduced
-  // now; the previous step made sure that there is enough time for that.
+  // Changing the direction of the acceleration takes time, in which the speed keeps growing: a step
+  // does so only if reducing the acceleration right after it would still end within the limits.
+  // Otherwise the acceleration is reduced now; the previous step made sure that there is enough
+  // time for that.
   const auto gained = [this](double acceleration, double j,
                              bool has_limit) {  // while it is reduced
     if (!has_limit) return 0.0;
@@ -196,7 +197,7 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
   const double turn_shed =
       std::copysign(std::max(0.0, std::abs(turn_acceleration_rad_per_s2_) - turn_unit),
                     turn_acceleration_rad_per_s2_);
-  // A shove may have made it faster than it drives: it must be able to slow down.
+  // A shove may have made it faster than its limit: it must be able to slow down.
   const double speed = velocity_.m_per_s.norm();
   const double fastest = std::max(limits_.max_velocity_m_per_s * (1 + 1e-6), speed);
   const double most =

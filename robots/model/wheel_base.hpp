@@ -14,22 +14,22 @@ namespace mh {
 using Twist2d = Eigen::Vector3d;  ///< m/s, m/s, rad/s
 
 inline constexpr std::size_t kMostWheels = 8;
-/// A number for each wheel.
+/// One number per wheel.
 using PerWheel = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostWheels, 1>;
 
 /// Finds from the places and axles of the wheels how the base moves: sets kind and middle.
-/// @returns "", or why no base drives on such wheels
+/// @returns "", or why no base can drive on these wheels
 std::string find_kind(WheelBase& wheels);
 
-/// The rim speed of each wheel (m/s) for a motion of the base. A wheel drives along the floor at
-/// right angles to its axle, and rolls (of an omnidirectional base) or slips along it. Rims of a
-/// differential base are positive as it drives ahead, those of an omnidirectional one about their
-/// axles.
+/// The rim speed of each wheel (m/s) for a motion of the base. A wheel drives along the floor
+/// perpendicular to its axle; along the axle, it rolls freely (omnidirectional base) or slips
+/// (differential base). Speeds are positive when a differential base drives ahead; for an
+/// omnidirectional one, when wheels turn about their axles in the positive direction.
 PerWheel rim_speeds_m_per_s(const WheelBase& wheels, const Twist2d& twist);
 /// The motion that results from these rim speeds; the inverse of the above. A differential base
 /// drives ahead at the mean of both sides, v = (right + left) / 2, and turns at their difference
-/// over the track, (right - left) / b, about the middle of its wheels; with more than two it is the
-/// motion that comes nearest to all of them (least squares).
+/// divided by the track, (right - left) / b, about the middle of its wheels; with more than two
+/// wheels, the result is the least-squares fit.
 Twist2d twist_of_rims(const WheelBase& wheels, const PerWheel& rims_m_per_s);
 
 /// The motion of a differential base whose middle drives ahead and that turns: the twist is that of
@@ -44,16 +44,17 @@ double ahead_of(const WheelBase& differential, const Twist2d& twist);
 /// zero by the time the command is reached.
 ///
 /// With wheels, no rim exceeds its limit: speed + reach * turn rate stays within the rims' limit,
-/// where reach is that of the outermost wheel. This is slightly conservative for an omnidirectional
-/// base (a rim sees only a part of the speed), and is valid while base and rotation follow
-/// independently. Of a differential base the first component is its speed ahead, the second 0.
+/// where reach is the outermost wheel's distance from the middle. This is slightly conservative for
+/// an omnidirectional base (a rim sees only a part of the speed), and holds although translation
+/// and rotation follow independently. For a differential base, the first component of the velocity
+/// is its speed ahead, the second 0.
 class JerkLimiter {
  public:
   JerkLimiter(const BaseLimits& limits, double step_s, const WheelBase* wheels = nullptr);
 
   /// The velocity to have after the next step.
   struct Velocity {
-    Eigen::Vector2d m_per_s = Eigen::Vector2d::Zero();  ///< world; of a differential base: its own
+    Eigen::Vector2d m_per_s = Eigen::Vector2d::Zero();  ///< world frame; differential base: its own
     double turn_rad_per_s = 0;
   };
   Velocity step(const Velocity& command);

@@ -24,7 +24,7 @@ std::string replaced(std::string text, const XacroNames& names) {
   return text;
 }
 
-/// The names defined at the top, each by those before it.
+/// The names defined at the top, each expanded with those before it.
 XacroNames names_of(const tinyxml2::XMLElement& robot) {
   XacroNames names;
   for (auto* e = robot.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
@@ -39,7 +39,7 @@ XacroNames names_of(const tinyxml2::XMLElement& robot) {
   return names;
 }
 
-/// @throws InputError at the first element that is left to expand
+/// @throws InputError at the first element that still needs expanding
 void require_plain(const tinyxml2::XMLElement& parent, const std::filesystem::path& file) {
   for (auto* e = parent.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     std::string what;
@@ -67,7 +67,7 @@ std::string with_xacro_names(std::string urdf, const std::filesystem::path& file
     return document.FirstChildElement("robot");
   };
   const tinyxml2::XMLElement* robot = parse();
-  if (robot == nullptr) return urdf;  // reported by who reads it
+  if (robot == nullptr) return urdf;  // reported by load_urdf()
   if (const XacroNames names = names_of(*robot); !names.empty()) {
     urdf = replaced(std::move(urdf), names);
     robot = parse();

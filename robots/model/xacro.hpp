@@ -6,10 +6,10 @@
 
 namespace mh {
 
-/// Replaces what a URDF takes from the xacro arguments (by their defaults) and properties at its
-/// top: `$(arg NAME)` and `${NAME}`, as the TurtleBot3's files have them. Lines stay where they
-/// are.
-/// @throws InputError, naming file, line and what to do, if the file holds any other xacro.
+/// Replaces a URDF's references to the xacro arguments and properties at its top, as used in the
+/// TurtleBot3's files: `$(arg NAME)` by the argument's default, `${NAME}` by the property's value.
+/// Line numbers stay the same.
+/// @throws InputError, naming file, line and what to do, if the file contains any other xacro.
 std::string with_xacro_names(std::string urdf, const std::filesystem::path& file);
 
 }  // namespace mh

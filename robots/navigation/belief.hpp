@@ -9,8 +9,8 @@ namespace mh {
 
 struct BeliefConfig {
   int agreeing = 5;         ///< agreeing answers in a row before they are accepted
-  double agree_m = 0.15;    ///< largest difference of agreeing answers, by odometry,
-  double agree_rad = 0.12;  ///< and of their headings
+  double agree_m = 0.15;    ///< largest distance of agreeing answers, given odometry,
+  double agree_rad = 0.12;  ///< and difference of their headings
   double blind_m = 4.0;     ///< after driving this far without an answer, it is lost
 };
 

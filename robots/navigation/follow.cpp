@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSlowest_m_per_s = 0.03;  // slower is standing still
+constexpr double kSlowest_m_per_s = 0.03;  // anything slower is standing still
 constexpr double kTurnGain_per_s = 1.5;
-constexpr double kToward = 0.5;  // cosine: moving within 60 degrees of something is toward it
+constexpr double kToward = 0.5;  // cosine: motion within 60 degrees of an obstacle is toward it
 
 /// Index of the sample nearest to a place.
 std::size_t nearest_sample(const std::vector<Vector2d>& path, const Vector2d& place_m) {
@@ -78,7 +78,7 @@ Steering follow(const std::vector<Vector2d>& path, const Pose2& at,
   const double off_rad = turn_to(at.heading_rad, std::atan2(to_aim.y(), to_aim.x()));
   const double braking = config.braking * robot.limits.max_acceleration_m_per_s2;
   steering.command = turn_in_place(off_rad, robot.limits, config, 0.01);
-  // Near the end it slides the last decimeter, if it can, instead of turning for it.
+  // An omnidirectional base slides the last 15 cm sideways instead of turning first.
   const bool faces = std::abs(off_rad) < config.face_rad || (!ahead_only && steering.left_m < 0.15);
   const double radius_m = robot.footprint_radius_m + config.shell_margin_m;
   const double before_m_per_s = speed_before(obstacles_m, at.place_m, direction, radius_m, braking);

@@ -12,15 +12,15 @@ namespace mh {
 struct FollowConfig {
   double speed_m_per_s = 0.35;   ///< MaxVelXY's default (robots/pepper/pepper.yaml)
   double turn_rad_per_s = 0.6;   ///< lower than the base's: at 10 Hz, 3.4 degrees per frame
-  double ahead_m = 0.30;         ///< it steers to the place this far along the path
+  double ahead_m = 0.30;         ///< it steers toward the place this far along the path
   double braking = 0.4;          ///< share of the base's acceleration: the jerk limit delays it
   double face_rad = 0.5;         ///< turned farther from its path than this, it only turns
-  double shell_margin_m = 0.04;  ///< kept from what the sensors show
-  double arrived_m = 0.08;       ///< from the end of the path
+  double shell_margin_m = 0.04;  ///< distance kept from what the sensors show
+  double arrived_m = 0.08;       ///< within this distance of the path's end
 };
 
 /// The highest speed in a direction at which the base can still stop before the nearest of some
-/// places; infinite if none is in its path.
+/// places; infinite if none is in the way.
 /// @param radius_m  of the disc that must not touch
 double speed_before(std::span<const Eigen::Vector2d> obstacles_m, const Eigen::Vector2d& place_m,
                     const Eigen::Vector2d& direction, double radius_m, double braking_m_per_s2);
@@ -42,7 +42,7 @@ Steering follow(const std::vector<Eigen::Vector2d>& path, const Pose2& at,
                 std::span<const Eigen::Vector2d> obstacles_m, const Robot& robot,
                 const FollowConfig& config = {});
 
-/// Turning in place toward a heading; 0 once within `close_rad`.
+/// The command that turns in place toward a heading; 0 once within `close_rad`.
 Twist2d turn_in_place(double left_rad, const BaseLimits& limits, const FollowConfig& config,
                       double close_rad = 0.03);
 

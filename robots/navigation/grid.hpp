@@ -27,7 +27,7 @@ struct FloorGrid {
   Eigen::Vector2d center_of(const Cell& cell) const {
     return origin_m + resolution_m * Eigen::Vector2d(cell.first, cell.second);
   }
-  /// 0 outside.
+  /// Clearance of the cell that contains a place; 0 outside the grid.
   double clearance_at(const Eigen::Vector2d& place_m) const;
   /// Whether the straight line keeps that distance from everything.
   bool clear_line(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m,
@@ -42,11 +42,11 @@ Grid2d<std::uint8_t> largest_region(const FloorGrid& grid, double clearance_m);
 /// none. Exact: Felzenszwalb and Huttenlocher, "Distance transforms of sampled functions", 2012.
 Grid2d<float> distances(const Grid2d<std::uint8_t>& marked);
 
-/// The clearance of cells that are blocked where something touches them: what touches may be up to
+/// Clearances of cells, where a cell is blocked if anything touches it: an obstacle may be up to
 /// half a diagonal closer than the center of its cell.
 Grid2d<float> clearances_m(const Grid2d<std::uint8_t>& blocked, double resolution_m);
 
-/// The grid of a map that shows where obstacles are, but not which.
+/// The grid of a map that shows where obstacles are, but not which objects they are.
 /// @param origin_m  center of cell (0, 0)
 FloorGrid floor_grid_of(const Grid2d<std::uint8_t>& blocked, double resolution_m,
                         const Eigen::Vector2d& origin_m);

@@ -13,18 +13,18 @@ struct LostConfig {
   double clearance_m = 0.34;
 };
 
-/// What a lost robot does, the same with any SLAM system: it turns once in place, then drives to
-/// the place that its sensors show free and that is farthest from all places where it has looked
+/// What a lost robot does, the same for any SLAM system: it turns once in place, then drives to the
+/// place that its sensors show to be free and that is farthest from all places where it has looked
 /// around before, and turns again.
 /// @param grid    what was seen around it (NearMap::grid)
-/// @param looked  places where it has turned, in the same frame; the last is where it stands
+/// @param looked  places where it has turned, in the same frame; the last is where it is now
 /// @returns the path there; nullopt if no place is free
 std::optional<std::vector<Eigen::Vector2d>> way_to_look_around(
     const FloorGrid& grid, const std::vector<Eigen::Vector2d>& looked,
     const LostConfig& config = {});
 
 /// The path from a place to another, or to the nearest place with that clearance; a start with less
-/// is left by the shortest path. Otherwise as plan_way().
+/// clearance is left by the shortest path. Otherwise the same as plan_way().
 std::optional<std::vector<Eigen::Vector2d>> way_out(const FloorGrid& grid,
                                                     const Eigen::Vector2d& from_m,
                                                     const Eigen::Vector2d& to_m,

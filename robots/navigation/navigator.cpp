@@ -21,15 +21,15 @@ using Eigen::Vector2d;
 constexpr double kReplan_s = 1.0;
 constexpr double kProgress_m = 0.10;
 constexpr double kBackOff_s = 1.5, kBackOff_m_per_s = 0.08;
-constexpr double kShown_m = 1.5;       // what is nearer is considered for braking
-constexpr double kSamePlace_m = 0.10;  // places equally near to a thing: the shortest path decides
+constexpr double kShown_m = 1.5;       // anything nearer is considered for braking
+constexpr double kSamePlace_m = 0.10;  // counts as equally near: then the shortest path decides
 constexpr double kFaced_rad = 0.1;
 constexpr double kBeforeThing_m = 0.1;
-constexpr double kReachSlack_m = 0.3;  // of the distances kept, beyond what counts as arrival
+constexpr double kReachSlack_m = 0.3;  // distances are kept this far beyond arrival
 
-/// Whether a wall stands on the straight line between two places; what is within 10 cm of `to_m`
-/// does not count, since objects are placed against walls.
-/// @param walls  of the grid's cells; empty: none
+/// Whether a wall crosses the straight line between two places; what is within 10 cm of `to_m` does
+/// not count, since objects are placed against walls.
+/// @param walls  1 for cells of the grid that are walls; empty: no walls
 bool wall_between(const FloorGrid& grid, const Grid2d<std::uint8_t>& walls, const Vector2d& from_m,
                   const Vector2d& to_m) {
   if (walls.empty()) return false;
@@ -215,7 +215,7 @@ Twist2d Navigator::look(const Perception& now) {
   heading_before_ = heading_rad;
   if (turned_rad_ < 2 * M_PI && now.time_s - since_s_ < 60)
     return {0, 0, std::min(config_.follow.turn_rad_per_s, robot_.limits.max_turn_rad_per_s)};
-  if (belief_.known()) {  // it only looked around for another way
+  if (belief_.known()) {  // it only looked around for another path
     enter(NavigatorState::kPlanning, now.time_s);
     return Twist2d::Zero();
   }
@@ -243,7 +243,7 @@ Twist2d Navigator::explore(const Perception& now) {
     progress_s_ = now.time_s;
   }
   if (steering.arrived || now.time_s - progress_s_ > 0.5 * config_.patience_s) {
-    say(steering.arrived ? "looks around" : "something is in its way: looks around here");
+    say(steering.arrived ? "looks around" : "something is in its path: looks around here");
     enter(NavigatorState::kLooking, now.time_s);
     return Twist2d::Zero();
   }
@@ -310,7 +310,7 @@ Twist2d Navigator::drive(const Perception& now) {
   if (now.time_s - planned_s_ >= kReplan_s) {
     planned_s_ = now.time_s;
     if (!find_way(at)) {
-      recover(now, "its way is blocked");
+      recover(now, "its path is blocked");
       return Twist2d::Zero();
     }
   }
@@ -361,7 +361,7 @@ void Navigator::recover(const Perception& now, const std::string& why, bool forg
     return;
   }
   say(why + (forget ? ": forgets what it saw and looks around" : ": looks around"));
-  // Another goal comes first now; among equals the order stays.
+  // The other goals come first now, in the same order as before.
   if (state_ == NavigatorState::kDriving || state_ == NavigatorState::kFacing)
     std::ranges::stable_partition(goals_, [&](const auto& goal) { return goal.name != name_; });
   if (forget) local_.clear();

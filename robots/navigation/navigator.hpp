@@ -20,13 +20,13 @@ namespace mh {
 /// What a robot knows about a place that it has mapped.
 struct KnownMap {
   FloorGrid grid;                ///< clearance; what is unknown is blocked
-  Grid2d<std::uint8_t> blocked;  ///< of the same cells: occupied or unknown
-  Grid2d<std::uint8_t> walls;    ///< of the same cells: known as walls; empty: no walls are known
+  Grid2d<std::uint8_t> blocked;  ///< for the same cells: occupied or unknown
+  Grid2d<std::uint8_t> walls;    ///< for the same cells: known walls; empty: no walls are known
 };
 
-/// A goal: an object of the robot's own map, seen from above.
+/// A goal: an object in the robot's own map, seen from above.
 struct NavigatorGoal {
-  std::string name;                       ///< for its messages
+  std::string name;                       ///< for the navigator's messages
   std::vector<Eigen::Vector2d> places_m;  ///< centers of the cells that it covers, map frame
 };
 
@@ -37,19 +37,19 @@ struct NavigatorConfig {
   double lost_speed_m_per_s = 0.25;  ///< while it does not know where it is
   // Clearances of the robot's center beyond its radius: the desired one and the minimum.
   double margin_m = 0.08, least_margin_m = 0.03;
-  double worth_margin_m = 1.0;  ///< of detour, for the desired one instead of the minimum
-  double reach_m = 0.9;         ///< it has arrived if the thing is no farther than this
+  double worth_margin_m = 1.0;  ///< detour accepted for the desired margin instead of the minimum
+  double reach_m = 0.9;         ///< it has arrived if the goal is no farther than this
   double patience_s = 10;       ///< without progress
   int most_recoveries = 4, most_bumps = 3;
 };
 
-/// What the robot perceives at one moment. No truth.
+/// What the robot perceives at one time, without ground truth.
 struct Perception {
   double time_s = 0;
   Pose2 odom_from_base;
   std::span<const std::vector<float>> lasers_m;
   std::vector<bool> bumpers;
-  /// A frame, with the odometry of its moment.
+  /// A frame, with the odometry at its stamp.
   struct Seen {
     const Grid2d<float>* depth_m = nullptr;  ///< null: the frame is blank
     Pose2 odom_from_base;
@@ -59,13 +59,13 @@ struct Perception {
 };
 
 enum class NavigatorState {
-  kLooking,    ///< turns in place, lost
-  kExploring,  ///< drives to where it looks around next, lost
+  kLooking,    ///< lost: turns in place
+  kExploring,  ///< lost: drives to where it will look around next
   kPlanning,
   kDriving,
-  kFacing,   ///< at the end of its path, it turns to the thing
-  kBacking,  ///< away from what it touched
-  // Ends; the robot stands still.
+  kFacing,   ///< turns toward the goal at the end of its path
+  kBacking,  ///< drives away from what it touched
+  // Final states: the robot stands still.
   kArrived,
   kNoPath,
   kStuck,
@@ -82,21 +82,21 @@ const char* lacking_to_drive(const Robot& robot);
 
 /// Drives a robot to a place of its own map, from wherever it was put: looks around until it knows
 /// where it is, plans over the map and what its sensors show, follows the path, stops for
-/// obstacles, and says when it has arrived, is stuck or gives up. It receives what the robot
-/// measures and what its SLAM system answers, nothing else: its library links no scene and no
-/// simulator.
+/// obstacles, and reports when it has arrived, is stuck or gives up. It receives what the robot
+/// measures and what its SLAM system answers, nothing else: its library links neither scenes nor
+/// the simulator.
 class Navigator {
  public:
-  /// @param map    outlives it
-  /// @param robot  outlives it
-  /// @param goals  at least one, named differently; it drives to the first that a path leads to,
-  ///               and tries the others before one that it could not get to
+  /// @param map    must outlive this
+  /// @param robot  must outlive this
+  /// @param goals  at least one, with different names; it drives to the first that a path leads to,
+  ///               and retries one that it could not reach only after the others
   /// @throws InputError if the robot has no lasers or wheels, or no goal is within reach of any
   /// free place of the map.
   Navigator(const KnownMap& map, const Robot& robot, std::vector<NavigatorGoal> goals,
             const NavigatorConfig& config = {});
 
-  /// The command for the next moments (base frame).
+  /// The command until the next step (base frame).
   Twist2d step(const Perception& now);
 
   NavigatorState state() const { return state_; }
@@ -107,7 +107,7 @@ class Navigator {
   }
   /// The path that it follows, in the map if it is located, else in the odometry's frame.
   const std::vector<Eigen::Vector2d>& path() const { return path_; }
-  /// What it decided, one line each, since the last call.
+  /// Its decisions since the last call, one line per decision.
   std::vector<std::string> take_said() { return std::exchange(said_, {}); }
 
  private:
@@ -123,7 +123,7 @@ class Navigator {
   bool touched(const Perception& now);
   /// The map with what the sensors show now.
   FloorGrid present_grid(const Pose2& map_from_base) const;
-  /// Turns to one of the goals; false if it cannot stand within reach of it anywhere in the map.
+  /// Makes this the current goal; false if it cannot stand within reach of it anywhere in the map.
   bool aim_at(const NavigatorGoal& goal);
   bool find_way(const Pose2& map_from_base);
   std::string all_goals() const;
@@ -149,20 +149,21 @@ class Navigator {
   double since_s_ = 0;                   ///< when the state was entered
   double turned_rad_ = 0;
   std::optional<double> heading_before_;
-  Eigen::Vector2d away_ = Eigen::Vector2d::Zero();  ///< base frame: from what it touched
+  Eigen::Vector2d away_ = Eigen::Vector2d::Zero();  ///< direction from what it touched; base frame
   double planned_s_ = 0, progress_s_ = 0, least_left_m_ = 0;
   int recoveries_ = 0, bumps_ = 0;
   bool was_known_ = false;
 };
 
 /// Distance (m) of each cell of a map from the nearest of some places, infinite beyond `reach_m`
-/// and where a wall is between: standing behind a wall is not arrival.
+/// and where a wall is in between: standing behind a wall is not arrival.
 Grid2d<float> distances_m(const KnownMap& map, std::span<const Eigen::Vector2d> places_m,
                           double reach_m);
 
-/// The best place of a map to stand in front of a thing: the nearest to it, among equals the one
-/// with the shortest path; nullopt if no place that can be reached from `from_m` is within reach.
-/// @param away_m  of each cell from the thing
+/// The best place of a map to stand in front of a thing: the nearest to it or, among equally near
+/// ones, the one with the shortest path; nullopt if no place that can be reached from `from_m` is
+/// within reach.
+/// @param away_m  distance of each cell from the thing
 std::optional<Eigen::Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>& away_m,
                                             const Eigen::Vector2d& from_m, double clearance_m,
                                             double reach_m);

@@ -12,9 +12,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kColumnStep_px = 8, kRowStep_px = 6;  // at 640 x 480, 3.5 m: 5 cm across, 4 cm down
-constexpr double kShort_m = 0.15;  // how far before an obstacle a ray stops clearing
-constexpr double kMove_m = 1.0;    // the window moves in steps of this
+constexpr int kColumnStep_px = 8, kRowStep_px = 6;  // at 640 x 480 and 3.5 m: 5 cm by 4 cm
+constexpr double kShort_m = 0.15;  // a ray stops clearing this far before an obstacle
+constexpr double kMove_m = 1.0;    // the window moves in steps of this size
 
 Vector2d ahead_of(double angle_rad) {
   return {std::cos(angle_rad), std::sin(angle_rad)};

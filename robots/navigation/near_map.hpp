@@ -21,7 +21,7 @@ struct NearMapConfig {
   // max_depth_m, seen from 1.1 m, stays below it.
   double bottom_m = 0.08, top_m = 1.25;
   double max_depth_m = 3.5;
-  /// Nearer than this the camera looks over what is lower than itself: nothing is cleared there.
+  /// Nearer than this, the camera looks over things lower than itself, so nothing is cleared there.
   double blind_m = 1.2;
 };
 
@@ -34,7 +34,7 @@ class NearMap {
 
   /// Forgets everything: the robot was carried.
   void clear();
-  /// Adds the scans of all lasers. @param lasers_m  as RobotReading's
+  /// Adds the scans of all lasers. @param lasers_m as in RobotReading
   void add_lasers(const Equipment& equipment, std::span<const std::vector<float>> lasers_m,
                   const Pose2& odom_from_base);
   /// Adds a depth image taken at that pose. Pixels without a return are ignored.
@@ -54,7 +54,7 @@ class NearMap {
   std::uint8_t* cell(const Eigen::Vector2d& place_m);
   Eigen::Vector2d center_of(int x, int y) const;
   void move_to(const Eigen::Vector2d& place_m);
-  /// Clears a layer and marks as seen along a ray, from `from` m to `to` m.
+  /// Clears a layer along a ray, between from_m and to_m, and marks those cells as seen.
   void see_through(const Eigen::Vector2d& start_m, const Eigen::Vector2d& direction, double from_m,
                    double to_m, Layer layer);
 

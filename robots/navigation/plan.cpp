@@ -19,10 +19,11 @@ using Eigen::Vector2d;
 using Cell = FloorGrid::Cell;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr double kNarrowPrice = 2.0;  // a meter at the minimum clearance costs three
+constexpr double kNarrowPrice = 2.0;  // a meter at the minimum clearance costs as much as three
 constexpr double kPoint_m = 1e-6;     // blocked cells have no clearance: not even a point passes
 
-/// Shortest paths from one of some cells, each step weighted by `price`; stops early at `goal`.
+/// Shortest paths from the nearest of the `starts`, each step weighted by `price`; stops early at
+/// `goal`.
 struct Search {
   Grid2d<float> cost;
   Grid2d<std::int32_t> before;  ///< index of the predecessor cell, -1 = none
@@ -63,8 +64,8 @@ struct Search {
   }
 };
 
-/// The nearest free cell within a cell and a half, to start from: a place may be on the border of
-/// the free cells.
+/// The nearest free cell within a cell and a half, to start from: the place itself may be on the
+/// border of the free cells.
 std::optional<Cell> free_cell(const FloorGrid& grid, const Vector2d& place_m, double clearance_m) {
   clearance_m = std::max(clearance_m, kPoint_m);
   const auto cell = grid.cell_of(place_m);

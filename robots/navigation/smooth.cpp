@@ -8,7 +8,7 @@ namespace mh {
 namespace {
 
 constexpr int kRounds = 60;
-constexpr double kPull = 0.5;  // of the way to the neighbors' middle
+constexpr double kPull = 0.5;  // share of the distance to the neighbors' midpoint
 
 }  // namespace
 

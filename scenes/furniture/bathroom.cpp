@@ -40,7 +40,7 @@ void toilet(Piece& p) {
   const MaterialId metal = p.fixed(tap_chrome());
   MeshBuilder& m = p.mesh;
   const float rim = 0.40F, tank = 0.19F;
-  // Cistern with its lid and button.
+  // Tank with its lid and button.
   m.box(white, {-w / 2 + 0.01F, d / 2 - tank, rim - 0.02F}, {w / 2 - 0.01F, d / 2, h - 0.035F},
         {.bevel_m = 0.02F});
   m.box(white, {-w / 2, d / 2 - tank - 0.01F, h - 0.034F}, {w / 2, d / 2, h}, {.bevel_m = 0.012F});
@@ -62,7 +62,7 @@ void toilet(Piece& p) {
   m.box(white, {-0.6F * rx, cy, 0.0F}, {0.6F * rx, d / 2 - 0.02F, rim - 0.03F}, {.bevel_m = 0.03F});
   m.cylinder(p.fixed(plain("glass", {150, 170, 178}, 0.1, 64)), {0, cy, 0.26F}, {0, cy, 0.275F},
              {0.45F * rx, 0.47F * rx}, 20);
-  // Seat, and the lid: closed, or leaning on the cistern.
+  // Seat, and the lid: closed, or leaning against the tank.
   const std::array<Vector2f, 5> ring = {{{0.72F, rim + 0.002F},
                                          {1.0F, rim + 0.002F},
                                          {1.0F, rim + 0.018F},
@@ -121,7 +121,7 @@ void shower(Piece& p) {
   const MaterialId white = p.material("body", porcelain()), metal = p.fixed(tap_chrome());
   const MaterialId wall = p.material("wall", plain("tiles", {214, 222, 224}, 0.2, 65));
   MeshBuilder& m = p.mesh;
-  // Tray, tiled back and side, a framed half-high screen at the other side, rail and head.
+  // Tray, tiled back and side, a framed half-height screen on the other side, rail and shower head.
   m.box(white, {-w / 2, -d / 2, 0}, {w / 2, d / 2, 0.05F}, {.bevel_m = 0.01F});
   for (const float s : {-1.0F, 1.0F}) {
     m.box(white, {-w / 2, s > 0 ? d / 2 - 0.05F : -d / 2, 0.05F},

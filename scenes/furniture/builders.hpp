@@ -183,8 +183,8 @@ void books(Piece& piece, const BookSpace& space, std::uint64_t row);
 struct Oval {
   float radius_x_m, radius_y_m, square = 1.0F;
 };
-/// A round body with that cross section: profile of (share of the radii, height above center),
-/// listed upward, seen from outside.
+/// A round body with this cross section. The profile lists (share of the radii, height above
+/// center) upward; its faces point outward.
 void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& center, const Oval& section,
           std::span<const Eigen::Vector2f> profile, int sides = 28);
 /// The material of handles: the role `metal`.

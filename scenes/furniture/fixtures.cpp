@@ -362,7 +362,7 @@ void broom_rack(Piece& p) {
         m.box(metal, {x - 0.75F * half, y - 0.006F, foot + 0.01F},
               {x + 0.75F * half, y + 0.006F, foot + 0.24F}, {.bevel_m = 0.004F});
         break;
-      default:  // a squeegee, its handle in color
+      default:  // a squeegee with a colored handle
         m.box(tone, {x - half, y - 0.012F, foot + 0.07F}, {x + half, y + 0.012F, foot + 0.10F},
               {.bevel_m = 0.003F});
         m.box(metal, {x - 0.96F * half, y - 0.003F, foot + 0.03F},

@@ -91,7 +91,7 @@ void kitchen_counter(Piece& p) {
       front(p, wood, metal, {0.5F * (a + b) + 0.0015F, b, y0, 0.106F, zt - 0.006F});
     }
   }
-  // Worktop around the basin.
+  // Countertop around the basin.
   const float bx0 = -0.36F, bx1 = 0.30F, by0 = -0.20F, by1 = 0.18F, yf = -d / 2 + 0.012F;
   m.max_edge_m = 0.08F;
   const BoxStyle slab{.bevel_m = 0.003F, .grain_axis = 0};
@@ -147,7 +147,7 @@ void oven(Piece& p) {
   const float x = w / 2, y0 = -d / 2 + 0.05F;
   m.box(black, {-x + 0.01F, y0 + 0.06F, 0}, {x - 0.01F, d / 2, 0.089F});
   m.box(body, {-x, y0 + 0.03F, 0.09F}, {x, d / 2, h - 0.012F}, {.bevel_m = 0.003F});
-  m.box(glass, {-x, -d / 2 + 0.02F, h - 0.0115F}, {x, d / 2, h}, {.bevel_m = 0.003F});  // hob
+  m.box(glass, {-x, -d / 2 + 0.02F, h - 0.0115F}, {x, d / 2, h}, {.bevel_m = 0.003F});  // cooktop
   for (const auto& [cx, cy, r] :
        {std::array{-0.14F, 0.13F, 0.075F}, std::array{0.14F, 0.13F, 0.095F},
         std::array{-0.14F, -0.13F, 0.095F}, std::array{0.14F, -0.13F, 0.075F}}) {
@@ -166,7 +166,7 @@ void oven(Piece& p) {
     }
   }
   m.box(body, {-x, y0 + 0.001F, h - 0.12F}, {x, y0 + 0.0295F, h - 0.013F},
-        {.bevel_m = 0.003F});  // knobs' panel
+        {.bevel_m = 0.003F});  // panel with the knobs
   for (int i = 0; i < 5; ++i) {
     const float kx = (static_cast<float>(i) - 2.0F) * 0.105F;
     m.cylinder(black, {kx, y0 + 0.002F, h - 0.066F}, {kx, y0 - 0.026F, h - 0.066F},

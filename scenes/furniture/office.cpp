@@ -42,7 +42,7 @@ void office_chair(Piece& p) {
   MeshBuilder& m = p.mesh;
   const float seat = 0.46F, reach = 0.48F * std::min(w, d);
   const auto turned = static_cast<float>(p.random.uniform(2, 0.0, 6.28));
-  for (int i = 0; i < 5; ++i) {  // a star of five feet on castors
+  for (int i = 0; i < 5; ++i) {  // a star of five feet on casters
     const float a = turned + 1.2566371F * static_cast<float>(i);
     const Vector3f end(reach * std::cos(a), reach * std::sin(a), 0.075F);
     m.beam(black, {0, 0, 0.11F}, end, 0.035F, 0.025F, {-std::sin(a), std::cos(a), 0});

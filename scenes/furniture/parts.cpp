@@ -72,7 +72,7 @@ void books(Piece& p, const BookSpace& space, std::uint64_t row) {
     const float y = front + static_cast<float>(book.uniform(3, 0.0, 0.012));
     const Rgb8 tone = kCovers[book.below(4, kCovers.size())];
     const MaterialId cover = p.fixed(plain("plastic", tone, 0.2, 3));
-    // Two boards and a spine round a block of pages, in one box; pages show on top.
+    // Two boards and a spine around a block of pages, as one box; the pages show on top.
     m.box(cover, {x, y, z}, {x + thick - 0.001F, y + deep, z + tall}, {.bevel_m = 0.0F});
     const float u = static_cast<float>(book.uniform(5, 0.0, 0.5 - thick));
     m.image(spines, {x + 0.0005F, y - 0.0008F, z + tall - 0.001F}, {thick - 0.002F, 0, 0},

@@ -45,7 +45,7 @@ void plant_tall(Piece& p) {
   const float length = 0.72F * r + 0.015F, width = 0.52F * length;
   const MaterialId leaves = foliage(p, {72, 122, 62}, length, width, 114);
   MeshBuilder& m = p.mesh;
-  // Two stems with leaves in a spiral, as a rubber fig has.
+  // Two stems with leaves in a spiral, like a rubber fig's.
   for (int stem = 0; stem < 2; ++stem) {
     const RandomStream random = p.random.fork(static_cast<std::uint64_t>(stem));
     const float top = h - (stem == 0 ? 0.10F : 0.28F * (h - earth)),

@@ -165,7 +165,7 @@ void school_chair(Piece& p) {
           },
           10, 10, {w, d});
   m.sheet(shell,
-          [&](float s, float t) -> Vector3f {  // back, curved round the sitter
+          [&](float s, float t) -> Vector3f {  // back, curved around the sitter
             const float u = 2.0F * s - 1.0F;
             return {0.45F * w * u, d / 2 - 0.03F - 0.05F * u * u, h - t * 0.27F};
           },

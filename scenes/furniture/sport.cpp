@@ -108,7 +108,7 @@ void weight_bench(Piece& p) {
   m.beam(metal, {0, -0.40F * d, 0.35F}, {0, 0.40F * d, 0.35F}, 0.06F, 0.05F);
   m.beam(metal, {0, -0.38F * d, 0.02F}, {0, -0.36F * d, 0.35F}, 0.06F, 0.05F);
   m.box(metal, {-0.22F, -0.42F * d, 0}, {0.22F, -0.36F * d, 0.04F});
-  const float r0 = std::min(0.17F, 0.11F * d), z = h - r0;  // of the weights: the highest part
+  const float r0 = std::min(0.17F, 0.11F * d), z = h - r0;  // of the weights, the highest part
   for (const float s : {-1.0F, 1.0F}) {
     const float x = s * 0.46F * std::min(w, 1.1F);
     m.beam(metal, {x, 0.40F * d, 0}, {x, 0.40F * d, z}, 0.05F, 0.05F);

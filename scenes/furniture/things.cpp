@@ -133,7 +133,7 @@ void light_switch(Piece& p) {
                     {0.003F, 0.003F}, 8);
 }
 
-/// What people tape to walls and cupboard doors: lists, calendars, photographs, drawings.
+/// Papers that people tape to walls and cupboard doors: lists, calendars, photographs, drawings.
 void wall_papers(Piece& p) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   const int columns = std::max(1, static_cast<int>(std::lround(w / 0.27F))),
@@ -146,7 +146,7 @@ void wall_papers(Piece& p) {
       const RandomStream r = p.random.fork(static_cast<std::uint64_t>(300 + 20 * j + i));
       if (rows * columns > 2 && r.uniform(0) < 0.15) continue;
       const auto part = static_cast<float>(r.uniform(1, 0.72, 0.97));
-      const float tall = r.uniform(2) < 0.7 ? 1.41F : 0.71F;  // sheets upright or across
+      const float tall = r.uniform(2) < 0.7 ? 1.41F : 0.71F;  // portrait or landscape sheets
       const float sw = part * std::min(cw, ch / tall), sh = tall * sw;
       const auto x = -w / 2 + cw * static_cast<float>(i) +
                      static_cast<float>(r.uniform(3, 0.0, 1.0)) * (cw - sw);
@@ -203,7 +203,7 @@ void clock(Piece& p) {
           {.bevel_m = 0.0F});
     m.pop();
   };
-  hand(black, 1.05F, 0.48F * r, 0.006F, 0.003F);  // ten past ten, as in any shop window
+  hand(black, 1.05F, 0.48F * r, 0.006F, 0.003F);  // ten past ten, as on any clock in a shop window
   hand(black, -1.05F, 0.70F * r, 0.004F, 0.005F);
   hand(red, 2.6F, 0.74F * r, 0.0015F, 0.007F);
   m.cylinder(black, {0, 0, z}, {0, 0, z + 0.009F}, {0.010F, 0.009F}, 12);

@@ -29,7 +29,7 @@ using tinyxml2::XMLElement;
 namespace {
 
 constexpr std::size_t kMostIncludes = 10000;
-constexpr std::size_t kMostVisuals = 20'000;  // of a model: libsdformat takes 0.1 MB for each
+constexpr std::size_t kMostVisuals = 20'000;  // per model: libsdformat takes 0.1 MB for each
 constexpr std::size_t kDeepest = 64;          // nested includes or models
 
 constexpr const char* kSun =
@@ -165,7 +165,7 @@ class Expander {
           "include " + uri);
   }
 
-  /// model://sun and model://ground_plane, also by Fuel's names.
+  /// Recognizes model://sun and model://ground_plane, also by their names in Fuel.
   static const char* built_in_model(const std::string& uri) {
     std::string name = uri;
     while (name.ends_with('/')) name.pop_back();
@@ -186,7 +186,7 @@ class Expander {
       std::string chain;
       for (const fs::path& step : open_) chain += step.string() + " includes ";
       if (!circle) fail(from, include, fmt::format("more than {} includes deep", kDeepest));
-      throw InputError(fmt::format("{}{}: the includes lead in a circle", chain, own.string()));
+      throw InputError(fmt::format("{}{}: the includes form a cycle", chain, own.string()));
     }
     const Source* source = readable(file, include, from);
     if (source == nullptr) return;
@@ -195,7 +195,7 @@ class Expander {
     open_.pop_back();
   }
 
-  /// null: the file is not SDF, and left out.
+  /// @returns null if the file is not SDF and is left out
   const Source* readable(const fs::path& file, const XMLElement& include, const Source& from) {
     try {
       return &read(file);
@@ -239,7 +239,7 @@ class Expander {
     if (pose != nullptr) add_pose(*pose, source, *copy);
     Names inner;
     add_parts(model, source, *copy, inner);
-    // libsdformat requires at least one link, or models.
+    // libsdformat requires at least one link or nested model.
     if (copy->FirstChildElement("link") == nullptr && copy->FirstChildElement("model") == nullptr)
       copy->InsertNewChildElement("link")->SetAttribute("name", "empty");
     --depth_;
@@ -292,7 +292,7 @@ class Expander {
       fail(source, visual, fmt::format("a model of more than {} visuals", kMostVisuals));
   }
 
-  /// MODEL/.../LINK of a link in the output.
+  /// The path of a link in the output, MODEL/.../LINK.
   static std::string path_of(const XMLElement& link) {
     std::string path = link.Attribute("name");
     for (const tinyxml2::XMLNode* up = link.Parent(); up != nullptr && up->ToElement() != nullptr;
@@ -335,7 +335,7 @@ class Expander {
     if (const XMLElement* pose = joint.FirstChildElement("pose")) add_pose(*pose, source, *copy);
   }
 
-  /// Keeps the ambient light.
+  /// Keeps only the ambient light.
   void add_scene(const XMLElement& scene, XMLElement& out) {
     const std::string ambient = text_of(scene.FirstChildElement("ambient"));
     if (ambient.empty() || out.FirstChildElement("scene") != nullptr) return;

@@ -111,7 +111,7 @@ std::optional<fs::path> Finder::find_named(const std::string& uri, const fs::pat
                     std::back_inserter(places));
   if (auto found = find_in(places, named)) return found;
   if (scheme != "package") return std::nullopt;
-  // package://NAME/a/b: package NAME can be anywhere, and its folder may have another name.
+  // package://NAME/a/b: package NAME can be anywhere, and its folder may have a different name.
   for (fs::path rest = named; rest.has_parent_path();) {
     rest = rest.lexically_relative(*rest.begin());
     if (auto found = find_in(places, rest)) return found;
@@ -121,7 +121,7 @@ std::optional<fs::path> Finder::find_named(const std::string& uri, const fs::pat
 
 std::optional<fs::path> Finder::model_file(const fs::path& found) {
   if (!is_folder(found)) return found;
-  // model.config names a file for each version of SDF.
+  // model.config names one file for each version of SDF.
   std::string newest = "model.sdf";
   auto config = find_any_case(found / "model.config");
   if (!config) config = find_any_case(found / "manifest.xml");

@@ -16,11 +16,11 @@ class Finder {
   /// Resolves a URI found in a file to a file or folder; nullopt if there is none.
   ///
   /// A path (with or without file://) is searched for in the folder of the file that contains it
-  /// and in the four folders above; model://NAME/... and package://NAME/... there, in the models/
-  /// of each, in the same places from the world's folder, and in the folders of GAZEBO_MODEL_PATH,
-  /// GZ_SIM_RESOURCE_PATH and SDF_PATH; https:// in Fuel's cache (~/.gz/fuel, ~/.ignition/fuel,
-  /// GZ_FUEL_CACHE_PATH). Never in the current folder. Percent codes are replaced if there is no
-  /// file named with them.
+  /// and in the four folders above. model://NAME/... and package://NAME/... are searched for in
+  /// these folders and the models/ folder of each, in the same places relative to the world's
+  /// folder, and in the folders of GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH; https://
+  /// in Fuel's cache (~/.gz/fuel, ~/.ignition/fuel, GZ_FUEL_CACHE_PATH). The current folder is
+  /// never searched. Percent codes are decoded if no file has the name as written.
   std::optional<std::filesystem::path> find(const std::string& uri,
                                             const std::filesystem::path& file) const;
 

@@ -9,7 +9,7 @@ namespace mh::gazebo {
 
 Light light_of(const sdf::Light& light, const Eigen::Affine3d& world_from_light) {
   const auto diffuse = light.Diffuse();
-  // Gazebo shows albedo x diffuse x cosine, we albedo x irradiance / pi.
+  // Gazebo shows albedo x diffuse x cosine, we show albedo x irradiance / pi.
   const float gain = std::numbers::pi_v<float> * static_cast<float>(light.Intensity());
   const Eigen::Vector3f color =
       gain * Eigen::Vector3f(diffuse.R(), diffuse.G(), diffuse.B()).cwiseMax(0.0F);

@@ -72,7 +72,7 @@ std::string LookWriter::texture_of_pbr(const XMLElement& material, const fs::pat
 std::optional<OgreMaterial> LookWriter::material_of(const XMLElement& script,
                                                     const fs::path& file) {
   const std::string name = text_of(script.FirstChildElement("name"));
-  if (name.empty()) return std::nullopt;  // as in released worlds: no material
+  if (name.empty()) return std::nullopt;  // no material, as in some released worlds
   std::vector<fs::path> folders;
   std::optional<OgreMaterial> found;
   for (const XMLElement* uri = script.FirstChildElement("uri"); uri != nullptr;
@@ -90,7 +90,7 @@ std::optional<OgreMaterial> LookWriter::material_of(const XMLElement& script,
   }
   if (!found) found = stock_material(name);
   if (!found) {
-    collected_.add(fmt::format("{}: material {}: no script has it", file.string(), name));
+    collected_.add(fmt::format("{}: material {}: no script defines it", file.string(), name));
     return std::nullopt;
   }
   if (found->texture.empty()) return found;

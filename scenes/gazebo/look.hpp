@@ -21,7 +21,7 @@ class LookWriter {
   LookWriter(const Finder& finder, UniqueWarnings& collected)
       : finder_(finder), collected_(collected) {}
 
-  /// @param material  as `file` has it
+  /// @param material  as it is in `file`
   /// @param out       an empty `material`
   void write(const tinyxml2::XMLElement& material, const std::filesystem::path& file,
              tinyxml2::XMLElement& out);

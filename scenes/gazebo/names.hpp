@@ -13,8 +13,8 @@ class Names {
   std::string take(const char* given);
 
  private:
-  /// Names in use, each with the next number to try for a copy: thousands of copies of one name
-  /// must not be tried one by one.
+  /// Names in use, each with the next number to try for a copy, so that thousands of copies of the
+  /// same name are not tried one by one.
   std::map<std::string, int> taken_;
 };
 

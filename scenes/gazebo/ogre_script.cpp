@@ -8,7 +8,7 @@
 namespace mh::gazebo {
 namespace {
 
-/// Words, braces and ends of lines; without comments.
+/// The words, braces and line ends of a script, without comments.
 std::vector<std::string_view> tokens_of(std::string_view script) {
   std::vector<std::string_view> tokens;
   const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };

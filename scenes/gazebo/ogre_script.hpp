@@ -13,7 +13,7 @@ namespace mh::gazebo {
 struct OgreMaterial {
   std::string name;
   std::optional<std::array<float, 4>> diffuse;  ///< RGBA
-  std::string texture;                          ///< a file's name; empty if it has none
+  std::string texture;                          ///< a file's name; empty if there is no texture
 };
 
 /// Reads the materials of an Ogre script: for each, the first pass's `diffuse` and the first

@@ -28,7 +28,7 @@ Vector3f vector_of(const ignition::math::Vector3d& v) {
   return Eigen::Vector3d(v.X(), v.Y(), v.Z()).cast<float>();
 }
 
-/// Surfaces of one material, each covered by its texture once.
+/// Surfaces of one material; the texture covers each of them once.
 class Shape {
  public:
   explicit Shape(const Material& look) {
@@ -75,7 +75,7 @@ void add_cylinder(Shape& shape, float radius, float length) {
   for (const float z : {-0.5F * length, 0.5F * length}) shape.disc({0, 0, z}, radius);
 }
 
-/// A sphere scaled along its axes, or one whose halves are pulled apart.
+/// A sphere scaled along its axes, or one whose halves are pulled apart by `length`.
 void add_ball(Shape& shape, const Vector3f& radii, float length = 0.0F) {
   shape.sheet(kAround, kDown, [=](float u, float v) {
     const float around = 2.0F * kPi * u, down = kPi * v;
@@ -101,7 +101,7 @@ std::optional<std::string> fault_of(const sdf::Geometry& geometry) {
                         std::initializer_list<double> numbers) -> std::optional<std::string> {
     const auto sound = [](double v) { return std::isfinite(v) && v > 0.0; };
     if (std::ranges::all_of(numbers, sound)) return std::nullopt;
-    return fmt::format("a {} of {}: its measures must be above 0", shape,
+    return fmt::format("a {} of {}: its dimensions must be above 0", shape,
                        fmt::join(numbers, " x "));
   };
   if (const auto* box = geometry.BoxShape())

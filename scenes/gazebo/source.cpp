@@ -23,8 +23,8 @@ void gather_references(const XMLElement* element, std::set<std::string>& names) 
   }
 }
 
-/// Blanks out an XML declaration below a comment, as in some released models: an error that does
-/// not matter here.
+/// Overwrites with spaces an XML declaration that follows a comment: some released models have this
+/// error, which does not matter here.
 void drop_late_declaration(std::string& text) {
   const std::size_t at = text.find("<?xml");
   if (at == 0 || at == text.npos || at > text.find("<sdf")) return;
@@ -57,7 +57,7 @@ std::unique_ptr<Source> parse_source(const fs::path& file, std::string text) {
   const XMLElement* root = source.document.RootElement();
   if (root == nullptr ||
       (std::strcmp(root->Name(), "sdf") != 0 && std::strcmp(root->Name(), "gazebo") != 0))
-    throw InputError(fmt::format("{}: is not SDF: its root is no <sdf>", file.string()));
+    throw InputError(fmt::format("{}: is not SDF: its root is not <sdf>", file.string()));
   const char* version = root->Attribute("version");
   int major = 1, minor = 0;
   std::sscanf(version == nullptr ? "1.9" : version, "%d.%d", &major, &minor);

@@ -14,11 +14,11 @@ namespace mh::gazebo {
 struct Source {
   std::filesystem::path file;
   tinyxml2::XMLDocument document;
-  bool has_frames = false;         ///< before 1.7, a pose's frame meant nothing
+  bool has_frames = false;         ///< before SDF 1.7, a pose's frame had no meaning
   std::set<std::string> referred;  ///< names used by relative_to and attached_to
 };
 
-/// The text of an element, without blanks around it; empty for null.
+/// The text of an element, without the whitespace around it; empty for null.
 std::string text_of(const tinyxml2::XMLElement* element);
 
 /// @throws InputError naming file and line if it is not SDF

@@ -9,12 +9,12 @@
 
 namespace mh::gazebo {
 
-/// Collects warnings, each once with its number of occurrences.
+/// Collects warnings; keeps each once, with its number of occurrences.
 class UniqueWarnings {
  public:
   void add(const std::string& what) { add(what, what); }
 
-  /// @param thing  what the warning is about; of several warnings about it the first is kept
+  /// @param thing  what the warning is about; only the first warning about it is kept
   void add(const std::string& what, const std::string& thing) {
     const auto place = std::ranges::find(collected_, thing, &Entry::thing);
     if (place != collected_.end())

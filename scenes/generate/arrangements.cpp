@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// One piece of a pattern in a frame at the room's middle, with its parts.
+/// Adds one piece of a pattern, with its parts; `local` is in a frame at the room's middle.
 bool add_in_frame(Draft& draft, const Design& d, const Vector2d& local, double frame_deg,
                   double turn_deg) {
   const FloorRect& r = draft.layout.rect();
@@ -32,7 +32,7 @@ int add_rows(Draft& draft, const Design& d) {
   Dice& dice = draft.dice;
   const FloorRect& r = draft.layout.rect();
   double turn = 90.0 * dice.whole(0, 3);
-  for (const LayoutItem& item : draft.layout.items())  // toward the surface that is written on
+  for (const LayoutItem& item : draft.layout.items())  // toward the whiteboard
     if (item.kind->class_name == "whiteboard") turn = item.turn_deg;
   const bool swapped = std::abs(std::sin(turn * kDegree)) > 0.5;
   const double wide = swapped ? r.y1 - r.y0 : r.x1 - r.x0;

@@ -11,7 +11,7 @@
 
 namespace mh::generate {
 
-/// A material drawn from a palette, shared by the parts of a room that match.
+/// A material drawn from a palette, shared by the matching parts of a room.
 struct Stuff {
   const PaletteEntry* entry = nullptr;
   Rgb8 tone;
@@ -22,7 +22,7 @@ struct Stuff {
 /// Names of materials.
 struct Surfaces {
   std::string floor, wall, ceiling, trim, frame, garden;
-  std::string accent;  ///< of one wall; empty: as the others
+  std::string accent;  ///< of one wall; if empty, it is like the others
   Side accent_side = Side::kSouth;
 };
 
@@ -36,7 +36,7 @@ struct Daylight {
 struct Draft {
   const RoomGrammar& grammar;
   Dice dice;
-  int group = 0;  ///< of objects per 10 m2 of floor
+  int group = 0;  ///< density group: objects per 10 m2 of floor
   Layout layout;
   std::vector<MaterialSpec> materials = {};               ///< all that were created, used or not
   std::map<std::string, std::vector<Stuff>> stuffs = {};  ///< by palette

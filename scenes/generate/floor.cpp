@@ -21,11 +21,12 @@ namespace mh::generate {
 namespace {
 
 constexpr double kWall_m = 0.12;
-constexpr int kTriedDrafts = 400;   // rooms, and corridors, drawn until one has what it needs
-constexpr int kAnyNumber = 10'000;  // of objects: rules alone limit them
+constexpr int kTriedDrafts = 400;   // rooms or corridors drawn until one has all that it needs
+constexpr int kAnyNumber = 10'000;  // of objects: only the rules limit them
 constexpr double kLeastFreeShare = 0.12;
 
-/// Draws pieces by all rules of a list. @returns whether those that are needed fit
+/// Draws pieces by all rules of the grammar. @returns whether all required pieces fit and enough
+/// floor stays free
 bool furnish_by_rules(Draft& draft) {
   draft.wanted_objects = kAnyNumber;
   for (const ItemRule& rule : draft.grammar.furniture)
@@ -36,7 +37,7 @@ bool furnish_by_rules(Draft& draft) {
   return draft.layout.free_share() >= kLeastFreeShare;
 }
 
-/// The design of the rooms: the door in the south wall, windows in the north wall.
+/// The design of the rooms: the door is in the south wall, windows are in the north wall.
 std::optional<Draft> draw_room(const FloorGrammar& floor, double height_m, Dice dice) {
   const double area = draw(dice, floor.room.area_m2), aspect = draw(dice, floor.room.aspect);
   const double width = whole_mm(std::sqrt(area / aspect));
@@ -54,7 +55,7 @@ std::optional<Draft> draw_room(const FloorGrammar& floor, double height_m, Dice 
   return room;
 }
 
-/// The same room with its own objects added.
+/// A room of this design with its own objects added.
 Draft inhabited(const Draft& design, const DrawRange& objects, Dice dice) {
   Draft room = design;
   room.dice = dice;
@@ -63,7 +64,8 @@ Draft inhabited(const Draft& design, const DrawRange& objects, Dice dice) {
   return room;
 }
 
-/// Where a room is: its own origin in the floor's frame, or that of its opposite corner.
+/// Where a room is: the place of its origin in the floor's frame, about which the room may be
+/// turned.
 struct Place2d {
   Eigen::Vector2d at_m;
   bool turned = false;  ///< by 180 degrees
@@ -89,7 +91,7 @@ struct Place2d {
   }
 };
 
-/// Adds the only room of a house to one of several. Its doorways are left out.
+/// Adds the room of a one-room house to a house of several rooms. Its doorways are left out.
 void add_room(HouseFile& floor, const HouseFile& house, const std::string& name,
               const Place2d& place) {
   std::map<std::string, std::string> materials;  // names in the house -> in the floor
@@ -129,7 +131,8 @@ void add_room(HouseFile& floor, const HouseFile& house, const std::string& name,
   floor.rooms.push_back(std::move(room));
 }
 
-/// The corridor with the doors of the rooms on both sides, an entrance and a window at its ends.
+/// The corridor, with the doors of the rooms on both sides and an entrance and a window at its
+/// ends.
 std::optional<Draft> draw_corridor(const FloorGrammar& floor, const std::vector<OpeningPlan>& doors,
                                    double length_m, double width_m, double height_m, Dice dice) {
   Draft corridor{.grammar = floor.corridor,
@@ -158,8 +161,8 @@ template <class Try>
 Draft first_that_fits(const std::string& name, const char* what, const Try& attempt) {
   for (std::uint64_t k = 1; k <= kTriedDrafts; ++k)
     if (std::optional<Draft> draft = attempt(k)) return std::move(*draft);
-  throw MachineError(
-      fmt::format("{}: no {} of {} drafts holds what it needs", name, what, kTriedDrafts));
+  throw MachineError(fmt::format("{}: no {} in {} drafts had room for all that it needs", name,
+                                 what, kTriedDrafts));
 }
 
 }  // namespace
@@ -179,7 +182,7 @@ GeneratedPlan generate_floor(const FloorGrammar& grammar, std::uint64_t seed) {
   // South to north: rooms turned around, the corridor, rooms as they were drawn.
   const double corridor_y = whole_mm(rect.y1 + kWall_m);
   std::vector<Place2d> places;
-  std::vector<OpeningPlan> doors;  // of the rooms, as openings of the corridor, in its own frame
+  std::vector<OpeningPlan> doors;  // the rooms' doors as openings of the corridor, in its frame
   const WallOpening& door = design.layout.openings().front();
   for (int k = 0; k < 2 * per_side; ++k) {
     const bool south = k >= per_side;

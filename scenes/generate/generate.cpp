@@ -33,7 +33,7 @@ int draw_wanted_objects(Dice& dice, int group, double area_m2) {
   return std::max(3, static_cast<int>(ratio * area_m2 / 10.0));
 }
 
-/// Furnishes an empty room. @returns whether everything that it needs fits
+/// Furnishes an empty room. @returns whether all required pieces fit
 bool furnish(Draft& draft) {
   const RoomGrammar& grammar = draft.grammar;
   if (!add_doors(draft)) return false;
@@ -112,7 +112,7 @@ GeneratedPlan generate_plan(const GeneratedReference& reference) {
     Draft drawn = draw_shape(room, Dice(stream.fork(draft)), group);
     if (furnish(drawn)) return plan_of(drawn, fmt::format("{}-{}", category.name, reference.seed));
   }
-  throw MachineError(fmt::format("{}: no room of {} drafts holds what a {} of density {} needs",
+  throw MachineError(fmt::format("{}: none of {} drafts had room for what a {} of density {} needs",
                                  to_string(reference), kDrafts, room.name,
                                  density_group_name(group)));
 }

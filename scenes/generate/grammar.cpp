@@ -221,7 +221,7 @@ Category read_category(YamlReader yaml) {
   return category;
 }
 
-/// Reads the embedded files of these names, in their order.
+/// Reads the embedded files with these names, in this order.
 template <class Names, class Read>
 auto read_all(const Names& names, const Read& read) {
   std::vector<decltype(read(YamlReader::parse("", "")))> list;

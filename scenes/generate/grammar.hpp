@@ -24,16 +24,17 @@ struct PaletteEntry {
   DrawRange variation;
 };
 
-/// Named palettes; the default palette of each role; the palettes that are drawn from again for
-/// each piece (images: no two alike); and the kinds of furniture whose pieces differ in size and
-/// material within a rule, while those of other kinds match.
+/// Named palettes; the default palette of each role; the palettes that are drawn from anew for each
+/// piece (so that no two images are the same); and the kinds of furniture whose pieces differ in
+/// size and material within a rule (pieces of other kinds match).
 struct Palettes {
   std::map<std::string, std::vector<PaletteEntry>> lists;
   std::map<std::string, std::string> list_of_role;
   std::vector<std::string> fresh, varied;
 };
 
-/// Where a piece is placed. The second group is for pieces that belong to another (ItemRule::with).
+/// Where a piece is placed. The places from kOn on are for pieces that belong to another piece
+/// (ItemRule::with).
 enum class Place {
   kWall,
   kCorner,
@@ -63,7 +64,7 @@ struct ItemRule {
   int most = 1000;       ///< extras: maximum of its kind in the whole room
   bool fitting = false;  ///< not counted as an object, wherever its rule appears
   DrawRange count{1, 1};
-  std::optional<std::array<DrawRange, 3>> size_m;  ///< none: about the kind's usual size
+  std::optional<std::array<DrawRange, 3>> size_m;  ///< if not set, about the kind's usual size
   std::optional<DrawRange> z_m;   ///< height above the floor (on, around: above the carrier's base)
   DrawRange gap_m{0.005, 0.03};   ///< to the wall or to the piece that it belongs to
   DrawRange turn_deg{0, 0};       ///< added to the rotation that the place requires
@@ -87,8 +88,7 @@ struct RoomGrammar {
   DrawRange doors{1, 1};
   std::array<double, 4> density{1, 1, 1, 1};         ///< weights of the groups of objects per 10 m2
   std::vector<std::string> floors, walls, ceilings;  ///< names of palettes
-  double accent_chance = 0.2;                        ///< probability that one wall has another
-                                                     ///< color
+  double accent_chance = 0.2;  ///< probability of one wall in a different color
   std::string lamp = "ceiling_lamp";
   double area_per_lamp_m2 = 8;
   DrawRange lamp_power{3.0, 5.0}, warmth{0.0, 1.0};
@@ -97,7 +97,7 @@ struct RoomGrammar {
   std::vector<ItemRule> fittings;  ///< placed last and not counted as objects
 };
 
-/// How a floor of like rooms is generated: rooms of one design on both sides of a corridor, each
+/// How a floor of similar rooms is generated: rooms of one design on both sides of a corridor, each
 /// with some objects of its own.
 struct FloorGrammar {
   std::string name;
@@ -116,9 +116,9 @@ struct Category {
 /// The twelve categories in the order of the paper's Table 1. Parsed once.
 const std::vector<Category>& categories();
 const Palettes& palettes();
-/// Floors of like rooms, in the order of kFloorNames. Parsed once.
+/// Floors of similar rooms, in the order of kFloorNames. Parsed once.
 const std::vector<FloorGrammar>& floors();
-/// nullptr if there is none of that name.
+/// The floor with that name; nullptr if there is none.
 const FloorGrammar* floor_by_name(std::string_view name);
 /// @throws InputError listing the known categories and floors
 const Category& category_by_name(std::string_view name);

@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 struct Arm {
   Vector2d middle_m, end_m;
 };
-/// The one west or east of the corner, then the one south or north of it.
+/// The arm west or east of the missing corner, then the arm south or north of it.
 std::array<Arm, 2> arms(const FloorRect& room, const FloorRect& cut) {
   const double x = 0.5 * (cut.x0 > room.x0 ? room.x0 + cut.x0 : cut.x1 + room.x1),
                y = 0.5 * (cut.y0 > room.y0 ? room.y0 + cut.y0 : cut.y1 + room.y1);
@@ -24,7 +24,8 @@ std::array<Arm, 2> arms(const FloorRect& room, const FloorRect& cut) {
            {{0.5 * (cut.x0 + cut.x1), y}, {cut.x0 > room.x0 ? room.x1 : room.x0, y}}}};
 }
 
-/// Moves a position next to the missing corner, if there is one, to the center of that arm.
+/// Moves a position next to the missing corner, if the room has one, to the center line of that
+/// arm.
 Vector2d beside_cut(const Layout& layout, const Vector2d& at_m) {
   if (!layout.cut()) return at_m;
   const FloorRect& cut = *layout.cut();

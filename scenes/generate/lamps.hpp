@@ -6,7 +6,7 @@
 namespace mh::generate {
 
 /// Hangs lamps from the ceiling, in rows, also in the arms of an L-shaped room. @returns whether
-/// there is any
+/// any lamp fits
 bool add_lamps(Draft& draft);
 
 Daylight draw_daylight(Dice& dice);

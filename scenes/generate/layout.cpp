@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, which is also where one enters
-constexpr double kRobotHeight_m = 1.25;  // what hangs higher does not obstruct
+constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, and on which people enter
+constexpr double kRobotHeight_m = 1.25;  // things that hang higher do not obstruct
 constexpr double kFlat_m = 0.03;         // rugs
 constexpr double kApart_m = 0.004;       // gap between neighbors: rounding must not make them
                                          // overlap
@@ -123,7 +123,8 @@ bool Layout::inside(const Footprint& footprint) const {
 bool Layout::belong_together(const LayoutItem& item, std::size_t i) const {
   const LayoutItem& other = items_[i];
   if (item.under == i) return true;
-  // A chair's back is next to the table that it is pushed under, not beneath what is on it.
+  // The back of a chair that is pushed under a table is next to the table, not beneath the things
+  // on it.
   if (item.under && other.on == item.under) return true;
   if (item.on && other.under == item.on) return true;
   for (std::optional<std::size_t> below = item.on; below; below = items_[*below].on)
@@ -151,7 +152,7 @@ bool Layout::leaves_openings(const LayoutItem& item) const {
   for (const WallOpening& o : openings_) {
     if (item.z_m >= o.high_m || top <= o.low_m + 0.05) continue;
     const WallRun& wall = walls_[static_cast<std::size_t>(o.side)];
-    const double depth = 0.35;  // nothing tall stands in front of a window
+    const double depth = 0.35;  // of the space kept free in front of an opening
     const Footprint before = footprint_of(wall.place(0.5 * (o.from_m + o.to_m), depth, 0),
                                           wall.turn_deg(), o.to_m - o.from_m, depth);
     if (overlap_m(footprint, before) > 0) return false;
@@ -175,7 +176,7 @@ void Layout::narrow(Grid2d<float>& room, const Footprint& footprint) const {
        y <= std::min(room.height() - 1, cell(y1 + kReach_m)); ++y)
     for (int x = std::max(0, cell(x0 - kReach_m));
          x <= std::min(room.width() - 1, cell(x1 + kReach_m)); ++x)
-      if (room(x, y) > 0.9 * kRobotRadius_m)  // smaller values stay too small
+      if (room(x, y) > 0.9 * kRobotRadius_m)  // smaller values are too small in any case
         room(x, y) =
             std::min(room(x, y), static_cast<float>(distance_m(cell_center(x, y), footprint)));
 }
@@ -231,9 +232,9 @@ std::optional<std::size_t> Layout::add(const LayoutItem& item, double front_m) {
     if (hinders) {
       Grid2d<float> after = room_m_;
       narrow(after, footprint);
-      // All floor that is wide enough for the robot must be reachable, with the clearance on every
-      // path. Plans are in whole millimeters: exact fits and near misses are decided the same way
-      // by every check.
+      // All floor that is wide enough for the robot must be reachable, also with the clearance.
+      // Plans are in whole millimeters, so exact fits occur: slightly smaller and larger radii must
+      // pass, too, so that rounding does not decide.
       constexpr double kTie_m = 0.0002;
       for (const double radius : {kRobotRadius_m, kRobotRadius_m + kPlay_m})
         for (const double tie : {-kTie_m, kTie_m})

@@ -17,7 +17,8 @@ using Footprint = std::array<Eigen::Vector2d, 4>;
 
 Footprint footprint_of(const Eigen::Vector2d& middle_m, double turn_deg, double width_m,
                        double depth_m);
-/// Transforms a point from the frame of something at `middle_m`, rotated, to the room's frame.
+/// Transforms a point to the room's frame from the frame of something that is at `middle_m` and
+/// rotated by `turn_deg`.
 Eigen::Vector2d from_frame(const Eigen::Vector2d& middle_m, double turn_deg,
                            const Eigen::Vector2d& local_m);
 
@@ -29,7 +30,7 @@ struct WallRun {
 
   /// The center of something of this depth whose back is `gap_m` in front of the wall.
   Eigen::Vector2d place(double along_m, double depth_m, double gap_m) const;
-  double turn_deg() const;  ///< of a piece with its back to it
+  double turn_deg() const;  ///< of a piece with its back to the wall
 };
 
 struct WallOpening {
@@ -45,11 +46,11 @@ struct LayoutItem {
   Eigen::Vector2d at_m = Eigen::Vector2d::Zero();  ///< world
   double z_m = 0, turn_deg = 0;
   Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
-  std::optional<std::size_t> on;                      ///< what carries it
+  std::optional<std::size_t> on;                      ///< the piece that carries it
   Eigen::Vector2d on_at_m = Eigen::Vector2d::Zero();  ///< in the carrier's frame
   double on_turn_deg = 0;
   bool on_board = false;                         ///< inside the carrier, not on its top
-  std::optional<std::size_t> under;              ///< what it is pushed under
+  std::optional<std::size_t> under;              ///< the piece that it is pushed under
   bool covers_window = false;                    ///< blinds
   bool fitting = false;                          ///< not counted as an object
   std::map<std::string, std::string> materials;  ///< role -> name of a material
@@ -58,7 +59,7 @@ struct LayoutItem {
   Footprint footprint() const { return footprint_of(at_m, turn_deg, size_m.x(), size_m.y()); }
 };
 
-/// A room being furnished: keeps track of what is where, and that one can walk.
+/// A room being furnished: tracks what is where, and keeps the floor passable.
 class Layout {
  public:
   static constexpr double kRobotRadius_m = 0.26;  ///< half of 0.52 m
@@ -77,14 +78,15 @@ class Layout {
   const std::vector<LayoutItem>& items() const { return items_; }
   const LayoutItem& item(std::size_t i) const { return items_[i]; }
 
-  /// Other rooms are beyond that wall: it gets no windows.
+  /// Marks a wall that has other rooms behind it: it gets no windows.
   void close(Side side) { walls_[static_cast<std::size_t>(side)].outer = false; }
-  /// Adds an opening if it fits into a stretch of wall, clear of the others. @returns whether it
-  /// does
+  /// Adds an opening if it fits into a stretch of wall, clear of the other openings. @returns
+  /// whether it fits
   bool add_opening(const WallRun& wall, WallOpening opening);
-  /// Adds a piece if it is inside the room, overlaps nothing, leaves doors, windows, its own front
-  /// and those of others free, and keeps all floor on which the robot fits connected, also for a
-  /// robot wider by the clearance. @returns its index
+  /// Adds a piece if it is inside the room, overlaps nothing, and leaves free doors, windows, its
+  /// own front and the fronts of other pieces. All floor on which the robot fits must stay
+  /// connected, also for a robot that is wider by the clearance. @returns its index, nullopt if it
+  /// does not fit
   std::optional<std::size_t> add(const LayoutItem& item, double front_m);
   /// Share of the floor where the robot's center can be, including its clearance.
   double free_share() const;
@@ -93,11 +95,12 @@ class Layout {
 
  private:
   bool inside(const Footprint& footprint) const;
-  /// Whether boxes may intersect: something and its carrier, a chair and the table it is under.
+  /// Whether two boxes may intersect: those of a piece and its carrier, or of a chair and the table
+  /// it is pushed under.
   bool belong_together(const LayoutItem& item, std::size_t i) const;
   bool apart(const LayoutItem& item) const;
   bool leaves_openings(const LayoutItem& item) const;
-  bool in_the_way(const LayoutItem& item) const;  ///< of the robot
+  bool in_the_way(const LayoutItem& item) const;  ///< whether it is in the robot's way
   void narrow(Grid2d<float>& room, const Footprint& footprint) const;
   bool connected(const Grid2d<float>& room, double radius_m) const;
   Eigen::Vector2d cell_center(int x, int y) const;
@@ -109,9 +112,9 @@ class Layout {
   std::vector<WallOpening> openings_;
   std::vector<LayoutItem> items_;
   std::vector<Footprint> swings_;  ///< of doors
-  std::vector<Footprint> fronts_;  ///< floor in front of pieces, where only their own chairs may be
-  Grid2d<float> room_m_;  ///< distance from a cell's center to the nearest obstacle, m, where it
-                          ///< matters
+  std::vector<Footprint> fronts_;  ///< floor in front of pieces, only for their own chairs
+  Grid2d<float> room_m_;  ///< distance from a cell's center to the nearest obstacle, m; exact only
+                          ///< where it matters
 };
 
 }  // namespace mh

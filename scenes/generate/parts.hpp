@@ -5,7 +5,8 @@
 
 namespace mh::generate {
 
-/// Adds the pieces that belong to one (ItemRule::with), and in turn those that belong to these.
+/// Adds the pieces that belong to a piece (ItemRule::with), and in turn the pieces that belong to
+/// those.
 void add_parts(Draft& draft, const ItemRule& owner, std::size_t index);
 
 }  // namespace mh::generate

@@ -9,7 +9,7 @@
 
 namespace mh::generate {
 
-/// What the pieces of one rule have in common, unless its kind is a varied one.
+/// What the pieces of one rule have in common, unless they are of a varied kind (Palettes::varied).
 struct Design {
   const ItemRule* rule = nullptr;
   const FurnitureKind* kind = nullptr;
@@ -18,7 +18,7 @@ struct Design {
 };
 
 Design make_design(Draft& draft, const ItemRule& rule);
-/// The design of the i-th piece of a rule: sets match, but no two images or cushions are alike.
+/// The design of the i-th piece of a rule: sets match, but no two images or cushions are the same.
 Design design_of_piece(Draft& draft, const Design& common, int i);
 
 /// Creates a piece without position and name.

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Width and depth of the axis-aligned rectangle around a rotated one.
+/// Width and depth of the axis-aligned rectangle around a rotated rectangle.
 Vector2d turned_size(const Eigen::Vector3d& size_m, double turn_deg) {
   const double c = std::abs(std::cos(turn_deg * kDegree)),
                s = std::abs(std::sin(turn_deg * kDegree));
@@ -25,7 +25,7 @@ bool put_at_wall(Draft& draft, const ItemRule& rule, double extra_deg, LayoutIte
   if (high < low) return false;
   double along = dice.number(low, high);
   if (rule.place == Place::kCorner) along = dice.chance(0.5) ? low : high;
-  // Furniture stands side by side rather than with a small gap.
+  // Furniture often stands right at the end of a wall, without a small gap.
   if (rule.place == Place::kWall && dice.chance(0.35)) along = dice.chance(0.5) ? low : high;
   const double gap = rule.place == Place::kHang ? 0.002 : draw(dice, rule.gap_m);
   item.at_m = wall.place(along, size.y(), gap);
@@ -34,7 +34,7 @@ bool put_at_wall(Draft& draft, const ItemRule& rule, double extra_deg, LayoutIte
   return true;
 }
 
-/// Aligns its longer side with the room's.
+/// Places a piece near the middle of the room, with its longer side along the room's longer side.
 void put_in_center(Draft& draft, double extra_deg, LayoutItem& item) {
   Dice& dice = draft.dice;
   const FloorRect& r = draft.layout.rect();
@@ -51,7 +51,7 @@ Vector2d anywhere(Draft& draft) {
   return {draft.dice.number(r.x0, r.x1), draft.dice.number(r.y0, r.y1)};
 }
 
-/// Places it on a carrier, within the rule's zone.
+/// Places a piece on a carrier, within the rule's zone.
 bool put_on(Draft& draft, const ItemRule& rule, std::size_t carrier_index, LayoutItem& item) {
   const LayoutItem& carrier = draft.layout.item(carrier_index);
   item.on_turn_deg = half_degrees(draw(draft.dice, rule.turn_deg));
@@ -60,7 +60,7 @@ bool put_on(Draft& draft, const ItemRule& rule, std::size_t carrier_index, Layou
   Vector2d low(rule.zone[0] * own.x(), rule.zone[1] * own.y());
   Vector2d high(rule.zone[2] * own.x(), rule.zone[3] * own.y());
   low += half, high -= half;
-  constexpr double kOver_m = 0.02;  // overhang of what is at the edge
+  constexpr double kOver_m = 0.02;  // overhang of things at the edge
   for (int k = 0; k < 2; ++k) {
     if (high[k] < low[k] - kOver_m) return false;
     if (high[k] < low[k]) low[k] = high[k] = 0.5 * (low[k] + high[k]);
@@ -138,10 +138,10 @@ std::optional<LayoutItem> put_at_owner(Draft& draft, const Design& design,
     case Place::kBeside: {
       const double side = dice.chance(0.5) ? 1.0 : -1.0;
       local.x() = side * (0.5 * (owner.size_m.x() + item.size_m.x()) + gap);
-      local.y() = 0.5 * (owner.size_m.y() - item.size_m.y());  // backs in line
+      local.y() = 0.5 * (owner.size_m.y() - item.size_m.y());  // so that their backs are flush
       break;
     }
-    case Place::kFront:  // faces its owner, as a chair does a desk
+    case Place::kFront:  // faces its owner, as a chair faces a desk
       local.y() = -(0.5 * (owner.size_m.y() + item.size_m.y()) + gap);
       local.x() = rule.zone[0] <= -1 ? 0.0 : slack * 0.5 * owner.size_m.x();
       turn = 180.0;

@@ -13,7 +13,7 @@
 namespace mh::generate {
 
 Draft draw_shape(const RoomGrammar& grammar, Dice dice, int group) {
-  // Few objects per area occur in large rooms, many in small ones.
+  // Large rooms have few objects per area, small rooms have many.
   const double span = grammar.area_m2.high - grammar.area_m2.low;
   constexpr std::array<DrawRange, kDensityGroups> kPart = {
       {{0.55, 1.0}, {0.2, 1.0}, {0.0, 0.85}, {0.0, 0.45}}};
@@ -26,7 +26,7 @@ Draft draw_shape(const RoomGrammar& grammar, Dice dice, int group) {
   if (dice.chance(0.5)) std::swap(w, d);
   const double height = whole_mm(draw(dice, grammar.height_m));
   std::optional<FloorRect> cut;
-  constexpr double kLeft_m = 1.2, kLeast_m = 0.4;  // wall beside the cut; the cut itself
+  constexpr double kLeft_m = 1.2, kLeast_m = 0.4;  // least wall beside the cut, least cut
   const double cw = whole_mm(std::min(a * w, w - kLeft_m));
   const double cd = whole_mm(std::min(b * d, d - kLeft_m));
   if (missing && cw > kLeast_m && cd > kLeast_m) {

@@ -22,9 +22,9 @@ Stuff draw_stuff(const std::string& palette, Dice& dice) {
   return {&entry, shifted, draw(dice, entry.variation), {}};
 }
 
-/// Creates a material, named after the palette that it is from.
+/// Creates a material, named after its palette.
 std::string make_material_of(Draft& draft, const std::string& palette, const Stuff& stuff) {
-  // Two pieces of the same material differ slightly in shade, and in their grain.
+  // Two pieces of the same material differ slightly in shade and grain.
   const double shade = draft.dice.number(-0.035, 0.035) * (stuff.made.empty() ? 0.0 : 1.0);
   const auto level = [&](std::uint8_t v) {
     return static_cast<std::uint8_t>(

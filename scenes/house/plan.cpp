@@ -46,7 +46,8 @@ std::vector<Vector2d> RoomPlan::outline_m() const {
   if (!cut) return corners;
   const bool south = cut->y0 <= r.y0, west = cut->x0 <= r.x0;
   const std::size_t missing = south ? (west ? 0 : 1) : (west ? 3 : 2);
-  // Counter-clockwise: the end of the wall before the missing corner, the inner corner, the next.
+  // Counter-clockwise: the end of the wall before the missing corner, the inner corner, the start
+  // of the next wall.
   const Vector2d inner(west ? cut->x1 : cut->x0, south ? cut->y1 : cut->y0);
   const Vector2d on_x(inner.x(), south ? r.y0 : r.y1), on_y(west ? r.x0 : r.x1, inner.y());
   const bool y_first = south == west;

@@ -36,7 +36,7 @@ constexpr bool runs_along_x(Side side) {
 constexpr double inward(Side side) {
   return side == Side::kSouth || side == Side::kWest ? 1.0 : -1.0;
 }
-/// Rotation of a piece with its back to that wall: its front (-y) faces the room.
+/// Rotation of a piece with its back to that wall, so that its front (-y) faces the room.
 constexpr double turn_before_wall_deg(Side side) {
   constexpr std::array kTurn = {180.0, 0.0, 90.0, -90.0};
   return kTurn[static_cast<std::size_t>(side)];
@@ -110,7 +110,7 @@ struct HousePlan {
   std::optional<Light> sun, sky;
 };
 
-/// Overlap (m) of two convex counter-clockwise quadrilaterals; 0 or less: they do not overlap.
+/// Overlap (m) of two convex counter-clockwise quadrilaterals; 0 or less if they do not overlap.
 double overlap_m(const std::array<Eigen::Vector2d, 4>& a, const std::array<Eigen::Vector2d, 4>& b);
 
 }  // namespace mh

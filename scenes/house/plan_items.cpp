@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTouch = 0.01;  // furniture may touch: builders' tolerances, not an overlap
+constexpr double kTouch = 0.01;  // furniture may touch: a smaller overlap is a builder's tolerance
 constexpr double kFlat = 0.03;   // rugs: people and furniture can be on them
 
 std::size_t piece_by_name(const YamlReader& yaml, const HousePlan& house, std::size_t room) {
@@ -24,7 +24,7 @@ std::size_t piece_by_name(const YamlReader& yaml, const HousePlan& house, std::s
   yaml.fail(fmt::format("there is no piece '{}' before this one in the room", yaml.as_string()));
 }
 
-/// Puts the back of a piece to a wall: position and rotation follow from side, along and gap.
+/// Places a piece with its back to a wall: position and rotation follow from side, along and gap.
 void place_against(YamlReader& yaml, const FloorRect& rect, ItemPlan& item) {
   const Side side = side_by_name(yaml.at("against"));
   const double along = yaml.number("along");
@@ -60,7 +60,7 @@ void read_item_materials(YamlReader& yaml, const Materials& materials, ItemPlan&
   }
 }
 
-/// Places it on another piece: `at` is in the carrier's frame.
+/// Places a piece on another piece; `at` is in the carrier's frame.
 void place_on(YamlReader& yaml, const HousePlan& house, ItemPlan& item) {
   const YamlReader on = yaml.at("on");
   item.on = piece_by_name(on, house, item.room);
@@ -133,11 +133,11 @@ void check_in_room(const YamlReader& yaml, const HousePlan& house, const ItemPla
     const double depth =
         overlap_m(item.footprint(), {{{c.x0, c.y0}, {c.x1, c.y0}, {c.x1, c.y1}, {c.x0, c.y1}}});
     if (depth > kTouch)
-      yaml.fail(fmt::format("'{}' stands {:.2f} m in the corner that room '{}' lacks", item.name,
+      yaml.fail(fmt::format("'{}' reaches {:.2f} m into the corner cut out of room '{}'", item.name,
                             depth, room.name));
   }
-  // Walls fill the space between the inner rectangles: a footprint that leaves its room intersects
-  // one.
+  // Walls fill the space between the rooms' rectangles: a footprint that leaves its room intersects
+  // a wall.
   for (const Vector2d& corner : item.footprint())
     if (!room.rect.contains(corner, kTouch))
       yaml.fail(fmt::format("'{}' overlaps a wall of room '{}' at [{:.2f}, {:.2f}]", item.name,

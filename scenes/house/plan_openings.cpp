@@ -18,7 +18,7 @@ std::pair<double, double> read_span(const YamlReader& yaml) {
   return {n[0], n[1]};
 }
 
-/// The side of room a on which room b is adjacent across one wall.
+/// The side of room a on which only a wall separates it from room b.
 std::optional<Side> side_between(const HousePlan& house, const RoomPlan& a, const RoomPlan& b) {
   for (const Side side : kSides) {
     const double gap = std::abs(wall_at(a.rect, side) - wall_at(b.rect, opposite(side)));

@@ -38,7 +38,7 @@ std::string doorways_text(const HouseFile& house);
 std::string windows_text(const HouseFile& house);
 
 // plan_items.cpp
-/// Reads the pieces of a room and adds them to the house's.
+/// Reads the pieces of a room and adds them to the house.
 void read_items(const YamlReader& yaml, const Materials& materials, std::size_t room,
                 HousePlan& house);
 std::string item_text(const ItemEntry& item);

@@ -10,7 +10,7 @@ namespace mh {
 namespace {
 
 FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
-  constexpr double kLeft = 0.8;  // width of the passage that must remain next to it
+  constexpr double kLeft = 0.8;  // width of the passage that must remain next to the cut
   const YamlReader corner = yaml.at("corner"), size = yaml.at("size_m");
   const std::string name = corner.as_string();
   const bool south = name.starts_with("south_"), west = name.ends_with("_west");
@@ -22,8 +22,7 @@ FloorRect read_cut(YamlReader yaml, const FloorRect& rect) {
   const std::vector<double> n = size.as_numbers(2);
   if (n[0] <= 0 || n[1] <= 0 || n[0] > rect.x1 - rect.x0 - kLeft ||
       n[1] > rect.y1 - rect.y0 - kLeft)
-    size.fail(fmt::format("[{}, {}] is not part of the room that leaves {} m beside it", n[0], n[1],
-                          kLeft));
+    size.fail(fmt::format("[{}, {}] does not leave {} m of the room beside it", n[0], n[1], kLeft));
   yaml.finish();
   return {west ? rect.x0 : rect.x1 - n[0], south ? rect.y0 : rect.y1 - n[1],
           west ? rect.x0 + n[0] : rect.x1, south ? rect.y0 + n[1] : rect.y1};

@@ -57,7 +57,7 @@ struct Hole {
 struct WallSheet {
   Hole extent;
   std::vector<Hole> holes = {};
-  bool inwards = true;  ///< is seen from the room
+  bool inwards = true;  ///< visible from the room
   float step_m = kWallStep;
 };
 
@@ -97,7 +97,7 @@ bool pierces(const HousePlan& house, const OpeningPlan& opening, std::size_t roo
   if (opening.room == room) return opening.side == side;
   if (opening.other != room) return false;
   const FloorRect &a = house.rooms[opening.room].rect, &b = house.rooms[room].rect;
-  switch (opening.side) {  // seen from the other room
+  switch (opening.side) {  // as seen from the other room
     case Side::kSouth:
       return side == Side::kNorth && b.y1 < a.y0;
     case Side::kNorth:
@@ -279,7 +279,7 @@ void build_window(const HousePlan& house, const OpeningPlan& window, MaterialId 
   }
 }
 
-/// Outer faces, roof and ground slab of a box `inset` inside the hull's outermost one.
+/// Outer faces, roof and ground slab of a box that is `inset` inside the hull's outermost box.
 void build_hull_layer(const HousePlan& house, MaterialId material, float inset, bool outwards,
                       MeshBuilder& mesh) {
   const float t = static_cast<float>(house.wall_m) - inset;
@@ -302,7 +302,7 @@ void build_hull_layer(const HousePlan& house, MaterialId material, float inset, 
                 .inwards = !outwards,
                 .step_m = kHullStep});
   }
-  if (!outwards) return;  // floors and ceilings have nothing standing on their far side
+  if (!outwards) return;  // nothing stands on the far side of floors and ceilings
   mesh.begin_instance("house/roof", class_id("ceiling"));
   mesh.panel(material, {{0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY()}, xs, ys);
   mesh.begin_instance("house/slab", class_id("otherstructure"));
@@ -325,8 +325,9 @@ void build_hull(const HousePlan& house, MeshBuilder& mesh) {
 }
 
 /// A glowing image of a garden is placed beyond each side that has windows, with a lawn in front.
-/// Each side has its own image, as wide as the side, so that no window repeats another's view. They
-/// do not belong in a map of the house: class void, no object.
+/// Each side has its own image, as wide as the side, so that no window repeats another's view.
+/// Images and lawn do not belong in a map of the house, so their class is void and they are no
+/// objects.
 void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder& mesh) {
   const auto d = static_cast<float>(garden.distance_m), h = static_cast<float>(garden.height_m);
   const auto glow = static_cast<float>(garden.glow);
@@ -334,8 +335,8 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
   const auto x0 = static_cast<float>(e.x0) - d, x1 = static_cast<float>(e.x1) + d;
   const auto y0 = static_cast<float>(e.y0) - d, y1 = static_cast<float>(e.y1) + d;
   constexpr float kGround = -0.35F;
-  // With exposure set for indoors the outside would be too bright, so all images are darkened.
-  // Those not lit by the sun may glow.
+  // With the exposure set for indoors, the outside would be too bright, so all images are darkened.
+  // Images that are not lit by the sun may glow.
   const auto image = [&](Side side, float width_m, bool sunlit) {
     MaterialSpec spec = garden.material;
     spec.name = fmt::format("{}_{}", spec.name, side_name(side));

@@ -7,8 +7,8 @@
 
 namespace mh {
 
-/// An sRGB color in [0, 255] during mixing. Mixing happens in sRGB, which is close enough to
-/// perceptual steps and keeps painters short.
+/// An sRGB color in [0, 255] during mixing. Colors are mixed in sRGB, which is nearly uniform in
+/// perception and keeps painters short.
 struct Tint {
   float r = 0, g = 0, b = 0;
 

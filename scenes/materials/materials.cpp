@@ -97,7 +97,7 @@ Material make_material(const MaterialSpec& spec) {
                                  .texel_m = texel_m,
                                  .tone = Tint(spec.tone),
                                  .variation = static_cast<float>(spec.variation),
-                                 // Two kinds with one seed share no random stream.
+                                 // Two kinds with the same seed do not share a random stream.
                                  .random = RandomStream(spec.seed).fork(name_key(spec.kind))});
   return material;
 }

@@ -18,7 +18,7 @@ struct MaterialSpec {
   std::string kind;                    ///< one of material_kinds()
   Rgb8 tone{180, 140, 100};            ///< sRGB, the surface's mean color (images: their key color)
   double variation = 0.5;              ///< contrast of the pattern, 0 (faint) to 1 (strong)
-  std::uint64_t seed = 0;              ///< another seed gives another sample of the same material
+  std::uint64_t seed = 0;              ///< different seeds give different samples of a material
   Eigen::Vector2f size_m{1.0F, 1.0F};  ///< size of the whole image if is_image(kind)
 };
 

@@ -53,7 +53,7 @@ Tint hsv(float hue, float saturation, float value) {
   return {channel(5.0F), channel(3.0F), channel(1.0F)};
 }
 
-/// A color at random; value and saturation within these bounds.
+/// A random color with value and saturation within these bounds.
 Tint random_tint(Dice& dice, float s_low, float s_high, float v_low, float v_high) {
   const float hue = dice.uniform(), saturation = dice.uniform(s_low, s_high);
   return hsv(hue, saturation, dice.uniform(v_low, v_high));
@@ -151,7 +151,7 @@ void spine(Image& image, const PaintJob& job, Dice& dice, int x, int y, int widt
   Canvas canvas(book);
   canvas.rectangle(0, 0, w, h, cloth);
   const int style = dice.below(5);
-  if (style == 0) {  // a label of another color
+  if (style == 0) {  // a label in a different color
     const Tint label = cloth_for(job, dice);
     canvas.rectangle(0, 0.12F * h, w, 0.22F * h, label);
     canvas.rectangle(0, 0.80F * h, w, 0.03F * h, label);
@@ -187,7 +187,7 @@ Image paint_book_spines(const PaintJob& job) {
   Dice dice(job.random);
   int x = 0;
   while (x < job.width) {
-    // Books of one series share height and width now and then.
+    // Now and then there is a series of books of the same height and width.
     const float size = dice.uniform(0.72F, 0.97F);
     const int width = job.texels(dice.uniform(0.014F, 0.046F));
     const int copies = dice.below(7) == 0 ? 3 : 1;
@@ -286,7 +286,7 @@ Image paint_paper(const PaintJob& job) {
 }
 
 Image paint_screen(const PaintJob& job) {
-  // Even seeds of the dice: a desktop with windows; odd ones: a broadcast with a ticker.
+  // Half of the screens show a desktop with windows, the others a broadcast with a ticker.
   Dice dice(job.random);
   const auto w = static_cast<float>(job.width), h = static_cast<float>(job.height);
   const Tint sky = hsv(dice.uniform(0.5F, 0.7F), 0.5F, 0.85F);
@@ -362,7 +362,7 @@ Image paint_whiteboard(const PaintJob& job) {
       const float y = y0 + line * static_cast<float>(i),
                   end = x0 + w * static_cast<float>(q.uniform(0, 0.1, 0.3));
       float low = y;
-      for (std::uint64_t k = 1; x < end; k += 2) {  // a hand's zigzag
+      for (std::uint64_t k = 1; x < end; k += 2) {  // a zigzag like handwriting
         const float nx = x + 0.28F * line * static_cast<float>(q.uniform(k, 0.4, 1.2));
         const float ny = y - 0.55F * line * static_cast<float>(q.uniform(k + 1, -0.2, 1.0));
         if (q.uniform(k + 1000) > 0.15) canvas.line(x, low, nx, ny, pen, tint);

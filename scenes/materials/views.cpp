@@ -25,7 +25,7 @@ Image paint_painting(const PaintJob& job) {
   const Field canvas_grain = white_noise(w, h, job.random.fork(5));
   const float horizon = static_cast<float>(job.random.fork(6).uniform(0, 0.38, 0.52));
   const Tint warm(238, 196, 128);
-  // Every dab takes its color from a point nearby, as a brush does.
+  // Every dab takes its color from a nearby point, like a brush.
   const auto scenery = [&](float x, float y) {
     const float v = y / static_cast<float>(h);
     const int column = std::clamp(static_cast<int>(x), 0, w - 1);

@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-/// Bends the year rings around a few knots and darkens their cores.
+/// Bends the growth rings around a few knots and darkens the knots' cores.
 void add_knots(const PaintJob& job, int count, Field& rings, Field& darkness) {
   const RandomStream random = job.random.fork(1);
   for (int k = 0; k < count; ++k) {
@@ -26,8 +26,8 @@ void add_knots(const PaintJob& job, int count, Field& rings, Field& darkness) {
   }
 }
 
-/// How much darker than its mean a plank is at each texel, about -0.5 to 1: year rings cut
-/// lengthwise (long lines that close to arches, the "cathedral" figure), fibers, pores and knots.
+/// How much darker than its mean a plank is at each texel, about -0.5 to 1: growth rings cut
+/// lengthwise (long lines that close into arches, the "cathedral" figure), fibers, pores and knots.
 /// The grain runs along x.
 Field wood_darkness(const PaintJob& job) {
   constexpr double kRingSpacing = 0.016;

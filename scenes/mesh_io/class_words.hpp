@@ -5,9 +5,9 @@
 
 namespace mh {
 
-/// Words used in files to name things, all lower case and singular, each with its class. For words
-/// in NYU40's table of raw categories, the class is the table's, unless COCO has a separate class
-/// for it; void means not an object. A word of two parts matches in any spelling: night stand,
+/// Words used in files to name things, all lower case and singular, each with its class. Words in
+/// NYU40's table of raw categories have the table's class, unless COCO has a separate class for
+/// them; void means not an object. A word of two parts matches in any spelling: night stand,
 /// nightstand, NightStand, night_stand.
 struct ClassWord {
   std::string_view words, class_name;

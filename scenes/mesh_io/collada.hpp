@@ -6,8 +6,9 @@
 
 namespace mh {
 
-/// Rewrites a Collada file so that assimp can read it, without what assimp rejects: blanks before a
-/// list of numbers, comments, holes of polygons (which are filled). Everything else is unchanged.
+/// Rewrites a Collada file so that assimp can read it. Removes what assimp rejects: whitespace
+/// before a list of numbers, comments, and holes of polygons (which are filled). Everything else is
+/// unchanged.
 /// @param z_is_up  ignore the file's up axis, as Gazebo does
 std::string repaired_collada(std::string_view text, bool z_is_up = false);
 

@@ -50,9 +50,9 @@ NodeLabel label_of(const aiNode& node) {
   return label;
 }
 
-/// Guesses the class from names around a node if its own gives none: the mesh's, then those of the
-/// nodes above, the nearest first, except "floor", which is used for stories. The top node is
-/// skipped: it is named after the exporter or the file.
+/// Guesses the class from names around a node whose own name gives none: the mesh's name, then
+/// those of the nodes above it, the nearest first. "floor" is ignored in nodes above, since it is
+/// used for stories. The top node is skipped: it is named after the exporter or the file.
 ClassId guess_around(const aiNode& node, const aiMesh& mesh) {
   ClassId found = guess_class(mesh.mName.C_Str());
   for (const aiNode* above = node.mParent; found == kVoid && above != nullptr && above->mParent;
@@ -103,7 +103,7 @@ class Gatherer {
 
   void visit(const aiNode& node, const aiMatrix4x4& world_from_parent) {
     const aiMatrix4x4 world_from_node = world_from_parent * node.mTransformation;
-    // A node is an object; if rules label its pieces differently, each class is a separate one.
+    // A node is an object; if rules label its pieces differently, each class is a separate object.
     std::map<ClassId, InstanceId> instance_of;
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const aiMesh& mesh = *in_.mMeshes[node.mMeshes[i]];
@@ -146,7 +146,7 @@ class Gatherer {
   std::string unique_name(const std::string& wanted) {
     const std::string base = wanted.empty() ? "object" : wanted;
     std::string name = base;
-    // Continues from the last copy: some files have thousands of nodes with one name.
+    // Continues from the last copy: some files have thousands of nodes with the same name.
     for (int& copies = copies_of_.try_emplace(base, 1).first->second; !names_.insert(name).second;)
       name = fmt::format("{}_{}", base, ++copies);
     return name;

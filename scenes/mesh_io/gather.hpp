@@ -24,11 +24,11 @@ struct ReadMesh {
   const std::filesystem::path& file;
   const MeshFormat& format;
   const LabelRules& rules;
-  const std::map<std::string, MtlUvs>& uvs;  ///< by material; any other keeps its own
+  const std::map<std::string, MtlUvs>& uvs;  ///< by material; other materials keep their own
 };
 
 /// Collects the meshes of a file's nodes into one scene, with their objects and classes (see
-/// load_mesh). It converts no materials: the scene must already have the file's.
+/// load_mesh). Does not convert materials: the scene must already have those of the file.
 /// @throws InputError naming the file: positions that are not finite, too many objects or
 /// materials.
 void gather(const ReadMesh& mesh, Scene& scene);

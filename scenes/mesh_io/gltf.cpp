@@ -50,7 +50,7 @@ void require_places(const Json& gltf, const std::filesystem::path& file) {
   }
 }
 
-/// Whether it is glTF 2, which has these extensions; a file that states no version counts as 2.
+/// Whether a file is glTF 2, which has these extensions; a file that states no version counts as 2.
 bool is_version_2(const Json& gltf) {
   const Json::json_pointer place("/asset/version");
   return !gltf.contains(place) || !gltf[place].is_string() ||
@@ -83,7 +83,7 @@ std::string_view body_of(std::string_view chunks) {
 }
 
 /// Whether the second chunk begins where the first ends. It should begin at a multiple of 4, which
-/// some writers forget (trimesh's early ones).
+/// some writers forget (early versions of trimesh).
 bool is_unpadded(std::size_t end, std::string_view bytes) {
   constexpr std::size_t kLength = 4;
   return end % 4 != 0 && end + kLength < bytes.size() && bytes.substr(end + kLength, 3) == "BIN";
@@ -114,7 +114,7 @@ std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::fil
   try {
     repaired.decoded = mend(gltf, file, body_of(chunks), lines);
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: is not sound glTF: {}", file.string(), error.what()));
+    throw InputError(fmt::format("{}: is not valid glTF: {}", file.string(), error.what()));
   }
   if (warnings != nullptr)
     for (const std::string& line : lines)

@@ -19,11 +19,10 @@ struct RepairedGltf {
 /// Prepares a glTF file (text or binary) for assimp: extensions, quantized, sparse and compressed
 /// data, texture coordinates other than the first set, and percent codes in names become plain
 /// glTF. Animations and skins, which are invisible, are removed: meshes stay in their modeled pose.
-/// nullopt: nothing to change, or not glTF, which assimp will report.
-/// @param warnings  one line for each extension that changes what is seen and is left out; may be
-///                  null
-/// @throws InputError naming the file: an unknown extension that it requires; an offset into its
-/// buffers beyond every buffer (assimp's sums of such numbers overflow); damaged data
+/// nullopt if there is nothing to change, or if it is not glTF, which assimp will report.
+/// @param warnings  one line for each ignored extension that would change what is seen; may be null
+/// @throws InputError naming the file: an unknown extension that it requires; an offset beyond the
+/// end of every buffer (assimp's sums of such offsets overflow); damaged data
 std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::filesystem::path& file,
                                           std::vector<std::string>* warnings = nullptr);
 

@@ -20,8 +20,8 @@ struct ImageIn {
   std::string fault = "is not an image";  ///< why color is empty, if it is
 };
 
-/// The images of a scene's materials, each decoded once, however many files contain it and however
-/// many materials use it.
+/// The images of a scene's materials. Each is decoded only once, no matter how many files contain
+/// it and how many materials use it.
 class ImageStore {
  public:
   /// Decodes the image in these bytes.

@@ -19,7 +19,7 @@ void find_boxes(Scene& scene) {
         instance->min_m = instance->min_m.cwiseMin(scene.positions_m[vertex]);
         instance->max_m = instance->max_m.cwiseMax(scene.positions_m[vertex]);
       }
-  for (Instance& instance : scene.instances)  // those without faces
+  for (Instance& instance : scene.instances)  // instances without faces
     if (!instance.min_m.allFinite()) instance.min_m = instance.max_m = Eigen::Vector3f::Zero();
 }
 

@@ -26,7 +26,7 @@ struct LabelRules {
   std::optional<ClassId> find(std::initializer_list<std::string_view> names) const;
 };
 
-/// Reads a mapping of pattern to class name. @throws InputError naming line and value.
+/// Reads a mapping from patterns to class names. @throws InputError naming line and value.
 LabelRules read_label_rules(YamlReader yaml);
 
 /// The table next to a mesh: <stem>.labels.yaml, otherwise labels.yaml; no rules if neither exists.

@@ -58,10 +58,10 @@ void cut_large_faces(const aiScene& in, const std::filesystem::path& file,
     const auto large = std::ranges::find_if(faces, is_large);
     if (large == faces.end()) continue;
     if (warnings != nullptr)
-      warnings->push_back(fmt::format(
-          "{}: mesh '{}' has a face of {} corners: it is cut like a fan, wrongly where it is not "
-          "convex",
-          file.string(), mesh->mName.C_Str(), large->mNumIndices));
+      warnings->push_back(
+          fmt::format("{}: mesh '{}' has a face of {} corners: it is cut into a fan of triangles, "
+                      "which is wrong where it is not convex",
+                      file.string(), mesh->mName.C_Str(), large->mNumIndices));
     cut(*mesh);
   }
 }

@@ -64,8 +64,8 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Mesh
   if (format.ply)
     if (auto split = ply_with_corners(map_file(file).view, file.string()))
       in_memory[file] = *std::move(split);
-  importer.SetIOHandler(new NotedFiles(std::move(in_memory), textures));  // which it owns
-  // No step that reorders vertices or faces: labels next to a PLY depend on their order.
+  importer.SetIOHandler(new NotedFiles(std::move(in_memory), textures));  // takes ownership
+  // No step may reorder vertices or faces: labels next to a PLY depend on their order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;
   const aiScene* in = nullptr;
@@ -85,8 +85,8 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Mesh
   return *in;
 }
 
-/// assimp looks for an OBJ's materials in the file that mtllib names, then in one named like the
-/// OBJ, and silently continues without them.
+/// assimp looks for an OBJ's materials in the file that mtllib names, then in one with the OBJ's
+/// name, and silently continues without them.
 void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* warnings) {
   if (warnings == nullptr || is_there(fs::path(file).replace_extension(".mtl"))) return;
   const HeldBytes held = map_file(file);
@@ -107,7 +107,7 @@ void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* w
   }
 }
 
-/// Colors of vertices are read, those of faces are not.
+/// Vertex colors are read, face colors are not.
 void warn_of_face_colors(std::string_view bytes, const fs::path& file,
                          std::vector<std::string>* warnings) {
   const ply::Header header = ply::parse_header(bytes, file.string());
@@ -116,8 +116,8 @@ void warn_of_face_colors(std::string_view bytes, const fs::path& file,
     return element != header.elements.end() && element->find("red") != nullptr;
   };
   if (warnings != nullptr && has_colors("face") && !has_colors("vertex"))
-    warnings->push_back(fmt::format(
-        "{}: the colors of its faces are not read, those of vertices would be", file.string()));
+    warnings->push_back(
+        fmt::format("{}: its face colors are not read; vertex colors would be", file.string()));
 }
 
 /// assimp assigns a gray material to a mesh without one; vertex colors should show unchanged.
@@ -128,7 +128,7 @@ void whiten_default_material(const MeshFormat& format, Scene& scene) {
       material.base_color = {255, 255, 255};
 }
 
-/// A PLY as a scene with the objects that the PLY states.
+/// Converts a PLY to a scene with the objects that the PLY states.
 Scene scene_of(PlyMesh mesh, const fs::path& file, std::vector<std::string>* warnings) {
   Scene scene;
   scene.name = file.stem().string();
@@ -147,7 +147,7 @@ Scene scene_of(PlyMesh mesh, const fs::path& file, std::vector<std::string>* war
 /// Final steps common to all kinds of files.
 Scene finished(Scene scene, const fs::path& file) {
   if (scene.triangles.empty())
-    throw InputError(fmt::format("{}: has no faces to be seen", file.string()));
+    throw InputError(fmt::format("{}: has no visible faces", file.string()));
   if (format_of(file).ply && is_there(labels_path(file))) load_labels(scene, labels_path(file));
   find_boxes(scene);
   if (scene.rooms.empty()) rooms_from_floors(scene);
@@ -155,7 +155,7 @@ Scene finished(Scene scene, const fs::path& file) {
   return scene;
 }
 
-/// Through assimp.
+/// Loads a mesh through assimp.
 Scene load_foreign(const fs::path& file, const MeshFormat& format, const LabelRules& rules,
                    const MeshUse& use, std::vector<std::string>* warnings) {
   Assimp::Importer importer;

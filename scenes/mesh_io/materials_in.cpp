@@ -34,8 +34,8 @@ ImageIn convert_embedded(const aiTexture& texture, ImageStore& images) {
   return {.color = std::move(color), .opacity = std::move(opacity)};
 }
 
-/// Path of an image that a file in `folder` names: there, or, as in Gazebo, by its bare name in the
-/// places where models keep their textures.
+/// Path of an image that a file in `folder` names: relative to that folder or, as in Gazebo, by its
+/// bare name in the places where models keep their textures.
 fs::path place_of_image(const fs::path& named, const fs::path& folder) {
   if (is_file(folder / named)) return folder / named;
   for (const fs::path& place :
@@ -51,7 +51,7 @@ ImageIn find_texture(const aiScene& in, const std::string& name, const fs::path&
     return convert_embedded(*embedded, images);
   std::string portable = name;
   std::ranges::replace(portable, '\\', '/');
-  // MeshLab's PLYs have a blank behind the name.
+  // MeshLab's PLYs have a space after the name.
   portable.erase(portable.find_last_not_of(" \t\r") + 1);
   if (portable.starts_with("file://")) portable.erase(0, std::strlen("file://"));
   return images.read(place_of_image(portable, folder));
@@ -65,7 +65,8 @@ Rgb8 convert_color(const aiColor4D& c, bool linear) {
   return {level(c.r), level(c.g), level(c.b)};
 }
 
-/// Whether a material's alpha is used: glTF states it, other formats imply it by having one.
+/// Whether a material's alpha is used. glTF states this explicitly; in other formats, alpha is used
+/// wherever it is present.
 bool has_holes(const aiMaterial& record) {
   aiString mode;
   return record.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS ||
@@ -87,9 +88,9 @@ Grid2d<std::uint8_t> opacity_of_mask(const ImageIn& mask, const Grid2d<Rgb8>& te
   return opacity;
 }
 
-/// Transmission of a material (linear RGB): glTF's KHR_materials_transmission, or an alpha of the
-/// whole material below kOpaqueFrom, in glTF only with BLEND. Alpha 0 is more often a mistake than
-/// an invisible object.
+/// Transmission of a material (linear RGB): glTF's KHR_materials_transmission, or the alpha of the
+/// whole material if it is below kOpaqueFrom (in glTF, only with BLEND). Alpha 0 is more often a
+/// mistake than an invisible object.
 Eigen::Vector3f transmission_of(const aiMaterial& record, const aiColor4D& base) {
   const Eigen::Vector3f tint(base.r, base.g, base.b);
   float share = 0.0F;
@@ -109,7 +110,7 @@ Eigen::Vector3f transmission_of(const aiMaterial& record, const aiColor4D& base)
 struct Source {
   const aiScene& scene;
   const fs::path& file;
-  bool linear;  ///< its colors
+  bool linear;  ///< whether its colors are linear
   ImageStore& images;
   std::vector<std::string>* warnings;
 };

@@ -22,7 +22,7 @@ struct MeshUse {
 /// Reads a mesh file through assimp: PLY, glTF/GLB, OBJ, DAE (and other formats that assimp reads).
 /// The result is z-up: glTF and DAE, which are y-up, are rotated; the others are left as they are.
 ///
-/// Textures may be embedded or next to the file. One that is missing or cannot be decoded is
+/// Textures may be embedded or next to the file. Textures that are missing or cannot be decoded are
 /// replaced by magenta and named in `warnings`. Texels that are not opaque are holes
 /// (Material::opacity); a mostly transparent material is a pane (Material::transmission).
 ///
@@ -31,15 +31,15 @@ struct MeshUse {
 /// - node names `name#class=CLASS#instance=ID`, as save_glb writes them, or glTF node extras
 ///   `class` (a name or an id) and `instance`;
 /// - a side table <stem>.labels.yaml or labels.yaml next to the mesh, pattern -> class, for names
-///   of nodes, meshes and materials (LabelRules); a node whose pieces have several classes becomes
-///   one instance per class;
+///   of nodes, meshes and materials (LabelRules); a node whose pieces are of several classes
+///   becomes one instance per class;
 /// - otherwise the node's name: "kitchen/night_stand_2" is a night stand; every node is an
 ///   instance.
 ///
 /// Vertex colors of a file written by save_glb are its baked light and return to Scene::light;
 /// those of other files are Scene::colors.
 /// @param warnings  where to append one line per repaired flaw; may be null.
-/// @param rules     take precedence over those of the side table
+/// @param rules     rules that take precedence over those of the side table
 /// @throws InputError for a missing file, no mesh, no faces, positions that are not finite, or
 /// labels that do not fit the mesh.
 Scene load_mesh(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
@@ -53,7 +53,7 @@ Scene load_turned_mesh(const std::filesystem::path& file, std::optional<UpAxis> 
 /// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
 /// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The color of a vertex is its
 /// visible color: texture x base color x vertex color x baked light, plus emission; where a vertex
-/// joins several materials, the first face's.
+/// belongs to several materials, that of the first face.
 ///
 /// Next to it, <stem>.labels.json: {"format": "modelhouse-labels", "version": 1, "name",
 /// "vertices": count, "faces": count, "instances": [[id, class name, name], ...], "runs": [[count,

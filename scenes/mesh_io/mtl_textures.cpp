@@ -54,12 +54,12 @@ std::optional<float> number(std::string_view word) {
   return value;
 }
 
-/// A texture as a line names it.
+/// A texture and its options, as stated in a line.
 struct Texture {
   std::string file;
   MtlUvs uvs{};
   bool clamped = false, has_options = false;
-  std::vector<std::string_view> lost{};  ///< options that change what is seen and are not honored
+  std::vector<std::string_view> lost{};  ///< ignored options that would change what is seen
 };
 
 void honor(std::string_view option, const std::vector<std::string_view>& arguments,
@@ -77,11 +77,11 @@ void honor(std::string_view option, const std::vector<std::string_view>& argumen
     texture.lost.push_back(option);
 }
 
-/// Parses what follows the keyword.
+/// Parses the rest of a line after its keyword.
 Texture parse(std::string_view rest) {
   Texture texture;
   const std::vector<std::string_view> words = words_of(rest);
-  const char *begin = nullptr, *end = nullptr;  // of the file's name, which may have blanks
+  const char *begin = nullptr, *end = nullptr;  // of the file's name, which may contain spaces
   for (std::size_t i = 0; i < words.size(); ++i) {
     const auto option =
         std::ranges::find(kOptions, lower_case(std::string(words[i])), &Option::name);
@@ -90,7 +90,7 @@ Texture parse(std::string_view rest) {
       while (arguments.size() < option->most && i + 1 + arguments.size() < words.size() &&
              (!option->numbers || number(words[i + 1 + arguments.size()])))
         arguments.push_back(words[i + 1 + arguments.size()]);
-    if (arguments.empty()) {  // none, or a name that looks like one
+    if (arguments.empty()) {  // no option, or a name that looks like one
       begin = begin == nullptr ? words[i].data() : begin;
       end = words[i].data() + words[i].size();
       continue;
@@ -133,7 +133,7 @@ class Reader {
     for (const std::string_view option : texture.lost)
       warn(fmt::format("{}'s {} is left out", key, option));
     if (!is_base && base_ && texture.uvs != *base_)
-      warn(fmt::format("{} lies otherwise than map_kd: it is moved there", key));
+      warn(fmt::format("{} is placed differently from map_kd: it is drawn where map_kd is", key));
     if (is_base) base_ = texture.uvs;
     if (!is_base && base_) return;
     if (texture.uvs == MtlUvs())

@@ -12,8 +12,8 @@
 
 namespace mh {
 
-/// How a material's texture is placed by an MTL's options `-s u v` and `-o u v`: texture
-/// coordinates are multiplied, then moved.
+/// How the options `-s u v` and `-o u v` of an MTL place a material's texture: texture coordinates
+/// are scaled, then moved.
 struct MtlUvs {
   Eigen::Vector2f scale = Eigen::Vector2f::Ones(), offset = Eigen::Vector2f::Zero();
   bool operator==(const MtlUvs&) const = default;
@@ -24,15 +24,15 @@ struct MtlUvs {
   }
 };
 
-/// What MTL files state about textures and assimp does not read.
+/// What MTL files state about textures but assimp does not read.
 struct MtlTextures {
   std::map<std::string, MtlUvs> uvs;  ///< by material; only those with such options
   std::vector<std::string> warnings;
 };
 
 /// Removes the options of the textures that we show (`map_Kd -s 2 2 1 -bm 1 my image.png`), before
-/// or after the name of the file, except -clamp, which assimp reads. nullopt: there are none.
-/// @param file  names the MTL in warnings: options that change what is seen and are not honored
+/// or after the name of the file, except -clamp, which assimp reads. nullopt if there are none.
+/// @param file  names the MTL in warnings about ignored options that would change what is seen
 std::optional<std::string> without_options(std::string_view mtl, const std::filesystem::path& file,
                                            MtlTextures& textures);
 

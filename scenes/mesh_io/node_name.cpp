@@ -28,9 +28,8 @@ std::optional<InstanceId> parse_id(std::string_view text) {
 constexpr std::size_t kLongest = 3;  // words in a class name
 constexpr std::string_view kAbout[] = {"with", "of", "on", "for", "in", "under", "without", "and"};
 
-/// The words of a name in lower case: letters between other characters, and split at a change of
-/// case (TVCabinet is "tv cabinet"). The "b" left over from a counter such as FloorB_01 is not a
-/// word.
+/// The words of a name in lower case: runs of letters, also split at a change of case (TVCabinet is
+/// "tv cabinet"). The "b" left over from a counter such as FloorB_01 is not a word.
 std::vector<std::string> words_in_name(std::string_view name) {
   std::vector<std::string> words;
   const auto is = [&](std::size_t i, int (*kind)(int)) {
@@ -48,7 +47,7 @@ std::vector<std::string> words_in_name(std::string_view name) {
   return words;
 }
 
-/// Whether words spell a name, ignoring its blanks.
+/// Whether words spell a name, ignoring its spaces.
 bool says(std::string_view name, std::span<const std::string> words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (i > 0 && name.starts_with(' ')) name.remove_prefix(1);
@@ -75,7 +74,7 @@ std::vector<std::string> singulars(const std::string& word) {
   return forms;
 }
 
-/// The class that these words name together, in the singular or plural; nullopt if none.
+/// The class that these words name together, in the singular or plural; nullopt if they name none.
 std::optional<ClassId> class_of_words(std::span<const std::string> run) {
   std::vector<std::string> words(run.begin(), run.end());
   for (const std::string& last : singulars(run.back())) {
@@ -115,7 +114,7 @@ ClassId guess_class(std::string_view name) {
   const std::vector<std::string> words = words_in_name(name.substr(name.rfind('/') + 1));
   ClassId head = kVoid;
   for (std::size_t i = 0; i < words.size();) {
-    // What follows "with" or "of" describes the thing before it.
+    // Words after "with" or "of" describe the thing before it.
     if (head != kVoid && std::ranges::find(kAbout, words[i]) != std::end(kAbout)) return head;
     std::size_t used = 1;
     for (std::size_t count = std::min(kLongest, words.size() - i); count > 0; --count) {

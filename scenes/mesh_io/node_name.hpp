@@ -14,8 +14,7 @@ namespace mh {
 struct NodeLabel {
   std::string name;
   ClassId class_id = kVoid;
-  bool is_explicit = false;            ///< the class was given by name or number: nothing was
-                                       ///< guessed
+  bool is_explicit = false;            ///< the class was given by name or number, not guessed
   std::optional<InstanceId> instance;  ///< only if the name states one
 };
 
@@ -27,12 +26,12 @@ NodeLabel parse_node_name(std::string_view node);
 
 /// Guesses the class from a name's last part ("kitchen/night_stand_2"); void if there is no match.
 /// Words are separated by non-letters and by CamelCase; singular or plural, from NYU40, COCO or a
-/// list of synonyms (class_words.hpp). Of several nouns the last one wins, up to a "with", "of" or
-/// the like: "floor_01_walls" is a wall, "TableLamp" a lamp, "box_of_books" a box.
+/// list of synonyms (class_words.hpp). If there are several nouns, the last one before a "with",
+/// "of" or the like wins: "floor_01_walls" is a wall, "TableLamp" a lamp, "box_of_books" a box.
 ClassId guess_class(std::string_view name);
 
 /// The class of a name that ends in its noun, as annotators write: "coffee cup" is a cup, "oven
-/// mitt" nothing.
+/// mitt" has no class.
 std::optional<ClassId> class_of_noun(std::string_view name);
 
 /// Whether a class is one of those that NYU40 merges into `lump`: otherstructure, otherfurniture or

@@ -17,14 +17,14 @@ namespace mh {
 /// (ReadScope).
 class NotedFiles : public Assimp::IOSystem {
  public:
-  /// @param in_memory  content of files by name, in place of what is stored under it
-  /// @param textures   receives what the MTL files state that assimp does not read
+  /// @param in_memory  content of files by name, which replaces the stored files
+  /// @param textures   receives what the MTL files state but assimp does not read
   NotedFiles(std::map<std::filesystem::path, std::string> in_memory, MtlTextures& textures)
       : in_memory_(std::move(in_memory)), textures_(textures) {}
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
-  /// null if it cannot be read: assimp then reports it, or continues without.
+  /// null if the file cannot be read: assimp then reports that, or continues without it.
   Assimp::IOStream* Open(const char* file, const char* mode) override;
   void Close(Assimp::IOStream* stream) override { delete stream; }
 

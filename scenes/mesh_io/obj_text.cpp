@@ -24,7 +24,7 @@ bool is_line_of(std::string_view line, std::string_view key) {
   return line.starts_with(key) && line.size() > key.size() && is_blank(line[key.size()]);
 }
 
-/// The place of the first face if there are materials, and none is chosen before it; else npos.
+/// The position of the first face if there are materials but none is chosen before it; else npos.
 std::size_t face_without_material(std::string_view text) {
   bool has_materials = false;
   for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
@@ -48,7 +48,7 @@ std::optional<std::string> repaired_obj(std::string_view text) {
   std::string repaired;
   if (face != text.npos) {
     repaired = repaired_obj(text.substr(0, face)).value_or(std::string(text.substr(0, face)));
-    repaired += "usemtl DefaultMaterial\n";  // by which load_mesh() knows it
+    repaired += "usemtl DefaultMaterial\n";  // load_mesh() recognizes it by this name
     text.remove_prefix(face);
   }
   repaired.reserve(repaired.size() + text.size() + text.size() / 8);

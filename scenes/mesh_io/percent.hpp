@@ -12,7 +12,7 @@ namespace mh {
 std::string percent_decoded(std::string_view uri);
 
 /// What a URI in a file of this folder names: the file of exactly this name if there is one,
-/// because some programs do not encode; otherwise the decoded name.
+/// because some programs do not encode names; otherwise the decoded name.
 std::string named_by_uri(const std::filesystem::path& folder, const std::string& uri);
 
 }  // namespace mh

@@ -63,7 +63,7 @@ class BodyParser {
     throw InputError(fmt::format("{}: {}", name_, what));
   }
 
-  /// Takes the records of an element without lists. @returns where they start
+  /// Moves past the records of an element without lists. @returns where they start
   const char* claim(const Element& element) {
     const std::size_t left = body_.size() - at_;
     if (element.stride > 0 && element.count > left / element.stride)
@@ -85,7 +85,7 @@ class BodyParser {
     const std::array<const Property*, 3> axes = {&need(element, "x"), &need(element, "y"),
                                                  &need(element, "z")};
     if (element.count > std::numeric_limits<std::uint32_t>::max())
-      fail(fmt::format("{} vertices are more than 32 bits can name", element.count));
+      fail(fmt::format("{} vertices are more than 32 bits can index", element.count));
     const char* begin = claim(element);
     vertices_ = static_cast<std::size_t>(element.count);
     if (parts_.geometry) {
@@ -157,7 +157,7 @@ class BodyParser {
   template <class T>
   T id_of(double value, const Property& property, const char* what, std::uint64_t i) const {
     if (!(value >= 0 && value <= std::numeric_limits<T>::max()) || value != std::floor(value))
-      fail(fmt::format("{} {} has {} {}, which is no {}-bit id", what, i, property.name, value,
+      fail(fmt::format("{} {} has {} {}, which is not a {}-bit id", what, i, property.name, value,
                        8 * sizeof(T)));
     return static_cast<T>(value);
   }
@@ -167,8 +167,8 @@ class BodyParser {
     if (indices == nullptr) indices = element.find("vertex_index");
     if (indices == nullptr || !indices->count_type) fail("faces have no list 'vertex_indices'");
     if (indices->type == Type::kFloat || indices->type == Type::kDouble)
-      fail("faces name vertices by numbers that are not whole");
-    // The usual record, 3 and three 32-bit indices, has a loop of its own.
+      fail("faces index vertices by numbers that are not integers");
+    // The usual record, a 3 and three 32-bit indices, has a loop of its own.
     const bool usual = element.properties.size() == 1 && size_of(*indices->count_type) == 1 &&
                        size_of(indices->type) == 4;
     mesh_.triangles.reserve(static_cast<std::size_t>(
@@ -205,7 +205,7 @@ class BodyParser {
                        element.name));
   }
 
-  /// The items of a list, with a total size of `bytes`; at_ is then past them.
+  /// The items of a list.
   struct List {
     const char* items;
     std::size_t count;
@@ -216,8 +216,8 @@ class BodyParser {
     at_ += size_of(*list.count_type);
     const std::size_t left = (body_.size() - at_) / size_of(list.type);
     if (count < 0 || count > static_cast<double>(left))
-      fail(fmt::format("record {} of element '{}' announces a list of {} items, {} are left",
-                       record, element.name, count, left));
+      fail(fmt::format("record {} of element '{}' declares a list of {} items, {} are left", record,
+                       element.name, count, left));
     const List result{body_.data() + at_, static_cast<std::size_t>(count)};
     at_ += result.count * size_of(list.type);
     return result;
@@ -235,7 +235,7 @@ class BodyParser {
       }
       const List list = read_list(element, property, face);
       if (&property != indices) continue;
-      // Not visible; and if a count is damaged, everything after it is misread.
+      // Such a face is invisible; and if the count is damaged, everything after it is misread.
       if (list.count < 3)
         fail(fmt::format("face {} has {} corners: 3 are needed", face, list.count));
       const auto corner = [&](std::size_t k) {

@@ -24,8 +24,7 @@ struct PlyMesh {
   std::vector<std::uint32_t> objects{};       ///< vertex property `objectId` (3RScan)
   std::vector<std::uint32_t> face_objects{};  ///< face property `object_id` (Replica), per triangle
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< larger polygons are split into fans
-  std::size_t bytes_left = 0;  ///< after the last element, not counting blanks; 0 for an intact
-                               ///< file
+  std::size_t bytes_left = 0;  ///< after the last element, without whitespace; 0 if intact
 };
 
 /// Value in face_objects for a face that belongs to no object.
@@ -37,22 +36,22 @@ struct PlyParts {
   bool labels = true;
 };
 
-/// Whether parse_ply reads a PLY that starts with these bytes, or reports what is wrong with its
-/// header: texture coordinates and triangle strips are left to assimp.
+/// Whether parse_ply should read a PLY that starts with these bytes (or report what is wrong with
+/// its header). PLYs with texture coordinates or triangle strips are left to assimp.
 bool is_plain_ply(std::string_view bytes);
 
-/// Reads a PLY, text or binary of either byte order. Little-endian ones are read in one pass over
-/// their bytes, some 15 times as fast as a general reader; the others are converted to that form
+/// Reads a PLY, text or binary of either byte order. Little-endian PLYs are read in one pass over
+/// their bytes, some 15 times as fast as by a general reader; the others are converted to that form
 /// first. Labels, which assimp drops, are kept. Properties may have any type and order; unknown
 /// properties and elements are skipped.
 /// @param name  names the file in messages
 /// @throws InputError naming file, element and value: a malformed header, fewer bytes than
-/// announced, positions that are not finite, faces with fewer than 3 corners or with a vertex index
+/// declared, positions that are not finite, faces with fewer than 3 corners or with a vertex index
 /// out of range.
 PlyMesh parse_ply(std::string_view bytes, const std::string& name, const PlyParts& parts = {});
 PlyMesh read_ply(const std::filesystem::path& file, const PlyParts& parts = {});
 
-/// Appends a warning if bytes are left over: the header may announce too little.
+/// Appends a warning if bytes are left over: the header may declare too few elements.
 void warn_of_bytes_left(const PlyMesh& mesh, const std::filesystem::path& file,
                         std::vector<std::string>* warnings);
 

@@ -18,7 +18,7 @@ namespace {
 using ply::Element;
 using ply::Property;
 
-/// Texture coordinates of vertices, which those of corners replace.
+/// Whether a property is a texture coordinate of vertices, which the corners' coordinates replace.
 bool is_uv(const Property& property) {
   constexpr std::array<std::string_view, 8> kNames = {"s",  "t",  "u",         "v",
                                                       "tx", "ty", "texture_u", "texture_v"};
@@ -40,7 +40,7 @@ void append(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Reads the body, little-endian, and writes vertices and faces anew.
+/// Reads a little-endian body, and writes new vertices and faces.
 class Splitter {
  public:
   Splitter(std::string_view body, const std::string& name) : body_(body), name_(name) {}
@@ -90,7 +90,7 @@ class Splitter {
     return value;
   }
 
-  /// @param values  receives a list's items; null: they are skipped
+  /// @param values  receives a list's items; null to skip them
   void read_property(const Property& property, std::uint64_t record, std::vector<double>* values) {
     if (!property.count_type) {
       take(property.type, record);

@@ -22,7 +22,7 @@ class Transcoder {
 
   std::string run(const Header& header) {
     for (const Element& element : header.elements) {
-      // A value takes at least two bytes as text, and an empty element takes none.
+      // A value takes at least one byte as text, and an element without properties takes none.
       std::size_t least = 0;
       for (const Property& property : element.properties)
         least += is_text_ ? 1 : size_of(property.count_type.value_or(property.type));

@@ -12,7 +12,7 @@ namespace mh::ply {
 
 namespace {
 
-/// The first name of a type is the format's own.
+/// The first name of each type is the one in the PLY format's original definition.
 constexpr std::pair<std::string_view, Type> kNames[] = {
     {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
     {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
@@ -27,7 +27,7 @@ std::optional<Type> type_by_name(std::string_view name) {
   return std::nullopt;
 }
 
-/// Splits a header line at blanks.
+/// Splits a header line at whitespace.
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
   std::size_t at = 0;
@@ -109,7 +109,7 @@ class HeaderParser {
     if (words.size() == 5 && words[1] == "list") {
       const Type count_type = type_of(words[2]);
       if (count_type == Type::kFloat || count_type == Type::kDouble)
-        fail("a list counts in whole numbers");
+        fail("a list's count must be of an integer type");
       element.has_list = true;
       element.properties.push_back({std::string(words[4]), type_of(words[3]), count_type});
     } else if (words.size() == 3) {

@@ -13,7 +13,7 @@ namespace mh::ply {
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
-/// As files write it: "uchar".
+/// A type's name in files: "uchar".
 std::string_view name_of(Type type);
 
 /// Size of a value, bytes.
@@ -27,14 +27,14 @@ T load(const char* at) {
   return value;
 }
 
-/// Loads any scalar as a number that represents it exactly.
+/// Loads any scalar as a double, which represents it exactly.
 double load_number(Type type, const char* at);
 
 struct Property {
   std::string name;
   Type type = Type::kInt8;           ///< of the value, or of a list's items
   std::optional<Type> count_type{};  ///< set for a list
-  std::size_t offset = 0;            ///< within the record; lists have none
+  std::size_t offset = 0;            ///< within the record; unused for lists
 };
 
 struct Element {
@@ -42,7 +42,7 @@ struct Element {
   std::uint64_t count = 0;
   std::vector<Property> properties;
   bool has_list = false;
-  std::size_t stride = 0;  ///< bytes of a record; without lists only
+  std::size_t stride = 0;  ///< bytes of a record; only for elements without lists
 
   const Property* find(std::string_view wanted) const {
     const auto found = std::ranges::find(properties, wanted, &Property::name);
@@ -55,7 +55,7 @@ enum class Encoding { kText, kLittleEndian, kBigEndian };
 struct Header {
   std::optional<Encoding> encoding;
   std::vector<Element> elements;
-  std::size_t size = 0;  ///< bytes up to and with the line end of end_header
+  std::size_t size = 0;  ///< bytes up to and including the line end of end_header
 };
 
 /// Parses the header of a PLY. @param name  names the file in messages

@@ -57,7 +57,7 @@ class Labeler {
     const NamesById names =
         read_names({folder / "info_semantic.json", folder / "habitat" / "info_semantic.json"},
                    "objects", "id", "class_name");
-    if (names.empty()) warn("has objects, but no info_semantic.json beside it tells their classes");
+    if (names.empty()) warn("has objects, but no info_semantic.json beside it gives their classes");
     for (std::size_t face = 0; face < scene_.triangles.size(); ++face) {
       if (objects[face] == kNoObject) continue;
       scene_.instance_of[face] = object(objects[face]);
@@ -117,7 +117,8 @@ class Labeler {
     return place->second;
   }
 
-  /// Keeps a class that NYU40 merges with others, by its name.
+  /// Replaces a missing class, or one in which NYU40 merges several, with the one that the name
+  /// gives.
   void refine(ClassId& id, const std::string& name) {
     const ClassId named = class_named(name);
     if (id == kVoid || is_finer(class_of_noun(name).value_or(kVoid), id)) id = named;
@@ -130,7 +131,7 @@ class Labeler {
     return static_cast<InstanceId>(id + 1);
   }
 
-  /// The objects that have faces; each has the class of its first.
+  /// Adds the objects that have faces, each with the class of its first face.
   void enter_objects(const NamesById& names) {
     std::map<InstanceId, ClassId> found;
     for (std::size_t face = 0; face < scene_.triangles.size(); ++face)

@@ -15,9 +15,8 @@ namespace mh {
 ///   to the mesh, or in habitat/ next to it;
 /// - vertex properties `objectId` and `NYU40` (3RScan), names from semseg.v2.json or semseg.json
 ///   next to it;
-/// - vertex property `label`: NYU40 ids.
-/// A face takes the value of most of its vertices, that of the first if all differ. Unknown ids are
-/// ignored, with a warning that counts them.
+/// - vertex property `label`: NYU40 ids. A face takes the value of most of its vertices, or that of
+/// the first if all differ. Unknown ids are ignored, with a warning that counts them.
 /// @pre the scene already has the mesh's positions_m
 /// @throws InputError naming a damaged JSON file.
 void label_ply(Scene& scene, const PlyMesh& mesh, const std::filesystem::path& file,

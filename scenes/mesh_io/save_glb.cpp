@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little,
 
 using Json = nlohmann::json;
 
-// The glTF 2.0 specification's numbers.
+// Constants from the glTF 2.0 specification.
 constexpr int kFloat = 5126, kUint32 = 5125;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr int kRepeat = 10497;
@@ -63,7 +63,7 @@ std::vector<unsigned char> png_of(const Material& material) {
     const cv::Mat opacity(texture.height(), texture.width(), CV_8UC1,
                           const_cast<std::uint8_t*>(material.opacity.data()));
     cv::Mat with_opacity;
-    cv::merge(std::vector<cv::Mat>{out, opacity}, with_opacity);  // the last of (BGR), A
+    cv::merge(std::vector<cv::Mat>{out, opacity}, with_opacity);  // B, G, R, A
     out = with_opacity;
   }
   std::vector<unsigned char> png;
@@ -139,7 +139,7 @@ class GlbBuilder {
       record["alphaMode"] = "MASK";
       record["alphaCutoff"] = kOpaqueFrom / 255.0;
     }
-    if (strength > 0.0F) {  // factors end at 1
+    if (strength > 0.0F) {  // factors are at most 1
       const float unit = std::max(strength, 1.0F);
       record["emissiveFactor"] = list_of(material.emission / unit);
       if (unit > 1.0F) {
@@ -188,7 +188,8 @@ class GlbBuilder {
     json_["scenes"] = Json::array({{{"name", scene_.name}, {"nodes", std::move(children)}}});
   }
 
-  /// The faces with their own vertices, in the order in which the faces first use them.
+  /// A primitive of these faces, with vertices of its own in the order in which the faces use them
+  /// first.
   Json make_primitive(const std::vector<std::size_t>& faces, std::uint16_t material) {
     ++primitive_;
     std::vector<std::uint32_t> vertices, indices;
@@ -235,7 +236,7 @@ class GlbBuilder {
     const std::uint64_t size = 12 + 8 + text.size() + 8 + binary_.size();
     if (size > std::numeric_limits<std::uint32_t>::max())
       throw InputError(
-          fmt::format("scene {}: is too large for a GLB file, which ends at 4 GiB", scene_.name));
+          fmt::format("scene {}: is too large for a GLB file, which can hold 4 GiB", scene_.name));
     std::string file;
     file.reserve(static_cast<std::size_t>(size));
     const auto number = [&](std::uint64_t value) {
@@ -255,7 +256,8 @@ class GlbBuilder {
   const Scene& scene_;
   Json json_;
   std::string binary_;
-  std::vector<std::uint32_t> own_index_, seen_in_;  ///< by vertex: index in, number of a primitive
+  std::vector<std::uint32_t> own_index_, seen_in_;  ///< by vertex: index in its last primitive, and
+                                                    ///< that primitive's number
   std::uint32_t primitive_ = 0;
   bool strong_emission_ = false, has_panes_ = false;
 };

@@ -10,7 +10,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Splits edges of a scene at their middles, each edge once.
+/// Splits edges of a scene at their midpoints, each edge once.
 class EdgeSplitter {
  public:
   EdgeSplitter(Scene& scene, float max_edge_m)
@@ -74,7 +74,7 @@ void split(EdgeSplitter& edges, Triangle t, std::vector<Triangle>& pieces) {
   pieces.insert(pieces.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
 }
 
-/// One round over all faces; false if there was nothing to split.
+/// Makes one pass over all faces; false if there was nothing to split.
 bool split_all(Scene& scene, float max_edge_m) {
   EdgeSplitter edges(scene, max_edge_m);
   const bool keep_backdrop = !scene.instances.empty();

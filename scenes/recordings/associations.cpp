@@ -29,8 +29,8 @@ bool is_number(const std::string& word) {
   return used == word.size();
 }
 
-/// @throws InputError if the first line's second word is a number: associate.py was given three
-/// lists, one of them of poses.
+/// @throws InputError if the first line's second word is a number: the pairs were made by
+/// associate.py from a list of poses.
 void refuse_poses(const std::string& text, const std::string& name) {
   std::istringstream lines(text);
   std::string line;
@@ -41,8 +41,8 @@ void refuse_poses(const std::string& text, const std::string& name) {
     if (all.empty()) continue;
     if (all.size() > 4 && is_number(all[1]))
       throw InputError(
-          fmt::format("{}:{}: '{}' is no file: a line is 'stamp file stamp file', and this one has "
-                      "{} words, a pose among them; pair the two lists of images alone",
+          fmt::format("{}:{}: '{}' is not a file: a line is 'stamp file stamp file', but this one "
+                      "has {} words, a pose among them; pair only the two lists of images",
                       name, number, all[1], all.size()));
     return;
   }
@@ -93,7 +93,7 @@ std::vector<RecordedFrame> read_associations(const fs::path& list, FirstImage ot
 
 void sort_frames(std::vector<RecordedFrame>& frames, const fs::path& list,
                  std::vector<std::string>* notes) {
-  // The longest sequence of stamps that never go back: the smallest that ends one of each length.
+  // For each length, the smallest stamp that ends a non-decreasing subsequence of that length.
   std::vector<Stamp> ends;
   for (const RecordedFrame& frame : frames) {
     const auto place = std::ranges::upper_bound(ends, frame.stamp_ns);
@@ -106,8 +106,7 @@ void sort_frames(std::vector<RecordedFrame>& frames, const fs::path& list,
   std::ranges::stable_sort(frames, {}, &RecordedFrame::stamp_ns);
   if (notes != nullptr)
     notes->push_back(
-        fmt::format("{}: its images are not in the order of their stamps: they are sorted by them",
-                    list.string()));
+        fmt::format("{}: its images are not ordered by timestamp: they are sorted", list.string()));
 }
 
 }  // namespace mh

@@ -33,16 +33,16 @@ Camera bonn_camera() {
   return camera;
 }
 
-/// The page's T_ros: between the axes of the file's poses and those of the laser scan. It is its
-/// own inverse.
+/// T_ros from the data set's page: between the axes of the file's poses and those of the laser
+/// scan. It is its own inverse.
 SE3 exchanged_axes() {
   Eigen::Matrix3d rotation;
   rotation << -1, 0, 0, 0, 0, 1, 0, 1, 0;
   return {rotation, Eigen::Vector3d::Zero()};
 }
 
-/// The page's T_m. Its 3x3 part is a rotation times 1.0593; a camera is rigid, so only the rotation
-/// is used.
+/// T_m from the data set's page. Its 3x3 part is a rotation times 1.0593; a camera is rigid, so
+/// only the rotation is used.
 SE3 markers_from_camera() {
   Eigen::Matrix3d scaled;
   scaled << 1.0157, 0.1828, -0.2389,  //

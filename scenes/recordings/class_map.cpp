@@ -52,15 +52,15 @@ void note_foreign_ids(const LabelsOfFrames& labels, const ClassMap& map,
       if (!ids || std::ranges::all_of(*ids, is_zero)) continue;
       if (std::ranges::none_of(*ids, has_class))
         notes.push_back(
-            fmt::format("{}: none of its ids has a class in {}: are they of another table?",
+            fmt::format("{}: none of its ids has a class in {}: are they from another table?",
                         labels.place(i), table.string()));
       return;
-    } catch (const InputError&) {  // its frame is skipped, not the recording
+    } catch (const InputError&) {  // only its frame is skipped
     }
 }
 
 std::string no_labels_note(const std::filesystem::path& table) {
-  return fmt::format("{}: has no use: the recording has no labels", table.string());
+  return fmt::format("{}: is not used: the recording has no labels", table.string());
 }
 
 SemanticImage one_hot(const Grid2d<std::uint16_t>& ids, const ClassMap* map) {

@@ -14,7 +14,8 @@
 
 namespace mh {
 
-/// Meaning of the ids of foreign label images: the class of id i; void if not listed.
+/// Meaning of the ids in label images from other sources: element i is the class of id i, void if
+/// not listed.
 using ClassMap = std::vector<ClassId>;
 
 /// Reads a class map: YAML of lines `id: class`, ids from 0 to 65535, or a ScanNet label table
@@ -24,22 +25,22 @@ ClassMap load_class_map(const std::filesystem::path& file);
 /// Label images of a recording, by index of the frame.
 struct LabelsOfFrames {
   std::size_t frames = 0;
-  /// nullopt: the frame has none. @throws InputError if they cannot be read
+  /// nullopt if the frame has no labels. @throws InputError if they cannot be read
   std::function<std::optional<Grid2d<std::uint16_t>>(std::size_t)> read;
   std::function<std::string(std::size_t)> place;  ///< for messages
 };
 
-/// With the wrong table, a place looks empty. Adds a note if the first labels that can be read and
-/// are not empty contain no id with a class.
+/// Adds a note if the first labels that can be read and are not empty contain no id with a class:
+/// with the wrong table, a scene would look empty.
 void note_foreign_ids(const LabelsOfFrames& labels, const ClassMap& map,
                       const std::filesystem::path& table, std::vector<std::string>& notes);
 
-/// The note on a table next to a recording without labels.
+/// The note about a class map for a recording without labels.
 std::string no_labels_note(const std::filesystem::path& table);
 
-/// A label image as exact distributions, one per class.
+/// A label image as class distributions, each with all probability on one class.
 /// @param map  meaning of the ids; null: they are our classes
-/// @throws InputError "class N is unknown" on an id beyond ours.
+/// @throws InputError "class N is unknown" on an id beyond our classes.
 SemanticImage one_hot(const Grid2d<std::uint16_t>& ids, const ClassMap* map);
 
 }  // namespace mh

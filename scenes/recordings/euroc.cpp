@@ -46,7 +46,7 @@ void write_euroc_imu(const fs::path& file, std::span<const ImuReading> readings)
 
 namespace {
 
-/// Seven numbers of a line; the first as it is written.
+/// Parses the stamp and the six values of a line; nullopt if a value is not finite.
 std::optional<ImuReading> parse_reading(std::string_view line, const std::string& place) {
   std::array<double, 6> values{};
   const std::size_t comma = line.find(',');
@@ -64,7 +64,7 @@ std::optional<ImuReading> parse_reading(std::string_view line, const std::string
     const auto read = std::from_chars(at, end, value);
     if (read.ec != std::errc())
       throw InputError(
-          fmt::format("{}: '{}' has not seven numbers: stamp, 3 of the gyroscope, 3 of "
+          fmt::format("{}: '{}' does not have seven numbers: stamp, 3 from the gyroscope, 3 from "
                       "the accelerometer",
                       place, line));
     at = read.ptr;
@@ -122,8 +122,9 @@ EurocCameraWriter::EurocCameraWriter(const fs::path& folder, int number, double 
       png_(png_settings(png_compression)) {
   const Distortion& lens = camera.distortion;
   if (lens.k3 != 0 || lens.is_rational())
-    throw InputError(fmt::format(
-        "format 'euroc' has k1, k2, p1 and p2 of a lens, and the camera has {}", text_of(lens)));
+    throw InputError(
+        fmt::format("format 'euroc' holds only k1, k2, p1 and p2 of a lens, but the camera has {}",
+                    text_of(lens)));
   make_output_folder(folder_ / "data");
 }
 

@@ -16,8 +16,8 @@
 namespace mh {
 
 // EuRoC's layout (Burri et al., "The EuRoC micro aerial vehicle datasets", IJRR 2016): mav0/cam0,
-// for stereo cam1, imu0 and state_groundtruth_estimate0. The body's frame is that of the first
-// camera, and of the inertial sensor in its housing.
+// cam1 (for stereo), imu0 and state_groundtruth_estimate0. The body frame is that of the first
+// camera, and also of the inertial sensor in its housing.
 
 inline constexpr std::string_view kEurocImuColumns =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
@@ -25,8 +25,8 @@ inline constexpr std::string_view kEurocImuColumns =
 std::string euroc_line(const ImuReading& reading);
 void write_euroc_imu(const std::filesystem::path& file, std::span<const ImuReading> readings);
 
-/// Reads what an inertial sensor delivered, in these columns. Readings that are not numbers and
-/// those whose stamp does not increase are left out and counted.
+/// Reads the measurements of an inertial sensor, in these columns. Readings that are not numbers
+/// and those whose stamp does not increase are left out and counted.
 /// @param notes  receives how many were left out
 /// @throws InputError naming file, line and value: not seven numbers, no reading, accelerations
 /// that are not in m/s^2 (the mean of a sensor that is not falling is near 9.81)
@@ -37,8 +37,9 @@ std::vector<ImuReading> read_euroc_imu(const std::filesystem::path& file,
 class EurocCameraWriter : public SequenceWriter {
  public:
   /// @param number  0, or 1 for the right camera of a pair
-  /// @param right_m  how far to the right of the first camera it is
-  /// @throws InputError if the lens has more than k1, k2, p1, p2, which the layout does not
+  /// @param right_m  how far it is to the right of the first camera, m
+  /// @throws InputError if the lens has coefficients other than k1, k2, p1, p2, which the layout
+  /// cannot store
   EurocCameraWriter(const std::filesystem::path& folder, int number, double right_m,
                     const Camera& camera, PngCompression png_compression = {});
   void add(std::size_t index, const ExactFrame& frame) override;
@@ -65,7 +66,7 @@ struct EurocImuNoise {
 };
 /// Writes imu0 and state_groundtruth_estimate0.
 /// @param frames  the poses of the camera's frames
-/// @param path    the path that `imu` was made along
+/// @param path    the path along which `imu` was simulated
 void write_euroc_states(const std::filesystem::path& folder, const Trajectory& frames,
                         const Trajectory& path, const ImuPath& imu, const EurocImuNoise& noise);
 

@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-/// The head of a portable any-map.
+/// The header of a portable anymap.
 struct PnmHead {
   const char* magic;  ///< P5 (gray) or P6 (color)
   int width, height, greatest;

@@ -9,10 +9,10 @@
 
 namespace mh {
 
-/// Depth pixels of 16-bit files per meter, as in TUM's sequences.
+/// Value of a 16-bit depth pixel at one meter, as in TUM's sequences.
 inline constexpr double kDepthPerMeter = 5000;
 
-/// Value of a 16-bit depth pixel; 0 without a return, 65535 beyond 13.1 m.
+/// Value of a 16-bit depth pixel; 0 if there is no return, 65535 beyond 13.1 m.
 inline std::uint16_t depth_units(float depth_m) {
   // Truncation after adding 0.5 rounds non-negative values, without a call per pixel.
   const double units = kDepthPerMeter * static_cast<double>(depth_m) + 0.5;
@@ -22,8 +22,7 @@ inline std::uint16_t depth_units(float depth_m) {
 /// The class of each pixel: the most probable one of its distribution.
 Grid2d<ClassId> class_image(const SemanticImage& semantics);
 
-/// One frame's images as what their files hold: uncompressed, so that they cost no more than a
-/// copy.
+/// One frame's images as contents of files, uncompressed so that they cost no more than a copy.
 struct FrameFiles {
   std::string color;   ///< PPM, 8 bit
   std::string depth;   ///< PGM, 16 bit, kDepthPerMeter
@@ -35,10 +34,10 @@ FrameFiles image_files(const RgbdFrame& frame);
 /// ORBextractor.*, Viewer.*. load_recorded_camera() reads it back.
 std::string settings_text(const Camera& camera);
 
-/// ROS' word for a distortion of five or eight coefficients.
+/// ROS's name for a distortion with five or eight coefficients.
 const char* distortion_model(const Distortion& distortion);
 
-/// The same calibration as ROS' camera_info YAML; load_settings() reads it back.
+/// The same calibration as ROS's camera_info YAML; load_settings() reads it back.
 std::string camera_info_text(const Camera& camera);
 
 }  // namespace mh

@@ -95,7 +95,7 @@ RecordedCamera eth3d_camera(const fs::path& file, const std::vector<RecordedFram
       const cv::Mat image = read_image(frame.color);
       camera.width_px = image.cols, camera.height_px = image.rows;
       break;
-    } catch (const InputError&) {  // is reported when the frame is skipped
+    } catch (const InputError&) {  // reported when the frame is skipped
     }
   }
   try {
@@ -106,17 +106,17 @@ RecordedCamera eth3d_camera(const fs::path& file, const std::vector<RecordedFram
   return recorded;
 }
 
-/// @throws InputError if no calibration is specified and none is in the folder.
+/// @throws InputError if no calibration is specified and the folder has none.
 RecordedCamera camera_of(const fs::path& folder, const std::vector<RecordedFrame>& frames,
                          const RecordingConfig& config) {
   if (!config.calibration.empty()) return config.read_camera(config.calibration);
   for (const char* name : {"camera.yaml", "camera_info.yaml"})
     if (is_file(folder / name)) return config.read_camera(folder / name);
   if (is_file(folder / "calibration.txt")) return eth3d_camera(folder / "calibration.txt", frames);
-  throw InputError(
-      fmt::format("{}: holds neither camera.yaml nor camera_info.yaml nor ETH3D's "
-                  "calibration.txt; name a settings file by --settings, in a suite by `settings:`",
-                  folder.string()));
+  throw InputError(fmt::format(
+      "{}: holds neither camera.yaml nor camera_info.yaml nor ETH3D's "
+      "calibration.txt; name a settings file with --settings, in a suite with `settings:`",
+      folder.string()));
 }
 
 OpenedRecording open_tum(const fs::path& folder, const RecordingConfig& config) {
@@ -141,7 +141,7 @@ void note_depth_scale(double depth_per_meter, const RecordingConfig& config,
   const std::optional<double> stated = config.depth_per_meter(config.calibration);
   if (stated && *stated != depth_per_meter)
     notes.push_back(
-        fmt::format("{}: its depth per meter, {:g}, gives way to {:g}, the recording's own",
+        fmt::format("{}: its depth per meter, {:g}, is replaced by {:g}, the recording's own",
                     config.calibration.string(), *stated, depth_per_meter));
 }
 
@@ -150,7 +150,7 @@ OpenedRecording open_listed(ListedFrames listed, const RecordingConfig& config,
   OpenedRecording opened;
   opened.notes = std::move(notes);
   note_depth_scale(listed.camera.depth_per_meter, config, opened.notes);
-  // Read even where labels are left out: what is read depends on the recording alone.
+  // Read even if labels are ignored, so that what is read depends only on the recording.
   if (!config.classes.empty()) listed.classes = load_class_map(config.classes);
   for (const RecordedFrame& frame : listed.frames) {
     for (const fs::path* file : {&frame.color, &frame.depth, &frame.classes})

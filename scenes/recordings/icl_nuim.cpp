@@ -26,8 +26,8 @@ Stamp stamp_of_number(Stamp number_ns) {
   return static_cast<Stamp>(std::llround(static_cast<double>(number_ns) / kIclNuimRate_hz));
 }
 
-/// The published calibration. Its fy is -480 in the world of the poses; the images of this layout
-/// are stored top row first, which makes it positive.
+/// The published calibration. As published, fy is -480, for the world of the poses; here it is
+/// positive, because images of this layout are stored top row first.
 Camera icl_nuim_camera() {
   Camera camera;
   camera.width_px = 640;
@@ -40,7 +40,7 @@ Camera icl_nuim_camera() {
   return camera;
 }
 
-/// The same pose after a reflection that turns y around, in the world and in the camera.
+/// The same pose after a reflection that flips y, in the world frame and in the camera frame.
 SE3 reflected(const SE3& pose) {
   const Eigen::DiagonalMatrix<double, 3> turn_y(1, -1, 1);
   return {Eigen::Matrix3d(turn_y * pose.rotation() * turn_y), turn_y * pose.translation()};
@@ -72,7 +72,7 @@ void note_frames_without_pose(const ListedFrames& listed, const std::string& tru
     return !std::ranges::binary_search(*listed.truth, frame.stamp_ns, {}, &TimedPose::stamp_ns);
   });
   if (without > 0)
-    notes.push_back(fmt::format("{}: {} of {} frames have no pose: they are offered, not scored",
+    notes.push_back(fmt::format("{}: {} of {} frames have no pose: they are used, but not scored",
                                 truth, without, listed.frames.size()));
 }
 

@@ -10,13 +10,14 @@
 namespace mh {
 
 /// Collects true poses that a data set writes as 4x4 matrices. A frame whose text is not a pose (a
-/// wrong number of values, one that is not finite, not a rotation) has no truth, and is counted.
+/// wrong number of values, a value that is not finite, not a rotation) has no ground truth, and is
+/// counted.
 class MatrixPoses {
  public:
   /// @param text   16 numbers by rows
   /// @param where  file and place, for the note
   void add(Stamp stamp_ns, const std::string& text, const std::string& where);
-  /// Counts a frame for which nothing is written.
+  /// Counts a frame for which the data set has no pose.
   void add_absent(const std::string& where);
 
   /// The poses, in the order in which they were added.

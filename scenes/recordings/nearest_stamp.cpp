@@ -31,7 +31,7 @@ StampIndex::StampIndex(const std::vector<Stamp>& stamps_ns) {
 std::optional<std::size_t> StampIndex::nearest(Stamp stamp_ns) const {
   std::optional<std::size_t> best;
   Stamp best_ns = kMaxApart_ns + 1;
-  const auto offer = [&](auto place) {  // the first of its stamp
+  const auto offer = [&](auto place) {  // the first with this stamp
     place = std::ranges::lower_bound(sorted_, place->first, {}, &Entry::first);
     const Stamp apart_ns = std::abs(place->first - stamp_ns);
     if (apart_ns > kMaxApart_ns) return;

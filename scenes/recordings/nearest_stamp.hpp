@@ -13,8 +13,8 @@ namespace mh {
 /// Color and depth images further apart in time are not paired, as in TUM's associate.py.
 inline constexpr Stamp kMaxApart_ns = 20'000'000;
 
-/// Frames per second, from the median time between images in the order given, to 0.01 Hz; 30 for a
-/// single image.
+/// Frames per second, from the median time between images in the order given, rounded to 0.01 Hz;
+/// 30 for a single image.
 double rate_of_hz(const std::vector<Stamp>& stamps_ns);
 
 /// A list of stamps, in any order, for lookup by time.

@@ -32,7 +32,7 @@ std::map<int, fs::path> numbered_images(const fs::path& folder, std::string_view
     if (!number) continue;
     const auto [entry, is_new] = images.try_emplace(*number, folder / name);
     if (!is_new)
-      throw InputError(fmt::format("{}: has the same number as {}: one of them is too many",
+      throw InputError(fmt::format("{}: has the same number as {}: remove one of them",
                                    (folder / name).string(), entry->second.filename().string()));
   }
   return images;

@@ -11,11 +11,12 @@
 
 namespace mh {
 
-/// A whole number without sign, of digits alone.
+/// Parses an unsigned whole number; nullopt if the text has anything but digits.
 std::optional<int> whole_number_of(std::string_view digits);
 
-/// The files of a folder named by a number between two words, "frame-" and ".color.png", by
-/// number; of two files with one number the first by name.
+/// The files of a folder whose names are a number between two words, such as "frame-" and
+/// ".color.png", by number.
+/// @throws InputError if two files have the same number.
 std::map<int, std::filesystem::path> numbered_images(const std::filesystem::path& folder,
                                                      std::string_view before,
                                                      std::string_view after);
@@ -24,7 +25,7 @@ std::map<int, std::filesystem::path> numbered_images(const std::filesystem::path
 class LeftOut {
  public:
   void add(const std::filesystem::path& color);
-  /// Adds a line about them, if there are any. @param offered  color images in all
+  /// Adds a line about the images left out, if there are any. @param offered  color images in all
   void note(const std::filesystem::path& recording, std::size_t offered,
             std::vector<std::string>& notes) const;
 

@@ -30,20 +30,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ICL-NUIM and Bonn before TUM, whose lists they have as well.
+// ICL-NUIM and Bonn come before TUM because they have TUM's lists as well.
 constexpr std::array kReaders = {&kIclNuimReader,   &kBonnReader,        &kTumReader,
                                  &kScannetReader,   &kSevenScenesReader, &kReplicaReader,
                                  &kOpenlorisReader, &kBagReader,         &kMcapReader};
 
-/// Notes a file's content in the open scopes; a missing file is noted as missing.
+/// Records a file's content in the open ReadScopes; a missing file is recorded as missing.
 void note_content(const fs::path& file) {
   try {
     read_file(file);
-  } catch (const InputError&) {  // a frame that cannot be read is skipped, not the recording
+  } catch (const InputError&) {  // only the frame that cannot be read is skipped
   }
 }
 
-/// Digests of the contents of files that were read, sorted, each once.
+/// Digests of the contents of those files that were read, sorted, without duplicates.
 std::vector<std::uint64_t> digests_of(const std::vector<fs::path>& files, const ReadRecord& read) {
   std::map<fs::path, std::uint64_t> digest_of;
   for (const FileObservation& o : read.observations)
@@ -67,7 +67,7 @@ std::string truth_of_another_time(const Sequence& frames, const Trajectory& trut
     last_ns = std::max(last_ns, stamp_ns);
   }
   return fmt::format(
-      "no frame has a true pose at its time, so that nothing is scored: frames are from {} s to {} "
+      "no frame has a true pose at its time, so nothing is scored: frames are from {} s to {} "
       "s, true poses from {} s to {} s",
       format_stamp(first_ns), format_stamp(last_ns), format_stamp(truth.front().stamp_ns),
       format_stamp(truth.back().stamp_ns));
@@ -127,7 +127,7 @@ const SequenceReader& reader_of(const std::string& source) {
                                is_folder(path)
                                    ? "holds neither rgb.txt nor associations.txt nor anything else "
                                      "that tells its layout"
-                                   : "is a file of no layout of recordings",
+                                   : "is not a file of any recording layout",
                                sequence_forms()));
 }
 
@@ -135,7 +135,7 @@ OpenedRecording open_sequence(const std::string& source, const RecordingConfig& 
   const fs::path path = split_sequence(source).second;
   const SequenceReader& reader = reader_of(source);
   if (!config.topics.empty() && !reader.has_topics)
-    throw InputError(fmt::format("{}: topics '{}': a recording of layout '{}' has none",
+    throw InputError(fmt::format("{}: topics '{}': a recording of layout '{}' has no topics",
                                  path.string(), config.topics, reader.name));
   const auto open = [&] {
     OpenedRecording opened = reader.open(path, config);

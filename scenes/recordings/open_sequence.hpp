@@ -21,12 +21,12 @@ namespace mh {
 struct RecordingConfig {
   std::filesystem::path calibration;  ///< a file; empty: the one next to the frames, or stored with
                                       ///< them
-  std::filesystem::path classes;      ///< class map of its labels; empty: they are our class ids
+  std::filesystem::path classes;      ///< class map of its labels; empty: the ids are our classes
   bool labels = true;                 ///< false: ignore labels
   /// Topics of a bag or MCAP file, "color=/a,depth=/b"; empty: found by type.
   std::string topics = {};
-  /// Reads every file, images included. Open ReadScopes then receive one observation, the digest of
-  /// all of them, and which files they are (kHeld).
+  /// Reads every file, images included. Open ReadScopes then receive a single observation, the
+  /// digest of all files, and the list of these files (kHeld).
   bool whole = false;
   /// Reads a calibration file, for layouts that keep one. @throws InputError
   std::function<RecordedCamera(const std::filesystem::path&)> read_camera = {};
@@ -42,8 +42,8 @@ struct OpenedRecording {
   std::unique_ptr<Sequence> sequence;
   bool has_labels = false;                   ///< it contains labels, whether used or not
   std::vector<std::filesystem::path> files;  ///< files that frames are read from on demand
-  std::vector<std::string> notes;            ///< what could not be used, one line each
-  /// Files with the color images: one of each frame, or one of all.
+  std::vector<std::string> notes;            ///< what could not be used, one line per item
+  /// Files with the color images: one per frame, or one for all.
   std::vector<std::filesystem::path> images;
   /// Digests of the contents of `images`, sorted, whatever their names: copies of a recording share
   /// them. Empty unless RecordingConfig::whole.
@@ -58,8 +58,8 @@ struct SequenceReader {
   bool (*recognizes)(const std::filesystem::path&);
   /// @throws InputError naming file and place.
   OpenedRecording (*open)(const std::filesystem::path&, const RecordingConfig&);
-  /// The data set's name for the kind of place ("Bedroom / Hotel"), "" if it has none; null for
-  /// layouts that never have one.
+  /// The data set's name for the kind of place ("Bedroom / Hotel"), "" if the recording has none;
+  /// null for layouts that never have one.
   std::string (*scene_type)(const std::filesystem::path&);
   bool has_topics = false;  ///< RecordingConfig::topics applies
   /// Whether a recording is always a folder.
@@ -75,14 +75,15 @@ std::string sequence_forms();
 /// Splits a recording's name into the layout ("" if none is named) and the path.
 /// "C:house" names no layout: it is a path.
 std::pair<std::string, std::filesystem::path> split_sequence(const std::string& source);
-/// The inverse: joins a layout and a path to a name.
+/// The inverse: joins a layout and a path into a name.
 std::string join_sequence(const std::string& layout, const std::filesystem::path& path);
 
 /// Removes a recording's path from the start of a message: a result must not depend on where the
 /// recording is stored, and the cache serves copies of it elsewhere.
 std::string without_place(const std::string& message, const std::string& source);
 
-/// The layout of a recording: by its name, otherwise by the files at its path.
+/// The layout of a recording: the one in its name, otherwise the one recognized from the files at
+/// its path.
 /// @throws InputError if it is neither named nor recognized.
 const SequenceReader& reader_of(const std::string& source);
 

@@ -59,7 +59,7 @@ RecordedCamera read_sensors(const fs::path& file) {
     const std::string lower = lower_case(name);
     for (const char* other : {"equidistant", "fisheye", "kannala", "omni", "fov"})
       if (lower.find(other) != std::string::npos)
-        model->fail(fmt::format("'{}' is read of no lens but radial-tangential ones", name));
+        model->fail(fmt::format("'{}' is not supported, only radial-tangential lenses are", name));
   }
   if (auto distortion = color.find("distortion_coefficients")) {
     const YamlReader data = distortion->at("data");
@@ -76,8 +76,8 @@ RecordedCamera read_sensors(const fs::path& file) {
   return recorded;
 }
 
-/// Where the color camera is on the robot: a chain of the file's transforms, each of which places a
-/// child in its parent.
+/// The pose of the color camera on the robot, from a chain of the file's transforms, each of which
+/// places a child in its parent.
 SE3 base_from_camera(const fs::path& file) {
   struct Link {
     std::string parent, child;
@@ -107,7 +107,8 @@ SE3 base_from_camera(const fs::path& file) {
   }
   const auto found = base_from.find(kColorFrame);
   if (found == base_from.end())
-    throw InputError(fmt::format("{}: connects {} with no base_link", file.string(), kColorFrame));
+    throw InputError(
+        fmt::format("{}: does not connect {} to base_link", file.string(), kColorFrame));
   return found->second.normalized();
 }
 

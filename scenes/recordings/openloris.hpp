@@ -5,10 +5,10 @@
 
 namespace mh {
 
-/// OpenLORIS-Scene's packages (Shi et al., ICRA 2020): one folder per sequence, of which the
-/// D435i's color and depth aligned to it are read (color.txt, aligned_depth.txt; mm), the
-/// calibration in sensors.yaml, and groundtruth.txt, whose poses are those of the robot's base:
-/// trans_matrix.yaml says where the camera is on it.
+/// OpenLORIS-Scene's packages (Shi et al., ICRA 2020): one folder per sequence. The reader uses the
+/// D435i's color images and the depth aligned to them (color.txt, aligned_depth.txt; mm), the
+/// calibration in sensors.yaml, and groundtruth.txt. The poses there are those of the robot's base;
+/// trans_matrix.yaml states where the camera is on the robot.
 extern const SequenceReader kOpenlorisReader;
 
 }  // namespace mh

@@ -9,8 +9,8 @@
 namespace mh {
 namespace {
 
-/// How far from the axis, at unit depth, a lens still shows farther points farther out. Beyond that
-/// its polynomials fold the image.
+/// The largest distance from the axis, at unit depth, up to which a lens's distortion is monotonic.
+/// Beyond that, its polynomials fold the image.
 double farthest_radius(const Distortion& distortion) {
   if (distortion.none()) return std::numeric_limits<double>::infinity();
   constexpr double kStep = 0.01, kMost = 10;  // 84 degrees off the axis
@@ -23,7 +23,7 @@ double farthest_radius(const Distortion& distortion) {
   return kMost;
 }
 
-/// The points of a depth camera's pixels.
+/// Computes the 3D points of a depth camera's pixels.
 class Unprojector {
  public:
   explicit Unprojector(const Camera& camera) : camera_(camera) {}
@@ -39,7 +39,7 @@ class Unprojector {
   const Camera& camera_;
 };
 
-/// The color image that is filled with depth.
+/// The color camera's image while it is filled with depth.
 class Registered {
  public:
   Registered(const Camera& color, const Camera& depth)
@@ -79,7 +79,7 @@ class Registered {
     return {color_.fx_px * bent.x() + color_.cx_px, color_.fy_px * bent.y() + color_.cy_px};
   }
 
-  /// The pixels from `at` - `half` up to, but without, `at` + `half`.
+  /// The pixels from `at` - `half` up to but excluding `at` + `half`.
   static Range covered(double at, double half, int size) {
     const double last = half > 0.5 ? std::ceil(at + half) - 1 : std::floor(at + 0.5);
     const double first = half > 0.5 ? std::ceil(at - half) : last;
@@ -88,7 +88,7 @@ class Registered {
   }
 
   const Camera& color_;
-  double half_x_, half_y_;  ///< of a depth pixel, in color pixels
+  double half_x_, half_y_;  ///< half the size of a depth pixel, in color pixels
   double farthest_;
   Grid2d<float> depth_m_;
 };

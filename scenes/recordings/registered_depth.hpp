@@ -13,10 +13,10 @@ struct DepthCamera {
   SE3 color_from_depth;
 };
 
-/// Registers a depth image to the color camera: each pixel's point goes to the pixel nearest to
-/// where the color camera sees it, with its depth there; of several, the nearest point is kept. If
-/// the color camera's pixels are finer, a point goes to all that its pixel covers. Pixels without a
-/// point have depth 0.
+/// Registers a depth image to the color camera: the point of each depth pixel is stored, with its
+/// depth in the color camera, in the color pixel nearest to its projection; if there are several
+/// points, the closest one is kept. If the color camera's pixels are finer, a point is stored in
+/// all pixels that the depth pixel covers. Pixels without a point have depth 0.
 /// @param depth_m  along z of the depth camera; 0: not measured
 Grid2d<float> registered_depth(const Grid2d<float>& depth_m, const DepthCamera& depth,
                                const Camera& color);

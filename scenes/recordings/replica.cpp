@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kReplicaRate_hz = 30;  // assumed: nothing states it
+constexpr double kReplicaRate_hz = 30;  // assumed: it is not stated anywhere
 
 /// cam_params.json of the folder, or the one that all scenes share; empty if there is none.
 fs::path camera_file(const fs::path& folder) {
@@ -64,14 +64,14 @@ RecordedCamera read_camera_file(const fs::path& file) {
   return recorded;
 }
 
-/// @throws InputError if there is neither a file of the layout nor a calibration.
+/// @throws InputError if neither the layout's file nor a calibration exists.
 RecordedCamera camera_of(const fs::path& folder, const RecordingConfig& config) {
   const fs::path file = camera_file(folder);
   if (config.calibration.empty()) {
     if (file.empty())
       throw InputError(
           fmt::format("{}: cam_params.json is neither here nor beside this folder; "
-                      "name a settings file by --settings, in a suite by `settings:`",
+                      "name a settings file with --settings, in a suite with `settings:`",
                       folder.string()));
     return read_camera_file(file);
   }

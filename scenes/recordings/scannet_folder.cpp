@@ -45,8 +45,8 @@ class ColorPixels {
         color_from_depth_(info.color.device_from_camera.inverse() * info.depth.device_from_camera),
         parallax_(color_from_depth_.translation().norm() > 1e-6) {}
 
-  /// Column and row in the color image, one of each per pixel of the depth image. If the cameras
-  /// are apart, a pixel without depth is treated as far away.
+  /// Column and row in the color image for each pixel of the depth image. If the cameras are apart,
+  /// a pixel without depth is treated as far away.
   void find(const Grid2d<std::uint16_t>& depth, cv::Mat& columns, cv::Mat& rows) const {
     columns.create(depth.height(), depth.width(), CV_32FC1);
     rows.create(depth.height(), depth.width(), CV_32FC1);
@@ -194,7 +194,7 @@ class ScannetSequence : public Sequence {
     }
     cv::Mat smaller;
     cv::resize(full, smaller, out.size(), 0, 0, cv::INTER_AREA);
-    // Pixel centers are at integers: they shift by half a pixel when pixels grow.
+    // Pixel centers are at integers, so a change of the pixel size shifts them.
     const double sx = static_cast<double>(camera_.width_px) / image.width();
     const double sy = static_cast<double>(camera_.height_px) / image.height();
     const cv::Mat x = (columns + 0.5) * sx - 0.5, y = (rows + 0.5) * sy - 0.5;
@@ -202,7 +202,8 @@ class ScannetSequence : public Sequence {
     return result;
   }
 
-  /// Label images have the color image's resolution; some tools store them in the depth image's.
+  /// Label images have the color image's resolution; some tools store them at the depth image's
+  /// resolution.
   Grid2d<std::uint8_t> classes_at(const Grid2d<std::uint16_t>& ids, std::uint32_t number,
                                   const cv::Mat& columns, const cv::Mat& rows) const {
     const RecordedLens& lens = recording_->info().color;

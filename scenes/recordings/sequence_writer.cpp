@@ -48,7 +48,7 @@ class ScanNetWriter : public SequenceWriter {
     cv::Mat depth(depth_m.height(), depth_m.width(), CV_16UC1);
     std::transform(depth_m.begin(), depth_m.end(), depth.ptr<std::uint16_t>(), millimeters);
     write_image(folder_ / "depth" / (name + ".png"), depth, png_);
-    cv::Mat labels;  // of 16 bits in this layout
+    cv::Mat labels;  // 16 bits in this layout
     gray_image(frame.classes).convertTo(labels, CV_16U);
     write_image(folder_ / "label-filt" / (name + ".png"), labels, png_);
     write_image(folder_ / "instance-filt" / (name + ".png"), gray_image(frame.instances), png_);

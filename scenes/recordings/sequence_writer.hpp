@@ -18,13 +18,13 @@ namespace mh {
 /// Compression of PNG files, 0 (none) to 9; default: 1. For costs and savings see
 /// docs/measurements/rendering.md.
 using PngCompression = std::optional<int>;
-/// As write_image takes it.
+/// The compression as settings for write_image().
 std::vector<int> png_settings(PngCompression compression);
 
 /// A frame to record, with ground truth.
 struct ExactFrame {
   RgbdFrame seen;
-  Grid2d<ClassId> classes;  ///< of the same instant, as are the instances
+  Grid2d<ClassId> classes;  ///< of the same instant as `seen`, like the instances
   Grid2d<InstanceId> instances;
   SE3 world_from_camera;
 };
@@ -45,10 +45,10 @@ class SequenceWriter {
 
 /// Creates a writer by name: "tum" (see TumWriter) or "scannet-frames", the layout that ScanNet's
 /// SensReader extracts: color/N.jpg, depth/N.png (16 bit, 1000 per meter), pose/N.txt (camera to
-/// world), intrinsic/, and as in its 2D annotation label-filt/N.png (16 bit, class ids) and
+/// world), intrinsic/, and, as in ScanNet's 2D annotation, label-filt/N.png (16 bit, class ids) and
 /// instance-filt/N.png (16 bit); scannetv2-labels.combined.tsv maps each id to its class and its
 /// NYU40 class.
-/// @throws InputError on another name.
+/// @throws InputError on any other name.
 std::unique_ptr<SequenceWriter> make_sequence_writer(std::string_view format,
                                                      const std::filesystem::path& folder,
                                                      const Camera& camera,

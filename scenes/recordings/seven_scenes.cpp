@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSevenScenesRate_hz = 30;   // of the Kinect; the files have no stamps
-constexpr Stamp kPause_ns = 10'000'000'000;  // between two sequences: nothing connects them
+constexpr Stamp kPause_ns = 10'000'000'000;  // between two sequences, which are unconnected
 
-/// The folders that a split names: "sequence7" means seq-07 next to it.
+/// The folders that a split file names: "sequence7" means the folder seq-07 next to the file.
 std::vector<fs::path> folders_of(const fs::path& split) {
   std::istringstream words(read_text(split));
   std::vector<fs::path> folders;
@@ -50,7 +50,7 @@ std::vector<fs::path> folders_of(const fs::path& split) {
   return folders;
 }
 
-/// Collects the frames of one sequence after another.
+/// Collects the frames of sequences, one sequence after another.
 class Reading {
  public:
   void add(const fs::path& folder) {
@@ -117,7 +117,7 @@ OpenedRecording open_seven_scenes(const fs::path& path, const RecordingConfig& c
   if (camera.camera.width_px != depth.camera.width_px ||
       camera.camera.height_px != depth.camera.height_px)
     throw InputError(
-        fmt::format("{}: is of {} x {}; the depth camera of 7-Scenes, from which depth is "
+        fmt::format("{}: has {} x {} pixels; the depth camera of 7-Scenes, from which depth is "
                     "registered, has {} x {}",
                     config.calibration.string(), camera.camera.width_px, camera.camera.height_px,
                     depth.camera.width_px, depth.camera.height_px));

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 using Listed = TumListEntry;
 
-/// A line for each scan, as docs/outside_systems.md describes them.
+/// A line for each laser scan, as described in docs/outside_systems.md.
 std::string lasers_text(const std::map<Stamp, std::vector<LaserScan>>& lasers) {
   std::string text =
       "# stamp (s), laser, camera_from_laser (x y z qx qy qz qw), first angle, step (rad), least "
@@ -52,7 +52,7 @@ std::vector<Listed> read_list(const fs::path& list) {
   return entries;
 }
 
-/// Frames of the listed color images, without depth so far.
+/// Frames with the listed color images, and no depth yet.
 std::vector<RecordedFrame> listed_color(const fs::path& list) {
   std::vector<RecordedFrame> frames;
   for (const Listed& entry : read_list(list))
@@ -67,7 +67,7 @@ class ByStamp {
   explicit ByStamp(const std::vector<Listed>& entries)
       : entries_(entries), index_(stamps_of(entries)) {}
 
-  /// The entry nearest in time, ties to the first in the list; null if none is near.
+  /// The entry nearest in time, ties to the first in the list; null if none is near enough.
   const Listed* nearest(Stamp stamp_ns) const {
     const auto found = index_.nearest(stamp_ns);
     return found ? &entries_[*found] : nullptr;
@@ -116,7 +116,8 @@ cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
   return image;
 }
 
-/// Gray cameras and simulators that write opacity have other channels.
+/// Converts to three channels: images of gray cameras have one, and those of simulators that write
+/// opacity have four.
 cv::Mat as_three_channels(const cv::Mat& image) {
   if (image.channels() == 3) return image;
   cv::Mat color;
@@ -144,7 +145,7 @@ void fill_meters(const cv::Mat& depth, std::uint16_t no_depth, Number per_meter,
   }
 }
 
-/// Takes blue as red, as stored in the image.
+/// Copies the channels in the order in which they are stored, so that blue becomes red.
 Grid2d<Rgb8> as_it_is(const cv::Mat& bgr) {
   Grid2d<Rgb8> image(bgr.cols, bgr.rows);
   bgr.copyTo(cv::Mat(bgr.rows, bgr.cols, CV_8UC3, image.data()));
@@ -208,8 +209,8 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
   frame.stamp_ns = recorded.stamp_ns;
   frame.color = camera.exchange_red_blue ? as_it_is(color) : color_of(color);
   frame.depth_m = Grid2d<float>(color.cols, color.rows);
-  // The quotient of two floats is the double quotient, rounded: double has more than twice the
-  // digits (Figueroa 1995). It takes a quarter of the time.
+  // The quotient of two floats equals their quotient in double, rounded, since double has more than
+  // twice the digits (Figueroa 1995). Float division takes a quarter of the time.
   const auto per_meter = static_cast<float>(camera.depth_per_meter);
   if (per_meter == camera.depth_per_meter)
     fill_meters(depth, camera.no_depth, per_meter, frame.depth_m);

@@ -24,7 +24,7 @@ struct RecordedCamera {
   Camera camera;
   double depth_per_meter = kDepthPerMeter;  ///< value of a depth pixel at one meter
   bool exchange_red_blue = false;           ///< the files' first channel is blue
-  std::uint16_t no_depth = 0;               ///< a depth pixel without measurement, besides 0
+  std::uint16_t no_depth = 0;               ///< value of depth pixels without depth, besides 0
 };
 
 /// A pair of color and depth images of a recording.
@@ -33,16 +33,17 @@ struct RecordedFrame {
   std::filesystem::path color, depth, classes;  ///< classes: empty if the recording has none
 };
 
-/// The list of pairs in a folder of TUM's or ETH3D's layout: associations.txt, associated.txt, or
-/// association.txt or associate.txt, as people call it too; empty if it holds none.
+/// The list of pairs in a folder of TUM's or ETH3D's layout: associations.txt, associated.txt,
+/// association.txt or associate.txt, all of which are in use; empty if the folder holds none.
 std::filesystem::path associations_in(const std::filesystem::path& folder);
 
-/// Reads a folder in TUM's layout: rgb.txt and depth.txt, or if one is missing associations.txt or
-/// associated.txt, and label.txt if present. Each color image is paired with the nearest depth
-/// image within 0.02 s, as in TUM's own association, or with the one listed next to it; color
-/// images without one are omitted. Frames are in the order of their stamps.
-/// @param notes  receives a line with the number of omitted ones, and one if they were sorted; may
-/// be null
+/// Reads a folder in TUM's layout: rgb.txt and depth.txt or, if one of them is missing,
+/// associations.txt or associated.txt; and label.txt if present. Each color image is paired with
+/// the nearest depth image within 0.02 s, as in TUM's own association, or with the depth image
+/// listed next to it; color images without a depth image are omitted. Frames are in the order of
+/// their stamps.
+/// @param notes  receives a line with the number of omitted images, and a line if frames were
+/// sorted; may be null
 /// @throws InputError naming file and line.
 std::vector<RecordedFrame> load_tum_folder(const std::filesystem::path& folder,
                                            std::vector<std::string>* notes = nullptr);
@@ -61,9 +62,9 @@ class TumWriter : public SequenceWriter {
  public:
   TumWriter(std::filesystem::path folder, const Camera& camera,
             PngCompression png_compression = {});
-  /// Adds only what a system may see. label.txt lists the frames that have labels, odometry.txt the
-  /// poses by odometry, imu.csv (EuRoC's columns) what the inertial sensor delivered, lasers.txt
-  /// the scans, if there are any.
+  /// Adds only what a system may see. label.txt lists the frames that have labels; odometry.txt
+  /// holds the poses from odometry, imu.csv (EuRoC's columns) the readings of the inertial sensor,
+  /// and lasers.txt the laser scans, if there are any.
   void add(const RgbdFrame& frame);
   void add(std::size_t index, const ExactFrame& frame) override;
   bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) override;

@@ -15,11 +15,11 @@ struct TumListEntry {
   std::filesystem::path file;  ///< as written in the list
 };
 
-/// Parses "stamp file" lines, after the given number of words to skip; '#' starts a comment.
+/// Parses "stamp file" lines, skipping the given number of words in each; '#' starts a comment.
 /// Stamps are seconds, or nanoseconds since 1970. Entries keep the list's order; their stamps need
 /// not increase.
 /// @param name  names the list in messages
-/// @throws InputError naming list and line: no file, no stamp.
+/// @throws InputError naming list and line: a missing file or stamp.
 std::vector<TumListEntry> parse_tum_list(const std::string& text, const std::string& name,
                                          int skip = 0);
 

@@ -19,7 +19,7 @@ std::optional<Trajectory> read_truth(const std::filesystem::path& file,
 
 void note_no_file(const std::filesystem::path& truth, std::vector<std::string>& notes) {
   if (is_there(truth) && !is_file(truth))
-    notes.push_back(fmt::format("{}: is not a file: there is no truth in it", truth.string()));
+    notes.push_back(fmt::format("{}: is not a file: there is no truth", truth.string()));
 }
 
 }  // namespace mh

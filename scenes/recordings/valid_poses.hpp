@@ -16,7 +16,7 @@ namespace mh {
 std::optional<Trajectory> read_truth(const std::filesystem::path& file,
                                      std::vector<std::string>& notes);
 
-/// Notes that something other than a file, such as a folder, has the name of the file of true
+/// Notes that something that is not a file, such as a folder, has the name of the file of true
 /// poses.
 void note_no_file(const std::filesystem::path& truth, std::vector<std::string>& notes);
 

@@ -17,8 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
 
-/// Collects the numbers of the array under the key segIndices of the outermost object, without
-/// building a tree of millions of values.
+/// Collects the numbers in the array segIndices of the outermost object, without building a tree of
+/// millions of values.
 class SegmentsHandler : public nlohmann::json_sax<Json> {
  public:
   explicit SegmentsHandler(const std::string& name) : name_(name) {}
@@ -143,7 +143,7 @@ std::string segments_text(const std::vector<std::uint32_t>& segment_of_vertex,
 std::string aggregation_text(const std::vector<SegmentGroup>& groups, const std::string& scene_id) {
   Json list = Json::array();
   for (const SegmentGroup& group : groups) {
-    // ScanNet's own files count id and objectId alike.
+    // In ScanNet's own files, id and objectId are the same.
     Json item = {{"id", group.object},
                  {"objectId", group.object},
                  {"segments", group.segments},

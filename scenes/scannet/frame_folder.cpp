@@ -41,7 +41,7 @@ NumberedFiles::NumberedFiles(const fs::path& folder,
     for (const std::string& name : list_folder(folder, fmt::format("*{}", ending))) {
       const auto number = number_of_name(name);
       if (!number) continue;
-      // Of two files with one number, the first by name is used.
+      // If two files have the same number, the first by name is used.
       const auto [place, is_new] = files_.try_emplace(*number, folder / name);
       if (!is_new) place->second = std::min(place->second, folder / name);
     }

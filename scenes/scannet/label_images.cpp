@@ -23,7 +23,7 @@ constexpr zip_uint64_t kLargestEntry = 1U << 28;
 Grid2d<std::uint16_t> decode(std::string_view bytes, const std::string& name) {
   if (const char* fault = image_fault(bytes)) throw InputError(fmt::format("{}: {}", name, fault));
   if (!bytes.starts_with("\x89PNG"))
-    throw InputError(fmt::format("{}: is no PNG image, whose ids are exact", name));
+    throw InputError(fmt::format("{}: is not a PNG image: only PNG keeps ids exact", name));
   auto image = decode_gray16(bytes);
   if (!image) throw InputError(fmt::format("{}: is not an image of one channel", name));
   return std::move(*image);
@@ -59,8 +59,8 @@ bool points_outside(const std::string& entry) {
 class LabelZip : public LabelImages {
  public:
   LabelZip(HeldBytes bytes, const std::string& name) : held_(std::move(bytes)), name_(name) {
-    // libzip rejects a zip without any bytes.
-    if (held_.view.empty()) throw InputError(fmt::format("{}: is empty: no zip", name_));
+    // libzip rejects an empty buffer.
+    if (held_.view.empty()) throw InputError(fmt::format("{}: is empty, not a zip", name_));
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* source =
@@ -117,15 +117,15 @@ class LabelZip : public LabelImages {
     zip_stat_t info;
     if (zip_stat_index(archive_.get(), index, 0, &info) != 0 || (info.valid & ZIP_STAT_SIZE) == 0)
       fail("its size cannot be read");
-    // Deflate expands by at most 1032; an image that claims more is invalid.
+    // Deflate expands data at most 1032 times; an image that claims more is invalid.
     if (info.size > kLargestEntry || info.size / 1032 > held_.view.size())
       fail(fmt::format("claims {} bytes", info.size));
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
         zip_fopen_index(archive_.get(), index, 0), zip_fclose);
     if (!file) fail(zip_strerror(archive_.get()));
     std::string bytes(static_cast<std::size_t>(info.size), '\0');
-    // Asking for one byte more than announced reveals whether there is more, and makes libzip
-    // verify the checksum.
+    // Asking for one byte more than declared reveals whether there is more, and makes libzip verify
+    // the checksum.
     char more = 0;
     if (zip_fread(file.get(), bytes.data(), bytes.size()) !=
             static_cast<zip_int64_t>(bytes.size()) ||
@@ -140,7 +140,7 @@ class LabelZip : public LabelImages {
   std::map<std::uint32_t, zip_uint64_t> entries_;
 };
 
-/// PNG of the depth that ScanNet uses for the kind.
+/// A PNG with the bit depth that ScanNet uses for the kind.
 std::string encode(const Grid2d<std::uint16_t>& ids, const std::string& kind) {
   if (kind != "instance-filt" || std::ranges::any_of(ids, [](auto id) { return id > 255; }))
     return encode_png(ids);
@@ -199,7 +199,7 @@ class ZipWriter : public LabelImageWriter {
         zip_source_free(source);
         fail();
       }
-      // PNG is already compressed. A fixed time keeps files of equal content identical, byte for
+      // PNG is already compressed. A fixed time makes zips of equal content identical, byte for
       // byte.
       const auto index = static_cast<zip_uint64_t>(entry);
       zip_set_file_compression(archive, index, ZIP_CM_STORE, 0);

@@ -18,9 +18,9 @@ namespace mh {
 class LabelImages {
  public:
   virtual ~LabelImages() = default;
-  /// The folder or zip that contains them.
+  /// The folder or zip that contains the images.
   virtual const std::string& place() const = 0;
-  /// Whether a frame has one.
+  /// Whether a frame has an image.
   virtual bool contains(std::uint32_t number) const = 0;
   /// The file with a frame's image, which is read on demand; empty if there is none, or if all are
   /// in one file that was already read.
@@ -29,12 +29,12 @@ class LabelImages {
   virtual std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const = 0;
 };
 
-/// Opens those next to a recording: a folder `kind` ("label-filt", "instance-filt"), or a zip
-/// *_2d-KIND.zip. Null if there are none.
+/// Opens the label images next to a recording: a folder `kind` ("label-filt", "instance-filt"), or
+/// a zip *_2d-KIND.zip. Null if neither exists.
 /// @throws InputError if the zip is damaged, or has names that point outside of it.
 std::unique_ptr<LabelImages> find_label_images(const std::filesystem::path& folder,
                                                const std::string& kind);
-/// Opens a zip of them; `name` names the file in messages.
+/// Opens a zip of label images; `name` names the file in messages.
 std::unique_ptr<LabelImages> open_label_zip(HeldBytes bytes, const std::string& name);
 
 /// Writes KIND/N.png into a folder, or into a zip of that name: 16 bits, or 8 if no id exceeds 255

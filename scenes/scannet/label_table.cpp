@@ -113,7 +113,7 @@ class TableParser {
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-      fail(line, fmt::format("'{}' is no {}", text.substr(0, 40), what));
+      fail(line, fmt::format("'{}' is not a valid {}", text.substr(0, 40), what));
     return value;
   }
 
@@ -133,7 +133,7 @@ class TableParser {
   static constexpr std::size_t kNone = ~std::size_t{0};
   LabelTable table_;
   std::uint32_t rows_ = 0;
-  std::size_t columns_ = 0, needed_ = 0;  ///< of the header; up to the first that gives a class
+  std::size_t columns_ = 0, needed_ = 0;  ///< columns; those up to the first that gives a class
   std::size_t category_ = kNone, id_ = kNone, nyu40_id_ = kNone, nyu40_class_ = kNone, own_ = kNone;
 };
 

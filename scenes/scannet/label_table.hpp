@@ -25,16 +25,16 @@ struct LabelTable {
 };
 
 /// Reads a label table; its columns identify the release: `raw_category` and `id` (v2), or
-/// `category` and `index` (v1); without ids, rows count from 1. The class is that of `nyu40id`, or
-/// if missing of `nyu40class`; if that is otherfurniture or the like, a category that names one of
-/// our classes ("microwave") gives that class. Our own tables have an additional column
+/// `category` and `index` (v1); without ids, rows count from 1. The class is that of `nyu40id` or,
+/// if missing, of `nyu40class`; if that is otherfurniture or the like, a category that names one of
+/// our classes ("microwave") takes precedence. Our own tables have an additional column
 /// `modelhouse`, which names the class that NYU40 merges into otherfurniture or otherprop. A row
-/// without any of them is void.
+/// without any of these is void.
 /// @throws InputError naming file and line.
 LabelTable parse_label_table(std::string_view text, const std::string& name);
 LabelTable load_label_table(const std::filesystem::path& file);
 
-/// Our classes as such a table of release v2, with one row per class: its id, its name, its NYU40
+/// Our classes as a label table of release v2, with one row per class: its id, its name, its NYU40
 /// id and name.
 std::string label_table_text();
 

@@ -39,7 +39,7 @@ struct Object {
   std::optional<ClassId> class_id;  ///< nullopt for an unknown category
 };
 
-/// Which object a segment belongs to, and whether any vertex has it.
+/// The object that a segment belongs to, and whether any vertex is in the segment.
 struct Claim {
   std::size_t object = 0;
   bool in_mesh = false;
@@ -56,7 +56,7 @@ class Loader {
     PlyMesh mesh = read_ply(files_.mesh);
     warn_of_bytes_left(mesh, files_.mesh, warnings_);
     if (mesh.triangles.empty())
-      throw InputError(fmt::format("{}: has no faces to be seen", files_.mesh.string()));
+      throw InputError(fmt::format("{}: has no visible faces", files_.mesh.string()));
     scene_.name = files_.scene_id;
     scene_.positions_m = std::move(mesh.positions_m);
     scene_.colors = std::move(mesh.colors);
@@ -138,7 +138,7 @@ class Loader {
   }
 
   std::vector<ClassId> classes_of_labels() {
-    // Some aligned scenes of v2 (scene0270_00 and others) hold a few labels beyond NYU40.
+    // Some aligned scenes of v2 (scene0270_00 and others) contain a few labels beyond NYU40.
     raw_ids_ = (greatest_label_ > kLastNyu40 && !aligned_) ||
                (table_ && table_->release == ScannetRelease::kV1);
     if (raw_ids_ && !table_)
@@ -146,7 +146,7 @@ class Loader {
           "{}: holds label {}, which is not an NYU40 id but one of a label table: neither "
           "{} nor {} lies beside the scene or above it",
           labels_file_.string(), greatest_label_, kLabelTableV1, kLabelTableV2));
-    // Few values, many vertices.
+    // There are few values but many vertices, so each value is looked up once.
     std::vector<ClassId> class_of(std::size_t{greatest_label_} + 1, kVoid);
     std::vector<bool> unknown(class_of.size(), false);
     for (std::uint32_t label = 1; label < class_of.size(); ++label) {
@@ -210,7 +210,7 @@ class Loader {
     std::ranges::sort(scene_.instances, {}, &Instance::id);
     make_names_unique();
     if (unlabeled > 0) warn_unlabeled(unlabeled, groups.size(), unknown);
-    if (!shared.empty())  // scene0217_00 of release v2 names all its objects twice
+    if (!shared.empty())  // scene0217_00 of release v2 lists all its objects twice
       warn(
           fmt::format("{}: {} of {} segments belong to several objects (such as segment {}): the "
                       "last object counts",
@@ -246,12 +246,12 @@ class Loader {
         if (!claims.at(segment).in_mesh) absent.insert(segment);
     if (!absent.empty())
       warn(
-          fmt::format("{}: {} of the {} segments of its objects are no vertex's (such as segment "
-                      "{}): passed over",
+          fmt::format("{}: {} of the {} segments of its objects belong to no vertex (such as "
+                      "segment {}): ignored",
                       files_.aggregation.string(), absent.size(), claims.size(), *absent.begin()));
   }
 
-  /// Names may repeat if a file of ours was edited by hand.
+  /// Names may repeat if one of our files was edited manually.
   void make_names_unique() {
     std::set<std::string> names;
     for (Instance& instance : scene_.instances)
@@ -270,7 +270,7 @@ class Loader {
     if (categories.size() > kTold) names += ", ...";
     warn(fmt::format("{}: {} of {} objects are of {} categories that {} lacks ({}): unlabeled",
                      files_.aggregation.string(), count, all, categories.size(),
-                     table_ ? table_->file : "the list of classes, for want of a label table,",
+                     table_ ? table_->file : "the list of classes, used without a label table,",
                      names));
   }
 
@@ -292,7 +292,7 @@ class Loader {
     }
   }
 
-  /// The first of three that has the majority value; nullopt if all differ.
+  /// Index of the first of three values that has the majority value; nullopt if all differ.
   template <class T>
   static std::optional<int> majority(const std::array<T, 3>& values) {
     if (values[0] == values[1] || values[0] == values[2]) return 0;

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sixteen numbers of a text file, row by row; "-inf" is a number.
+/// Reads sixteen numbers from a text file, row by row; "-inf" is a number.
 Eigen::Matrix4d read_matrix(const fs::path& file) {
   return parse_matrix(read_text(file), file.string());
 }
@@ -39,7 +39,7 @@ class ExtractedFolder : public Recording {
     for (const std::uint32_t number : color_.numbers())
       if (depth_.contains(number)) numbers_.push_back(number);
     if (numbers_.empty())
-      throw InputError(fmt::format("{}: no image of color/ has one of the same number in depth/",
+      throw InputError(fmt::format("{}: no image in color/ has one with the same number in depth/",
                                    folder.string()));
     info_.sensor = "extracted";
     info_.color = read_lens("color", announced(color_));
@@ -119,9 +119,8 @@ class ExtractedFolder : public Recording {
     const fs::path intrinsics = folder_ / "intrinsic" / ("intrinsic_" + which + ".txt");
     const fs::path extrinsics = folder_ / "intrinsic" / ("extrinsic_" + which + ".txt");
     if (!is_there(extrinsics))
-      notes_.push_back(
-          fmt::format("{}: is absent: the {} camera is taken to be the device's origin",
-                      extrinsics.string(), which));
+      notes_.push_back(fmt::format("{}: is missing: the {} camera is taken as the device's origin",
+                                   extrinsics.string(), which));
     const Eigen::Matrix4d placed =
         is_there(extrinsics) ? read_matrix(extrinsics) : Eigen::Matrix4d::Identity();
     if (!pose_of(placed, extrinsics.string()))
@@ -130,7 +129,7 @@ class ExtractedFolder : public Recording {
                    static_cast<int>(size.height), intrinsics.string());
   }
 
-  /// @param what  is true of these files: "images have no partner in depth/"
+  /// @param what  statement about these files: "images have no partner in depth/"
   template <class Predicate>
   void note_alone(const char* which, const std::vector<std::uint32_t>& numbers,
                   const Predicate& is_alone, const char* what) {
@@ -141,7 +140,7 @@ class ExtractedFolder : public Recording {
                                    *first));
   }
 
-  /// Files without their counterparts are what a damaged download leaves.
+  /// Adds notes about files without counterparts, as a damaged download leaves them.
   void note_files_alone() {
     const auto without = [](const NumberedFiles& others) {
       return [&](std::uint32_t number) { return !others.contains(number); };
@@ -155,7 +154,7 @@ class ExtractedFolder : public Recording {
       return !color_.contains(number) && !depth_.contains(number);
     };
     note_alone("pose", NumberedFiles(folder_ / "pose", {".txt"}).numbers(), without_image,
-               "poses are of no image");
+               "poses belong to no image");
   }
 
   std::optional<SE3> read_pose(std::uint32_t number) {
@@ -221,12 +220,13 @@ RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& e
                     lens.cy_px >= 0 && lens.cx_px <= width_px - 1 && lens.cy_px <= height_px - 1;
   if (!good)
     throw InputError(
-        fmt::format("{}: fx {} fy {} cx {} cy {} are no intrinsics of an image of {} x {}", what,
+        fmt::format("{}: fx {} fy {} cx {} cy {} are not intrinsics of an image of {} x {}", what,
                     lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px, width_px, height_px));
   for (const auto& [row, column] : {std::pair{0, 1}, {1, 0}, {2, 0}, {2, 1}})
     if (std::abs(intrinsics(row, column)) > 1e-6)
-      throw InputError(fmt::format("{}: row {}, column {} of the intrinsics is {}, a pinhole has 0",
-                                   what, row + 1, column + 1, intrinsics(row, column)));
+      throw InputError(fmt::format(
+          "{}: row {}, column {} of the intrinsics is {}, but a pinhole camera has 0 there", what,
+          row + 1, column + 1, intrinsics(row, column)));
   const auto placed = pose_of(extrinsics, what);
   if (!placed) throw InputError(fmt::format("{}: the extrinsics are not finite", what));
   RecordedLens result = lens;
@@ -250,8 +250,8 @@ void Recording::note_faulty_poses() {
 }
 
 bool is_rotation(const Eigen::Matrix3d& matrix) {
-  // Written with six decimals or as floats, and so close to a rotation that the error of the
-  // quaternion is negligible.
+  // Files have six decimals or floats. Within this tolerance, the matrix is so close to a rotation
+  // that the error of the quaternion is negligible.
   constexpr double kTolerance = 1e-2;
   const Eigen::Matrix3d square = matrix * matrix.transpose();
   return square.isIdentity(kTolerance) && matrix.determinant() > 0;

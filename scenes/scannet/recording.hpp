@@ -39,7 +39,7 @@ struct RecordedMoment {
   Stamp stamp_ns = 0;  ///< of the color image
   Grid2d<Rgb8> color;
   Grid2d<std::uint16_t> depth;           ///< in RecordingInfo::depth_per_meter; 0 = no return
-  std::optional<SE3> world_from_device;  ///< nullopt where the scan's tracking was lost
+  std::optional<SE3> world_from_device;  ///< nullopt if the scan's tracking was lost
 };
 
 /// A ScanNet recording, frame by frame, as a .sens file or as a folder of images.
@@ -47,7 +47,7 @@ class Recording {
  public:
   virtual ~Recording() = default;
   virtual const RecordingInfo& info() const = 0;
-  /// What could not be used or was repaired, one line each.
+  /// What could not be used or was repaired, one line per item.
   const std::vector<std::string>& notes() const { return notes_; }
   virtual std::size_t size() const = 0;
   virtual Stamp stamp_ns(std::size_t index) const = 0;
@@ -59,11 +59,12 @@ class Recording {
   virtual RecordedMoment frame(std::size_t index) const = 0;
   /// The files that frame() reads; empty if everything is in the opened file.
   virtual std::vector<std::filesystem::path> files() const { return {}; }
-  /// The files with the color images: one of each frame, or the opened file.
+  /// The files with the color images: one per frame, or the opened file.
   virtual std::vector<std::filesystem::path> images() const = 0;
 
  protected:
-  /// What `read` returns; nullopt, and counted, if it throws because it holds no pose.
+  /// Returns what `read` returns; if it throws because the data is not a pose, counts that and
+  /// returns nullopt.
   std::optional<SE3> pose_or_none(const std::function<std::optional<SE3>()>& read);
   void note_faulty_poses();
 
@@ -84,7 +85,7 @@ Eigen::Matrix4d parse_matrix(const std::string& text, const std::string& what);
 /// A camera's 4x4 intrinsics or a pose, row by row. @throws InputError "what" on an invalid matrix.
 RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& extrinsics,
                      int width_px, int height_px, const std::string& what);
-/// Whether it is a rotation, within the precision of files with few decimals.
+/// Whether a matrix is a rotation, within the precision of files with few decimals.
 bool is_rotation(const Eigen::Matrix3d& matrix);
 /// A rigid transform; nullopt if any number is not finite, ScanNet's mark of an invalid frame.
 std::optional<SE3> pose_of(const Eigen::Matrix4d& matrix, const std::string& what);

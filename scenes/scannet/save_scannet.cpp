@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What faces must share to share a vertex.
+/// What must be equal for faces to share a vertex.
 struct Owner {
   InstanceId instance = 0;
   ClassId class_id = kVoid;
   friend auto operator<=>(const Owner&, const Owner&) = default;
 };
 
-/// Gives each vertex one owner: where faces of several meet, the later ones get copies.
+/// Gives each vertex one owner: where faces of several owners meet, the later ones get copies.
 /// @returns the owner of every vertex; unused vertices are void
 std::vector<Owner> part_owners(Scene& scene) {
   const std::size_t before = scene.positions_m.size();
@@ -98,7 +98,7 @@ std::vector<SegmentGroup> groups_of(const Scene& scene, const std::vector<Owner>
   return list;
 }
 
-/// The mesh with each vertex's class, drawn in that class's color.
+/// The mesh with the class of each vertex as its label, and that class's color.
 PlyMesh label_mesh(PlyMesh mesh, const std::vector<Owner>& owner) {
   for (std::size_t v = 0; v < owner.size(); ++v) {
     const ClassInfo& info = classes()[classes()[owner[v].class_id].nyu40];

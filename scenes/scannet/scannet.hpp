@@ -28,12 +28,13 @@ Scene load_scannet(const std::filesystem::path& folder,
 /// The names that save_scannet() writes into that folder.
 std::vector<std::string> saved_scannet_names(const std::filesystem::path& folder);
 
-/// Writes a scene as a folder of ScanNet's release v2, so that its tools can read it: mesh, labels,
-/// segments, aggregation, txt and label table. The scene's id is the folder's name. Textures and
-/// light become vertex colors; to represent them, faces of scenes that have any are split until no
-/// edge is longer than max_edge_m (0 = not split). Vertices where faces of several objects meet are
-/// written once for each, so that load_scannet restores every face's class and instance. Classes
-/// that NYU40 lacks (those above 41) are preserved for faces that belong to an object.
+/// Writes a scene as a folder of ScanNet's release v2, so that ScanNet's tools can read it: mesh,
+/// labels, segments, aggregation, txt and label table. The scene's id is the folder's name.
+/// Textures and light become vertex colors; to represent them, faces of scenes with textures or
+/// light are split until no edge is longer than max_edge_m (0 = not split). Vertices where faces of
+/// several objects meet are written once for each, so that load_scannet restores every face's class
+/// and instance. Classes that NYU40 lacks (those above 41) are preserved for faces that belong to
+/// an object.
 /// @throws InputError if a file cannot be written or the scene is inconsistent.
 void save_scannet(const Scene& scene, const std::filesystem::path& folder,
                   float max_edge_m = 0.04F);

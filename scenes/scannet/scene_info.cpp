@@ -22,7 +22,8 @@ Eigen::Matrix4d read_matrix(const std::string& text) {
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 16; ++i)
     if (!(numbers >> matrix(i / 4, i % 4)))
-      throw InputError(fmt::format("16 numbers are needed, number {} is missing or none", i + 1));
+      throw InputError(
+          fmt::format("16 numbers are needed, number {} is missing or not a number", i + 1));
   std::string more;
   if (numbers >> more) throw InputError(fmt::format("'{}' follows the 16th number", more));
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))

@@ -11,7 +11,7 @@ namespace mh {
 
 /// The parts of sceneXXXX_YY.txt that we use; its lines are `key = value`.
 struct ScannetInfo {
-  /// Aligns the scan with gravity and its walls; release v1 has none.
+  /// Aligns the scan with gravity and with its walls; missing in release v1.
   std::optional<Eigen::Matrix4d> aligned_from_scan;
   std::string scene_type;  ///< e.g. "Bedroom / Hotel"; empty if not stated
 };

@@ -121,8 +121,8 @@ class SensFile : public Recording {
   std::uint64_t read_header(Cursor& cursor) {
     const auto version = cursor.take<std::uint32_t>("the version");
     if (version != kVersion)
-      throw InputError(
-          fmt::format("{}: is of version {}; version {} is read", name_, version, kVersion));
+      throw InputError(fmt::format("{}: has version {}, but only version {} is supported", name_,
+                                   version, kVersion));
     const auto length = cursor.take<std::uint64_t>("the length of the sensor's name");
     if (length > kLongestName) cursor.fail(fmt::format("a sensor's name of {} bytes", length));
     info_.sensor = cursor.take_bytes(length, "the sensor's name");
@@ -159,22 +159,23 @@ class SensFile : public Recording {
     return size;
   }
 
-  /// A recording that was cut short is used as far as its frames are whole; see add_lost().
+  /// Reads the frames of a recording; if it was cut short, its complete frames are used (see
+  /// add_lost()).
   void read_frames(Cursor& cursor, std::uint64_t frames) {
     for (std::uint64_t i = 0; i < frames; ++i) try {
         frames_.push_back(read_record(cursor, i));
       } catch (const Truncated& error) {
         if (frames_.empty()) throw;
-        notes_.push_back(fmt::format("{}; {} of {} frames are whole", error.what(), i, frames));
+        notes_.push_back(fmt::format("{}; {} of {} frames are complete", error.what(), i, frames));
         cursor.end();
         return;
       }
   }
 
-  /// The frames that a truncated file has lost are part of the recording, unreadable, so that they
-  /// are counted. Their stamps go on at the mean interval of the others.
+  /// Adds the frames that a truncated file has lost as unreadable frames, so that they are counted.
+  /// Their stamps continue at the mean interval of the others.
   void add_lost(std::uint64_t frames) {
-    constexpr std::uint64_t kCredible = 1'000'000;  // 9 h; a damaged header may say anything
+    constexpr std::uint64_t kCredible = 1'000'000;  // 9 h; a damaged header may state any number
     whole_ = frames_.size();
     if (frames > kCredible) return;
     const Stamp first_ns = frames_.front().stamp_ns, last_ns = frames_.back().stamp_ns;
@@ -203,21 +204,20 @@ class SensFile : public Recording {
     return record;
   }
 
-  /// Some recordings have no stamps, or equal ones: then 30 Hz is assumed.
+  /// Some recordings have no stamps, or stamps that do not increase: 30 Hz is assumed for them.
   void mend_stamps() {
     const auto back = std::ranges::adjacent_find(
         frames_, [](Stamp a, Stamp b) { return a >= b; }, &FrameRecord::stamp_ns);
     if (back == frames_.end()) return;
     notes_.push_back(
-        fmt::format("{}: frame {} has no later stamp than the one before: frames "
-                    "count at 30 Hz",
+        fmt::format("{}: the stamp of frame {} is not later than the one before: 30 Hz is assumed",
                     name_, back - frames_.begin() + 1));
     for (std::size_t i = 0; i < frames_.size(); ++i)
       frames_[i].stamp_ns = static_cast<Stamp>(i) * 1'000'000'000 / 30;
   }
 
-  /// The frames are followed by inertial measurements, which are not used: five vectors of doubles
-  /// and a stamp each. Other bytes indicate that the header counts too few frames.
+  /// The frames are followed by inertial measurements, which are not used; each is five vectors of
+  /// doubles and a stamp. Any other bytes indicate that the header states too few frames.
   void note_bytes_left(Cursor& cursor) {
     constexpr std::size_t kMeasurement = 5 * 3 * sizeof(double) + sizeof(std::uint64_t);
     const std::size_t left = cursor.left();
@@ -227,8 +227,8 @@ class SensFile : public Recording {
     if (counted && cursor.left() % kMeasurement == 0 && cursor.left() / kMeasurement == count)
       return;
     notes_.push_back(
-        fmt::format("{}: the {} bytes behind frame {}, the last, are no whole number of inertial "
-                    "measurements and not read",
+        fmt::format("{}: the {} bytes after frame {}, the last, are not a whole number of inertial "
+                    "measurements and are not read",
                     name_, left, frames_.size() - 1));
   }
 
@@ -255,14 +255,15 @@ class SensFile : public Recording {
     if (const char* fault = image_fault(record.color))
       fail(index, fmt::format("the color image {}", fault));
     auto image = decode_color(record.color);
-    if (!image) fail(index, "the color image is not one of 3 x 8 bits, or damaged");
+    if (!image) fail(index, "the color image does not have 3 x 8 bits, or is damaged");
     if (image->width() != lens.width_px || image->height() != lens.height_px)
       fail_size(static_cast<std::uint64_t>(image->width()),
                 static_cast<std::uint64_t>(image->height()));
     return std::move(*image);
   }
 
-  /// Decodes raw bytes to an image of that size.
+  /// An image of a camera's size for raw pixels. @throws InputError if `bytes` does not fit that
+  /// size.
   template <class Pixel>
   Grid2d<Pixel> empty_image(const RecordedLens& lens, std::size_t bytes, std::size_t index,
                             const char* which) const {
@@ -379,7 +380,8 @@ void save_sens(const fs::path& file, const RecordingInfo& info, std::size_t fram
     for (std::size_t i = 0; i < frames; ++i) {
       const RecordedMoment moment = frame_at(i);
       if (!fits(moment.color, info.color) || !fits(moment.depth, info.depth))
-        throw InputError(fmt::format("{}: frame {} has not the cameras' size", file.string(), i));
+        throw InputError(
+            fmt::format("{}: frame {} does not have the cameras' size", file.string(), i));
       const std::string color = encode_jpeg(moment.color, kRecordedJpegQuality);
       const std::string depth = compressed(moment.depth);
       const double lost = -std::numeric_limits<double>::infinity();

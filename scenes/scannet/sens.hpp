@@ -13,13 +13,13 @@
 namespace mh {
 
 /// Opens a .sens file of version 4: color raw, PNG or JPEG; depth raw or zlib, 16 bits. Only the
-/// frames' headers are read at once, images on demand.
+/// frames' headers are read immediately; images are read on demand.
 /// @throws InputError naming file and place: another version, sizes that exceed the file.
 std::unique_ptr<Recording> open_sens(const std::filesystem::path& file);
-/// The same from memory; `name` names the file in messages.
+/// Opens a .sens file in memory; `name` names the file in messages.
 std::unique_ptr<Recording> open_sens(HeldBytes bytes, const std::string& name);
 
-/// Writes a .sens file of version 4, color as JPEG, depth by zlib, poses of -inf for invalid
+/// Writes a .sens file of version 4: color as JPEG, depth with zlib, poses of -inf for invalid
 /// frames, stamps in microseconds, no inertial measurements. Keeps one frame in memory at a time.
 /// @param frame_at  called once per index, in order; images must have the cameras' sizes
 /// @throws InputError if it cannot be written.

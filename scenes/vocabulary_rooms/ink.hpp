@@ -14,7 +14,7 @@
 
 namespace mh::training {
 
-/// Side of a sheet.
+/// Side length of a sheet, texels.
 constexpr int kTexels = 512;
 using Sheet = Grid2d<Rgb8>;
 

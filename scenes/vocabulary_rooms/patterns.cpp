@@ -207,7 +207,7 @@ Sheet pebbles(const Ink& ink) {
   });
 }
 
-/// Mirrored blots in half-drop repeat, as on old wallpaper.
+/// Mirrored blots in a half-drop repeat, as on old wallpaper.
 Sheet wallpaper(const Ink& ink) {
   const int columns = ink.whole(0, 3, 7);
   const int width = kTexels / columns;

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// Families of textures for training visual vocabularies. None is a material kind of the house
-/// (material_kinds()), so that no vocabulary has seen what an evaluation shows.
+/// Families of textures for training visual vocabularies. None of them is a kind of material of the
+/// house (material_kinds()), so that no vocabulary has seen what an evaluation shows.
 std::span<const std::string_view> training_patterns();
 
 /// One sheet of a family, 1.2 m square at 512 x 512 texels: the seed determines colors, sizes and

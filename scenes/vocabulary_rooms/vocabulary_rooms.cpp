@@ -53,7 +53,7 @@ class RoomMaker {
       const auto family =
           families[static_cast<std::size_t>(dice_.whole(0, static_cast<int>(families.size()) - 1))];
       Material material = make_training_pattern(family, dice_.bits());
-      // A different scale makes a different pattern.
+      // The same sheet at a different scale is a different pattern.
       material.tile_m *= dice_.uniform(0.7, 1.6);
       material.name += fmt::format("_{}", i);
       scene_.materials.push_back(std::move(material));
@@ -114,7 +114,7 @@ class RoomMaker {
           [&](float s, float t) -> Vector3f { return corner + s * right + t * down; });
   }
 
-  /// A box about a center, its axes the columns of `axes`.
+  /// A box around a center; its axes are the columns of `axes`.
   void box(std::uint16_t material, const Vector3f& center, const Vector3f& size,
            const Eigen::Matrix3f& axes) {
     for (int axis = 0; axis < 3; ++axis)

@@ -15,8 +15,8 @@ namespace mh {
 /// "training_room_<seed>".
 Scene make_training_room(std::uint64_t seed);
 
-/// Camera poses (world_from_camera) in such a room: 0.8 to 1.6 m above the floor, at least 0.3 m
-/// from walls and objects' boxes, looking roughly level and not straight at a near wall.
+/// Camera poses (world_from_camera) in a training room: 0.8 to 1.6 m above the floor, at least 0.3
+/// m from walls and objects' boxes, looking roughly level and not straight at a near wall.
 /// @throws InputError if the scene has no room or no place is free.
 std::vector<SE3> training_views(const Scene& scene, std::uint64_t seed, int count);
 

@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 constexpr double kStray_m = 0.05;        // the robot stays within this distance of its path
 constexpr double kLeastStray_m = 0.015;  // the limit in narrow places
 constexpr double kSmallestFloor_m2 = 0.1;
-constexpr double kSurvey_m_per_s = 0.35, kSurvey_rad_per_s = 0.6;  // as the navigator drives
+constexpr double kSurvey_m_per_s = 0.35, kSurvey_rad_per_s = 0.6;  // the navigator's speeds
 
 bool keeps_clear(const FloorGrid& grid, const RoundedPath& path, double clearance_m) {
   for (double s = 0; s < path.length_m(); s += 0.5 * grid.resolution_m)
@@ -29,8 +29,8 @@ bool keeps_clear(const FloorGrid& grid, const RoundedPath& path, double clearanc
   return true;
 }
 
-/// Returns the path with extra points near each corner, so that its arc is at most `cut_m` long on
-/// either side (RoundedPath cuts a corner by at most half a leg).
+/// Returns the path with extra points near each corner, so that the arc there reaches at most
+/// `cut_m` to either side of it (RoundedPath cuts a corner by at most half a leg).
 std::vector<Vector2d> narrowed(const std::vector<Vector2d>& way, double cut_m) {
   std::vector<Vector2d> result{way.front()};
   for (std::size_t i = 1; i < way.size(); ++i) {
@@ -51,7 +51,7 @@ std::optional<std::vector<Vector2d>> drivable_way(const FloorGrid& grid, const V
   for (const double stray_m : {kStray_m, kLeastStray_m}) {
     const auto way = plan_way(grid, from_m, to_m, radius_m + stray_m);
     if (!way) continue;
-    // The ends may be nearer to obstacles than a path should be: they are the tour's own.
+    // The tour prescribes the ends, which may be closer to obstacles than a path should be.
     for (const double cut_m : {1.0, 0.2, 0.1}) {
       const auto rounded = cut_m >= 1.0 ? *way : narrowed(*way, cut_m);
       if (way->size() < 3 ||
@@ -112,8 +112,8 @@ Tour planned(const Scene& scene, const Robot& robot, const Tour& tour) {
       if (!way) {
         const std::string outside = outside_rooms(scene, goal.position_m);
         throw InputError(fmt::format(
-            "{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached{}: no way from [{:.2f}, {:.2f}] "
-            "has room for a robot of {:.2f} m radius",
+            "{}: waypoint {}: [{:.2f}, {:.2f}] cannot be reached{}: no path from [{:.2f}, {:.2f}] "
+            "is wide enough for a robot of {:.2f} m radius",
             file_and_line(tour.file, goal.line), i + 1, goal.position_m.x(), goal.position_m.y(),
             !outside.empty()
                 ? outside

@@ -24,8 +24,8 @@ using namespace by_hand;
 
 enum Stream : std::uint64_t { kPlaces, kBouts, kGaze, kRoll, kHeight, kBody, kHands, kTremor };
 
-/// The optical frame (z forward, x right, y down) of a camera that looks along yaw (from world x),
-/// pitched down, rolled clockwise.
+/// Orientation of the optical frame (z forward, x right, y down) of a camera with this yaw (from
+/// world x), pitched down and rolled clockwise.
 Eigen::Matrix3d looking(double yaw_rad, double pitch_rad, double roll_rad) {
   Eigen::Matrix3d body_from_optical;
   body_from_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -47,7 +47,7 @@ void validate(const HandheldConfig& config) {
   const auto check = [](const char* field, double value, double low, double high) {
     if (!(value >= low && value <= high))
       throw InputError(
-          fmt::format("hand-held motion: {}: {} is outside {} to {}", field, value, low, high));
+          fmt::format("handheld motion: {}: {} is outside {} to {}", field, value, low, high));
   };
   if (config.frames) check("frames", static_cast<double>(*config.frames), 30, 1e5);
   check("height_m", config.height_m, 0.3, kHead_m);

@@ -13,22 +13,22 @@
 
 namespace mh {
 
-/// A moment in which the base began to touch something.
+/// The base began to touch something.
 struct Bump {
   double time_s = 0;
-  /// Speed of the robot toward what it touches; at most the speed from its wheels, so that a robot
-  /// that is shoved against a wall does not count as having driven there.
+  /// Speed of the robot toward what it touches; at most the speed that its wheels gave it, so that
+  /// a robot that is shoved against a wall does not count as having driven there.
   double speed_m_per_s = 0;
   InstanceId instance = 0;
 };
 
-/// A robot's base in a scene that obeys velocity commands, one physics step after another: what
-/// command scripts and the Simulation have in common. Velocity, acceleration, jerk and rim speed
-/// stay within the robot's limits, whatever is commanded.
+/// The base of a robot in a scene, which obeys velocity commands one physics step after another:
+/// what command scripts and the Simulation have in common. Velocity, acceleration, jerk and rim
+/// speed stay within the robot's limits, whatever is commanded.
 class CommandedBase {
  public:
-  /// @param reflex  whether the external-collision reflex is awake
-  /// @throws InputError if the robot has no reflex to be awake.
+  /// @param reflex  whether the external-collision reflex is active
+  /// @throws InputError if `reflex` is set but the robot has none.
   CommandedBase(const Scene& scene, const Robot& robot, const Eigen::Vector2d& start_m,
                 double start_heading_rad, bool reflex);
 

@@ -45,7 +45,7 @@ void require_obeyed(const CommandScript& script, const Robot& robot) {
         fmt::format("{}: robot '{}' {}", file_and_line(script.file, line), robot.name, what));
   };
   if (script.reflex == true && !has_reflex(robot))
-    refuse(0, "has no reflex to be awake (its file: equipment.collision_reflex)");
+    refuse(0, "has no reflex to enable (its file: equipment.collision_reflex)");
   for (const VelocityCommand& command : script.commands) {
     if (command.left_m_per_s != 0 && robot.differential() != nullptr)
       refuse(command.line, fmt::format("has a differential drive: it cannot go sideways "

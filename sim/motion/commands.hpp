@@ -16,12 +16,12 @@ namespace mh {
 struct VelocityCommand {
   double duration_s = 0;
   double forward_m_per_s = 0, left_m_per_s = 0, turn_rad_per_s = 0;
-  // nullopt: as before; initially 0.
+  // nullopt: unchanged; initially 0.
   std::optional<double> head_yaw_rad = {}, head_pitch_rad = {};
   int line = 0;  ///< in the script's file, for messages; 0 = none
 };
 
-/// A script of a robot steered by hand.
+/// A script of velocity commands for a robot.
 struct CommandScript {
   std::string name;
   std::filesystem::path file;  ///< its source, for messages
@@ -44,13 +44,13 @@ struct CommandedDrive {
   double reflex_time_s = 0;  ///< spent below the commanded speed because something was near
 };
 
-/// Drives the robot by the script, with physics: velocity, acceleration, jerk and wheel rim speed
+/// Drives the robot as scripted, with physics: velocity, acceleration, jerk and wheel rim speed
 /// stay within its limits, the head's joints within theirs. Unlike a tour, a script has no
 /// destination: if something is in the way, the robot stops before it (reflex) or against it.
 /// @param others  moving obstacles
 /// @throws InputError, naming file and line, if the start is inside something, a head angle is out
-/// of the joint's range, or the script needs something that the robot lacks: a head, a reflex,
-/// sideways motion of a differential base.
+/// of the joint's range, or the script needs something that the robot lacks: a head, a reflex, or
+/// sideways motion (a differential base has none).
 CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript& script,
                      const std::vector<MovingObstacle>& others = {});
 

@@ -18,11 +18,12 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRounding_rad = 1e-9;  // the base faces its way: only rounding is skipped
-// Along and across share one limit (0.7^2 + 0.7^2 < 1), and smoothing the way adds to both.
+constexpr double kRounding_rad = 1e-9;  // the base faces its path: skips only rounding errors
+// Tangential and lateral acceleration share one limit (0.7^2 + 0.7^2 < 1), and smoothing the path
+// adds to both.
 constexpr double kShare = 0.7;
 constexpr double kRimShare = 0.98;  // the rest is left to the controller
-constexpr double kMargin = 1.005;   // of slowing down, so that few rounds suffice
+constexpr double kMargin = 1.005;   // extra slowdown per round, so that few rounds suffice
 constexpr int kRounds = 20;
 
 double shortest_rad(double angle_rad) {
@@ -32,12 +33,13 @@ double direction_rad(const Vector2d& v) {
   return std::atan2(v.y(), v.x());
 }
 
-/// How far the outermost wheel is from the middle, to a side.
+/// Lateral distance of the outermost wheel from the middle.
 double reach_m(const WheelBase& wheels) {
   return rim_speeds_m_per_s(wheels, twist_of(wheels, 0, 1)).cwiseAbs().maxCoeff();
 }
 
-/// The factor by which a stretch must be slowed down to keep the limits; at most 1: as it is.
+/// The factor by which a stretch must be slowed down to keep the limits; a factor of at most 1
+/// means no change.
 double slowness(const Stretch& stretch, const BaseLimits& limits, const WheelBase& wheels,
                 double step_s) {
   const auto n = static_cast<long>(stretch.position_m.size());
@@ -176,14 +178,14 @@ class DifferentialPlanner {
 
   /// Adds a stretch along one coordinate (distance or angle) that begins at rest at 0, smoothed to
   /// limit its jerk, as slow as the limits require.
-  /// @param profile_at the coordinate over time, if driven more slowly by this factor
+  /// @param profile_at the coordinate over time when driven more slowly by the given factor
   void add(const std::function<std::vector<double>(double)>& profile_at,
            const std::optional<double>& jerk, const PoseAt& pose_at,
            const WaypointAt& waypoint_at) {
     Stretch stretch;
     double slow = 1;
     for (int round = 0; round < kRounds; ++round) {
-      Stretch coordinate;  // as a straight line, which smoothed() keeps within the jerk
+      Stretch coordinate;  // as a straight line, which smoothed() keeps within the jerk limit
       for (int i = 0; i < 3; ++i) coordinate.position_m.emplace_back(0, 0);
       for (const double value : profile_at(slow)) coordinate.position_m.emplace_back(value, 0);
       coordinate.heading_rad.assign(coordinate.position_m.size(), 0);
@@ -206,7 +208,7 @@ class DifferentialPlanner {
     stretches_.push_back(std::move(stretch));
   }
 
-  Tour tour_;  ///< with the middle's start
+  Tour tour_;  ///< starts at the base's middle
   BaseLimits limits_, planned_;
   double step_s_;
   const WheelBase& wheels_;

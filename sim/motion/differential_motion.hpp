@@ -7,10 +7,10 @@
 
 namespace mh {
 
-/// reference_motion() of a differential base. It turns in place and drives along paths of eased
-/// bends, facing its way. Distance and angle are smoothed as functions of time, so that the base
-/// never leaves its path and never moves sideways; a stretch that would exceed a limit in its bends
-/// is driven more slowly as a whole.
+/// reference_motion() for a differential base. The base turns in place and drives along paths with
+/// eased bends, facing its direction of travel. Distance and angle are smoothed as functions of
+/// time, so that the base never leaves its path and never moves sideways; a stretch that would
+/// exceed a limit in its bends is driven more slowly as a whole.
 std::vector<Stretch> differential_motion(const Tour& tour, const BaseLimits& limits, double step_s,
                                          const WheelBase& wheels);
 

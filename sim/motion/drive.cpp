@@ -77,7 +77,7 @@ class Driver {
                     state_.position_m.y(), against(scene_, last_touched_), goal_m.x(), goal_m.y()));
   }
 
-  /// Drives a stretch, waits until its end is reached, and returns that goal.
+  /// Drives a stretch, waits until its end is reached, and returns the end as a goal.
   Goal follow(const Stretch& stretch) {
     const auto goal = [&](std::size_t i) {
       return Goal{stretch.position_m[i], stretch.heading_rad[i]};
@@ -115,9 +115,9 @@ class Driver {
     return motors_.commanded(velocity.velocity_m_per_s, velocity.turn_rad_per_s, middle_rad);
   }
 
-  /// The correction that brings the base back to its reference: straight there, or (a differential
-  /// base) ahead, back, and by steering, as in Kanayama et al., "A stable tracking control method
-  /// for an autonomous mobile robot", ICRA 1990.
+  /// The correction that brings the base back to its reference: directly or, for a differential
+  /// base, by driving ahead or back and by steering, as in Kanayama et al., "A stable tracking
+  /// control method for an autonomous mobile robot", ICRA 1990.
   JerkLimiter::Velocity toward(const Goal& reference, const JerkLimiter::Velocity& plan) const {
     const double turn_rad = reference.heading_rad - heading_rad_;
     Eigen::Vector2d error_m = reference.position_m - state_.position_m;

@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Space that a person takes, less in narrow places.
+// Radius of the space that a person takes up, less in narrow places.
 constexpr std::array kBody_m = {0.26, 0.20, 0.15, 0.11};
 constexpr double kSmallestStanding_m2 = 0.25;
-constexpr double kEyeBand_m = 0.12;  // what is this near the camera's height blocks its view
+constexpr double kEyeBand_m = 0.12;  // anything this close to the camera's height blocks its view
 
 /// The path of the feet: a closed round trip through places all over the floor, walked repeatedly.
 class Way {

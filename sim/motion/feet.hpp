@@ -12,7 +12,7 @@
 
 namespace mh::by_hand {
 
-inline constexpr double kHead_m = 1.9;  ///< what hangs higher is not in the way
+inline constexpr double kHead_m = 1.9;  ///< anything that hangs higher is not in the way
 
 /// Where a person can walk, with as much clearance as the place allows.
 struct Ground {
@@ -32,8 +32,8 @@ struct Feet {
   std::vector<Eigen::Vector2d> at_m;
   std::vector<double> speed_m_per_s;
 };
-/// @param bouts   stream for their lengths and speeds
-/// @param places  seed of the visited places
+/// @param bouts   random stream for the lengths and speeds of the bouts of walking
+/// @param places  seed for the visited places
 Feet feet_on(const Ground& ground, const HandheldConfig& config, std::size_t frames, double rate_hz,
              RandomStream bouts, std::uint64_t places);
 

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3f;
 
-constexpr double kFloorReach_m = 0.1;  // floor is extended this far: closes gaps of twice it
+constexpr double kFloorReach_m = 0.1;  // floor is extended this far: closes gaps of twice that
 constexpr double kLevel = 0.85;        // cosine of the slope up to which a face is floor
 constexpr int kMostCells = 4096;
 
@@ -59,8 +59,8 @@ Bounds floor_bounds(const Scene& scene) {
   }
   if (!(floor.low.array() < floor.high.array()).all())
     throw InputError(
-        fmt::format("{}: has no level floor to stand on: if there is one, tell its "
-                    "height by floor_z_m (--floor-z)",
+        fmt::format("{}: has no level floor to stand on: if there is one, set its height with "
+                    "floor_z_m (--floor-z)",
                     scene.name));
   for (const Room& room : scene.rooms)
     for (const Vector2d& corner : room.polygon_m) rooms.include(corner);

@@ -21,10 +21,11 @@ struct FloorGridConfig {
 /// touches) and every face that is level and near z = 0 as floor; gaps of up to 0.2 m in the floor,
 /// as in scanned meshes, are closed. If the scene has rooms, nothing beyond their bounds is floor.
 /// @pre the scene's floor is z = 0 (LevelScene)
-/// @throws InputError if there is no floor, or it is larger than 4096 cells either way.
+/// @throws InputError if there is no floor, or it is more than 4096 cells long or wide.
 FloorGrid make_floor_grid(const Scene& scene, const FloorGridConfig& config = {});
 
-/// Returns " against NAME" or "": the object nearest to a place within reach, for messages.
+/// Returns " against NAME", naming the object nearest to a place within reach, for messages; "" if
+/// there is none.
 std::string occupant_near(const FloorGrid& grid, const Scene& scene, const Eigen::Vector2d& place_m,
                           double reach_m);
 

@@ -16,14 +16,15 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kAhead_s = 1.5;  // gaze targets are chosen for the position at the end of the turn
-constexpr double kFastTurn_rad = 60 * kDegree;  // a fast turn goes to a distant direction
+constexpr double kFastTurn_rad = 60 * kDegree;  // a fast turn goes at least this far
 
-/// A view that ends nearer than this shows little: weight by the square of the distance.
+/// Weight of a view that ends at this distance: a near end shows little, so that below 1.5 m the
+/// weight falls with the square of the distance.
 double room_before(double d_m) {
   return std::min(1.0, d_m * d_m / (1.5 * 1.5));
 }
 
-/// How well something can be scanned from that distance: guides for scanning rooms by hand
+/// How well something can be scanned from that distance: guides to handheld scanning of rooms
 /// recommend 1.5 to 3 m (CubiCasa, "Best scanning practices").
 double from_here(double d_m) {
   return room_before(d_m) * std::clamp((6.0 - d_m) / 3.0, 0.15, 1.0);
@@ -61,7 +62,8 @@ class Gaze {
     for (int i = 0; i < kRays; ++i)
       for (int k = -half_view_rays_; k <= half_view_rays_; ++k)
         worth_of_view[index(i)] += worth_of_ray[index(i + k)];
-    // Relative to the best available: however much was seen, the person looks at the rest.
+    // Relative to the best available: however much has already been seen, the person looks at the
+    // rest.
     const double most = std::max(1e-9, std::ranges::max(worth_of_view));
 
     double best_worth = -1e9;
@@ -139,7 +141,7 @@ class Gaze {
     return (look_of(sight.id).bare || sight.id == 0 ? kBareWorth : 1.0) * from_here(sight.d_m) /
            (1.0 + (seen == seen_.end() ? 0 : seen->second));
   }
-  /// 0 if the view ends at once, regardless of what is below.
+  /// Worth of a direction: 0 if the view ends right away, regardless of what is below eye level.
   double worth(const std::vector<Sight>& ray) const {
     double sum = 0;
     for (const Sight& sight : ray) sum += worth(sight);

@@ -18,8 +18,8 @@ namespace mh {
 /// turn nor pause is passed without stopping; its corner is rounded by an arc (PathConfig::cut_m).
 struct Waypoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-  // Where the base faces on the way: look_at_m if given; else it turns over the leg to reach
-  // heading_rad at arrival, if given; else it faces the direction of travel.
+  // Where the base faces while driving: toward look_at_m, if given; else it turns along the leg to
+  // reach heading_rad at arrival, if given; else it faces the direction of travel.
   std::optional<double> heading_rad = {};
   std::optional<Eigen::Vector2d> look_at_m = {};
   double turn_rad = 0.0;  ///< turned in place at arrival, counter-clockwise; may exceed a full turn
@@ -65,16 +65,17 @@ struct DrivenPath {
   double max_penetration_m = 0.0;
   double contact_time_s = 0.0;  ///< time spent touching something
   DrivePeaks peaks;             ///< all 0 if the camera was not moved by physics
-  /// How the poses of a file were moved, for the user; empty: they were not, or come from no file.
+  /// How the poses of a file were moved, for the user; empty if they were not moved or come from no
+  /// file.
   std::string moved = {};
 };
 
 /// Drives the robot through the scene with Bullet, along the reference_motion of the tour, limited
 /// in velocity, acceleration and (if the robot has such a limit) jerk, and samples the camera.
 /// Stamps are round(i * 1e9 / rate). The base comes from Bullet's body, the camera from the base
-/// and base_from_camera; nothing is added. Paths are planned first if the tour requests it.
-/// @param others  moving obstacles; one that runs into the robot pushes it, and a tour does not
-///                wait
+/// and base_from_camera; nothing is added. Paths are planned first if the tour requests that.
+/// @param others  moving obstacles; one that runs into the robot pushes it; a tour does not wait
+///                for obstacles
 /// @throws InputError naming tour, waypoint, place and the obstacle if a waypoint is not reached,
 /// or if the start pose is inside something or outside the rooms.
 DrivenPath drive(const Scene& scene, const Robot& robot, const Tour& tour,

@@ -9,11 +9,11 @@
 namespace mh {
 
 /// Converts between the base's velocity over the floor and that of its motors
-/// (JerkLimiter::Velocity): the same for an omnidirectional base, the forward speed of its middle
-/// for a differential one.
+/// (JerkLimiter::Velocity): for an omnidirectional base they are the same; for a differential one,
+/// the motors' is the forward speed of its middle.
 class Motors {
  public:
-  /// @param differential  its wheels, outliving this; null for an omnidirectional base
+  /// @param differential  its wheels, which must outlive this; null for an omnidirectional base
   explicit Motors(const WheelBase* differential) : differential_(differential) {}
 
   /// The motors' velocity for a commanded velocity over the floor (world).
@@ -28,7 +28,7 @@ class Motors {
   JerkLimiter::Velocity measured(const BaseState& state) const {
     return commanded(state.velocity_m_per_s, state.turn_rad_per_s, state.heading_rad);
   }
-  /// The base's mean velocity during a step that begins with that heading.
+  /// The base's mean velocity during a step that begins at this heading.
   BaseCommand over_floor(const JerkLimiter::Velocity& motors, double heading_rad,
                          double step_s) const {
     const double turn = motors.turn_rad_per_s;

@@ -18,7 +18,8 @@ double heading_rad(const Eigen::Vector2d& v) {
   return std::atan2(v.y(), v.x());
 }
 
-/// Share of the turn done after a share of an eased bend: rises from 0 to 1, at rest at both ends.
+/// Share of the turn completed after the share u of an eased bend: rises smoothly from 0 to 1, flat
+/// at both ends.
 double eased(double u) {
   return u * u * u * (10 + u * (6 * u - 15));
 }
@@ -61,7 +62,7 @@ RoundedPath::RoundedPath(std::span<const Eigen::Vector2d> corners_m, const PathC
         straight ? corners_m[i] : corners_m[i] - cut_m * in.normalized();
     add(from, heading_rad(in), 0, (bow_start - from).norm());
     if (config.eased && !straight) {
-      // By symmetry the bend leads along the bisector, from leg to leg.
+      // By symmetry, the chord of the bend, from leg to leg, bisects the turn.
       const double chord_m = 2 * cut_m * std::cos(0.5 * turn_rad);
       const double bend_m = chord_m / along_bend(turn_rad, 1).norm();
       corner_s_m_.push_back(length_m_ + 0.5 * bend_m);
@@ -97,7 +98,7 @@ RoundedPath::Bend RoundedPath::bend_at(double s_m) const {
   if (!(s_m >= 0 && s_m <= length_m_)) return {};
   const Piece& piece = piece_at(s_m);
   if (piece.bend_rad == 0) return {.curvature_per_m = std::abs(piece.curvature_per_m)};
-  // Where u = 1/2 and where u = 1/2 - sqrt(3)/6.
+  // The largest values: at u = 1/2, at u = 1/2 - sqrt(3)/6, and at the ends.
   const double per_m = std::abs(piece.bend_rad) / piece.bend_length_m;
   return {.curvature_per_m = 1.875 * per_m,
           .change_per_m2 = 10 / std::sqrt(3.0) * per_m / piece.bend_length_m,

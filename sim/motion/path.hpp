@@ -11,7 +11,7 @@ namespace mh {
 
 struct PathConfig {
   /// An arc starts and ends at most this far from its corner, m; so a right angle is rounded with
-  /// this radius and passes the corner at 0.41 of it.
+  /// this radius and passes the corner at 0.41 of that distance.
   double cut_m = 0.45;
   /// The curvature grows and shrinks smoothly along a bend instead of jumping at its ends, as
   /// required by a base that turns only along its path. Such a bend lies between the corner and its
@@ -64,7 +64,7 @@ struct SpeedLimits {
   double velocity_m_per_s = 0;
   double along_m_per_s2 = 0;   ///< speeding up and slowing down
   double across_m_per_s2 = 0;  ///< v^2 * curvature
-  /// The fastest through an arc or bend, m/s; null: only the above limits it.
+  /// Highest speed through an arc or bend, m/s; null: only the limits above apply.
   std::function<double(const RoundedPath::Bend&)> through = {};
 };
 
@@ -75,12 +75,12 @@ class SpeedProfile {
   SpeedProfile(const RoundedPath& path, const SpeedLimits& limits);
   double at(double s_m) const;  ///< m/s
   double duration_s() const { return time_s_.back(); }
-  /// Arc length reached at a time; the end's from then on.
+  /// Arc length reached at a time; constant once the end is reached.
   double s_at(double time_s) const;
 
  private:
   double spacing_m_ = 0;
-  // At samples this far apart: v^2, which changes linearly under constant acceleration, and the
+  // At samples spacing_m_ apart: v^2, which changes linearly under constant acceleration, and the
   // time.
   std::vector<double> squared_, time_s_;
 };

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kSharpTurn_rad = 2.1;  // beyond 120 degrees a corner is a stop, not an arc
-constexpr double kLookAhead_m = 0.7;    // on the way, the robot faces this far ahead
-constexpr double kFaceFirst_rad = 0.8;  // if more than this off the path: turn before driving
+constexpr double kLookAhead_m = 0.7;    // while driving, the robot faces the path this far ahead
+constexpr double kFaceFirst_rad = 0.8;  // if it faces farther off its path: turns before driving
 constexpr double kHeadingGain_per_s = 3.0;
 constexpr double kNoTurn_rad = 0.005;  // a smaller turn is skipped
 // Shares of the limits: the rest is left to the controller that keeps the base on its reference,
@@ -48,7 +48,7 @@ class Samples {
         std::clamp(i, 0L, static_cast<long>(values_.size()) - 1))];
   }
 
-  /// Steps of the shortest moving average within the jerk limit.
+  /// Length (steps) of the shortest moving average that keeps the jerk limit.
   long window(double jerk, double step_s) const {
     const long n = static_cast<long>(values_.size());
     std::vector<T> acceleration;  // 0 beyond the ends
@@ -66,7 +66,7 @@ class Samples {
       return true;
     };
     long steps = 1;
-    while (!keeps(steps)) ++steps;  // ends at 2 max|a| / (jerk * step) at the latest
+    while (!keeps(steps)) ++steps;  // ends by 2 max|a| / (jerk * step)
     return steps;
   }
 
@@ -86,7 +86,7 @@ class Samples {
 };
 
 /// The turn rate that brings a heading error to zero without overshoot: proportional near the goal;
-/// farther away, the rate from which 80 % of the allowed deceleration just suffices.
+/// farther away, the rate at which 80 % of the allowed deceleration just suffices to stop.
 double turn_rate(double error_rad, const BaseLimits& limits) {
   const double brake = 0.8 * limits.max_turn_acceleration_rad_per_s2, k = kHeadingGain_per_s;
   const double near_rad = brake / (k * k), size = std::abs(error_rad);
@@ -138,7 +138,7 @@ class Planner {
 
   void begin(std::size_t waypoint) {
     stretches_.emplace_back();
-    // At rest long enough that its differences do not reach into the previous stretch.
+    // Rests for long enough that differences of poses do not reach into the previous stretch.
     for (int i = 0; i < 3; ++i) note(waypoint);
   }
   void note(std::size_t waypoint) {
@@ -186,7 +186,7 @@ class Planner {
   }
 
   /// Heading error on the leg to a waypoint.
-  /// @param along driven share of the leg
+  /// @param along share of the leg that has been driven
   double heading_error(const Waypoint& to, const RoundedPath& path, double s_m,
                        double leg_heading_rad, double along) const {
     if (to.heading_rad) {

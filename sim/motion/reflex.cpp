@@ -28,7 +28,7 @@ Reflex::Reflex(const Scene& scene, const Robot& robot)
       radius_m_(robot.footprint_radius_m),
       zone_(*robot.equipment->reflex),
       brake_m_per_s2_(kBraking * robot.limits.max_acceleration_m_per_s2),
-      // The distance at which the fastest robot has to slow down.
+      // The distance at which the robot has to slow down from its top speed.
       reach_m_(radius_m_ + zone_.aside_m + zone_.ahead_m + soft_m() +
                robot.limits.max_velocity_m_per_s * robot.limits.max_velocity_m_per_s /
                    (2 * brake_m_per_s2_)) {}
@@ -49,13 +49,13 @@ double Reflex::allowed_m_per_s(const Vector2d& place_m, const Vector2d& directio
   for (const auto& [p, size_m] : others)
     free_m = std::min(free_m, way_to_disc_m(ahead_and_aside(p), size_m));
   const double left_m = std::max(0.0, free_m - zone_.ahead_m);
-  // Braking at a constant rate would end in a jerk: its end is faded out.
+  // Braking at a constant rate would end with a jerk, so its end is faded out.
   if (left_m < soft_m()) return kFade_per_s * left_m;
   return std::sqrt(2 * brake_m_per_s2_ * (left_m - 0.5 * soft_m()));
 }
 
-/// On the last stretch, speed is kFade_per_s times the remaining distance; here both rules brake
-/// equally.
+/// Length of the last stretch, on which the speed is kFade_per_s times the remaining distance;
+/// where it begins, both rules brake equally.
 double Reflex::soft_m() const {
   return brake_m_per_s2_ / (kFade_per_s * kFade_per_s);
 }
@@ -66,8 +66,8 @@ double Reflex::way_to_disc_m(const Vector2d& middle, double size_m) const {
   return way_to_point_m(middle, reach_m);
 }
 
-/// The same for the part of the edge from a to b that is ahead of the base's center and not too far
-/// to the side. All are meters ahead and to the left of the base's center.
+/// The same as way_to_point_m(), for the part of the edge from a to b that is ahead of the base's
+/// center and not too far to the side. Coordinates are meters ahead and to the left of that center.
 double Reflex::way_to_edge_m(const Vector2d& a, const Vector2d& b) const {
   const Vector2d d = b - a;
   double from = 0, to = 1;

@@ -35,8 +35,8 @@ Trajectory at_rate(const Trajectory& recorded, double rate_hz) {
   }
 }
 
-/// Moves the recording's frame so that its first camera is at x, y and everything is rotated by
-/// `turn` about the vertical axis through it.
+/// Returns world_from_recording, which puts the first camera at (at.x, at.y) and rotates everything
+/// by at.z about the vertical axis through it.
 SE3 placing(const Vector3d& first_m, const Vector3d& at) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(at.z(), Vector3d::UnitZ()).toRotationMatrix();
   const Vector3d pivot(first_m.x(), first_m.y(), 0);
@@ -79,7 +79,7 @@ DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& re
     world_from_recording = placing(first_m, *config.at);
     if (!keeps_clear(grid, path, *world_from_recording, config.room_m))
       throw InputError(fmt::format(
-          "{}: begun at [{:.2f}, {:.2f}] and turned by {:.0f} deg it would lead through something",
+          "{}: started at [{:.2f}, {:.2f}] and turned by {:.0f} deg, it would run into something",
           name, config.at->x(), config.at->y(), config.at->z() * 180 / M_PI));
   }
   const RandomStream draw = RandomStream(config.seed).fork(0x7265706c);
@@ -93,8 +93,8 @@ DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& re
   }
   if (!world_from_recording)
     throw InputError(
-        fmt::format("{}: fits nowhere into {}: {} placings were tried and each leads within {:.2f} "
-                    "m of something",
+        fmt::format("{}: fits nowhere in {}: {} placements were tried, and each passes within "
+                    "{:.2f} m of something",
                     name, scene.name, kPlacings, config.room_m));
 
   DrivenPath driven;

@@ -21,7 +21,8 @@ struct ReplayConfig {
 
 /// Moves a camera through a scene along a recorded trajectory (z up, as in TUM's), sampled at the
 /// camera's rate, translated and rotated about z as a whole; heights stay. Between two poses the
-/// camera moves by a constant twist. Stamps start at 0. `moved` says where the poses went.
+/// camera moves by a constant twist. Stamps start at 0. DrivenPath::moved describes where the poses
+/// were moved.
 /// @param name  of the trajectory, for messages
 /// @throws InputError if the trajectory has fewer than two poses, or no placement in the scene is
 /// clear of everything.

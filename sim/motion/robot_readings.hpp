@@ -13,7 +13,8 @@ inline constexpr std::array<const char*, 5> kReadingFiles{"lasers.csv", "sonars.
                                                           "imu.csv", "odometry.tum"};
 
 /// Writes a robot's sensor readings: odometry.tum (if it has wheels) and, as CSV with a header
-/// line, lasers.csv, sonars.csv (m, 0 = nothing in range), bumpers.csv and imu.csv (if it has one).
+/// line, lasers.csv, sonars.csv (m, 0 = nothing in range), bumpers.csv and imu.csv (if it has an
+/// IMU).
 void write_readings(const std::filesystem::path& folder, const Robot& robot,
                     const RobotReadings& readings);
 

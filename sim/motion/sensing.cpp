@@ -70,7 +70,7 @@ const Equipment& equipment_with_lasers(const Robot& robot) {
 }
 
 RandomStream laser_noise(std::uint64_t seed, std::size_t tick) {
-  constexpr std::uint64_t kLasers = ~0ULL;  // a frame takes the number of its tick
+  constexpr std::uint64_t kLasers = ~0ULL;  // frames use their tick's number
   return RandomStream(seed).fork(kLasers).fork(tick);
 }
 

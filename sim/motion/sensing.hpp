@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// Readings of a robot's own sensors at one moment. Lasers and sonars measure everything between 3
-/// cm and the top of the robot's head, exactly except for range, resolution and the lasers' noise.
+/// Readings of a robot's own sensors at one time. Lasers and sonars measure everything between 3 cm
+/// and the top of the robot's head, exactly, apart from range, resolution and the lasers' noise.
 struct RobotReading {
   Stamp stamp_ns = 0;
   std::vector<std::vector<float>> lasers_m;  ///< by laser, right to left; 0 = nothing in range
@@ -34,10 +34,10 @@ const Equipment& equipment_with_lasers(const Robot& robot);
 /// @param tick  of the camera, since the drive began
 RandomStream laser_noise(std::uint64_t seed, std::size_t tick);
 /// What the lasers measure, by laser and ray, m; 0 = nothing in range.
-/// @param noise  of this moment
+/// @param noise  random stream for these scans
 std::vector<std::vector<float>> read_lasers(const PlanarWorld& world, const Equipment& equipment,
                                             const SE3& world_from_base, RandomStream noise);
-/// Lasers and sonars in the world as it is; the rest of the reading is left empty.
+/// Reads lasers and sonars in the world as it is now; the rest of the reading is left empty.
 RobotReading read_ranges(const PlanarWorld& world, const Equipment& equipment,
                          const SE3& world_from_base, RandomStream noise);
 /// Which bumpers a contact presses, by bumper.

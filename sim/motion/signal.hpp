@@ -9,8 +9,8 @@
 
 namespace mh::by_hand {
 
-/// A signal of given root mean square with its power spread evenly over a band: 16 sines of seeded
-/// frequency and phase.
+/// A signal of a given root mean square with its power spread evenly over a band: 16 sines of
+/// seeded frequency and phase.
 class BandNoise {
  public:
   BandNoise(RandomStream stream, double rms, double low_hz, double high_hz);
@@ -21,7 +21,7 @@ class BandNoise {
   double amplitude_ = 0;
 };
 
-/// Smooths by a Gaussian window; the end values are repeated.
+/// Smooths with a Gaussian window; the end values are repeated beyond the ends.
 std::vector<double> smoothed(const std::vector<double>& values, double sigma_frames);
 
 }  // namespace mh::by_hand

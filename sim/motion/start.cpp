@@ -46,7 +46,7 @@ std::string file_and_line(const std::filesystem::path& file, int line) {
 std::string outside_rooms(const Scene& scene, const Eigen::Vector2d& place_m) {
   const auto holds = [&](const Room& room) { return room.contains(place_m); };
   if (scene.rooms.empty() || std::ranges::any_of(scene.rooms, holds)) return "";
-  return ", as it lies in no room of " + scene.name;
+  return ", since it is in no room of " + scene.name;
 }
 
 std::string against(const Scene& scene, InstanceId id) {

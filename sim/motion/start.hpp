@@ -24,7 +24,7 @@ Start read_start(YamlReader& motion);
 /// "FILE:LINE", or "FILE" if the line is 0: the start of a message.
 std::string file_and_line(const std::filesystem::path& file, int line);
 
-/// ", as it lies in no room of SCENE", or "" if it is in a room or the scene has none.
+/// ", since it is in no room of SCENE", or "" if it is in a room or the scene has no rooms.
 std::string outside_rooms(const Scene& scene, const Eigen::Vector2d& place_m);
 
 /// " against NAME", or "" if there is no instance. An instance that is not in the scene is a moving

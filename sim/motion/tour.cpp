@@ -17,11 +17,11 @@ Waypoint read_waypoint(YamlReader yaml, const Eigen::Vector2d& before_m) {
   if (const auto heading = yaml.find("heading_deg"))
     waypoint.heading_rad = heading->as_double(-360.0, 360.0) * kDegree;
   if (const auto face = yaml.find("face")) {
-    if (waypoint.heading_rad) face->fail("stands beside heading_deg: only one can be had");
+    if (waypoint.heading_rad) face->fail("is given together with heading_deg: give only one");
     if (face->is_sequence())
       waypoint.look_at_m = read_place(*face);
     else if (face->as_string() != "travel")
-      face->fail("'" + face->as_string() + "' is neither 'travel' nor a place [x, y]");
+      face->fail("'" + face->as_string() + "' is neither 'travel' nor a position [x, y]");
   }
   waypoint.turn_rad = yaml.number_or("turn_deg", 0.0, -1080.0, 1080.0) * kDegree;
   waypoint.pause_s = yaml.number_or("pause_s", 0.0, 0.0, 600.0);

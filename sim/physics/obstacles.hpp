@@ -11,7 +11,7 @@
 namespace mh {
 
 /// Walls extend this far above and below the robot's middle, so that the shortest way out of any
-/// overlap is sideways, the only way a planar body can move.
+/// overlap is sideways, the only direction in which a planar body can move.
 inline constexpr float kOverhang_m = 1.0F;
 
 /// Triangles, the instance of each, and the shape built from them.

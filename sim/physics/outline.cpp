@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2f;
 
-/// An edge of one face, from the lesser end to the greater.
+/// An edge of one face, from its lexicographically lesser end to the greater.
 struct FaceEdge {
   std::array<float, 4> ends;  // ax, ay, bx, by
   std::uint32_t face = 0;

@@ -38,8 +38,8 @@ class OutlineContacts final : public btCollisionAlgorithm {
   }
 
  private:
-  static constexpr btScalar kReach_m = 0.005F;  // farther than one step moves
-  static constexpr btScalar kSameWay = 0.995F;  // 6 deg: of two such contacts, the deeper suffices
+  static constexpr btScalar kReach_m = 0.005F;  // more than the base moves in a step
+  static constexpr btScalar kSameWay = 0.995F;  // within 6 deg, the deeper of two contacts suffices
 
   struct Near {
     btScalar distance_m;

@@ -26,7 +26,7 @@ Eigen::Vector2d limited(const Eigen::Vector2d& v, double limit) {
 }
 
 /// The change of velocity of a base whose wheels roll only forward and backward: the motors' limits
-/// hold along its way, and across it the wheels' grip follows the command.
+/// apply along its heading; perpendicular to it, the wheels' grip follows the command.
 Eigen::Vector2d gripped_change(const BaseCommand& command, const BaseState& now,
                                double max_velocity_m_per_s, double max_change_m_per_s,
                                double step_s) {
@@ -116,8 +116,8 @@ struct PlanarWorld::Impl {
     robot->setLinearFactor(btVector3(1, 1, 0));
     robot->setAngularFactor(btVector3(0, 0, 1));
     robot->setActivationState(DISABLE_DEACTIVATION);
-    // A body that turns only about a vertical axis has no gyroscopic torque; computing that it is
-    // zero costs precision of the turn rate.
+    // A body that turns only about a vertical axis has no gyroscopic torque; computing that zero
+    // would cost the turn rate precision.
     robot->setFlags(0);
     world.addRigidBody(robot.get());
   }
@@ -180,7 +180,7 @@ struct PlanarWorld::Impl {
       const bool robot_is_first = manifold->getBody0() == robot.get();
       for (int k = 0; k < manifold->getNumContacts(); ++k) {
         const btManifoldPoint& point = manifold->getContactPoint(k);
-        // Distances are from before the step; what pushed during it has been reached.
+        // Distances are from before the step; what pushed during the step has been reached.
         const double now_m = point.getAppliedImpulse() > 0
                                  ? std::min<double>(point.getDistance(), 0)
                                  : point.getDistance();
@@ -281,7 +281,7 @@ void PlanarWorld::place(const Eigen::Vector2d& position_m, double heading_rad) {
   body.setLinearVelocity(btVector3(0, 0, 0));
   body.setAngularVelocity(btVector3(0, 0, 0));
   body.clearForces();
-  // Contacts of the old place would push in the new one.
+  // Contacts at the old place would still push at the new one.
   impl_->broadphase.getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
                                                                    &impl_->dispatcher);
 }

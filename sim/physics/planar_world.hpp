@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// Physics steps per second, at least.
+/// Minimum number of physics steps per second.
 inline constexpr double kStepRate_hz = 240.0;
 
 /// Pose and velocity of the base. World frame; heading measured from world x, in (-pi, pi].
@@ -54,11 +54,12 @@ inline constexpr double kTouch_m = 5e-4;
 BaseLimits commandable(BaseLimits limits);
 
 /// A robot's base in a scene, moved by Bullet: a rigid upright cylinder that slides on the floor
-/// and turns about its axis; walls and furniture stop it by their outline from above. It is driven
-/// by impulses limited by BaseLimits, so that its velocity and (except in contacts) acceleration
-/// never exceed them; those of a differential base ahead and back, since its wheels' grip, not its
-/// motors, holds it on its bend. What is entirely within the floor's roughness (3 cm) or above the
-/// robot's head is not an obstacle. Deterministic: the same steps give the same bits.
+/// and turns about its axis; it collides with the outlines of walls and furniture as seen from
+/// above. It is driven by impulses limited by BaseLimits, so that its velocity and (except in
+/// contacts) acceleration never exceed them. For a differential base, they limit only motion ahead
+/// and back, since in a bend the grip of the wheels, not the motors, provides the lateral
+/// acceleration. What is entirely within the floor's roughness (3 cm) or above the robot's head is
+/// not an obstacle. Deterministic: the same steps give the same bits.
 class PlanarWorld {
  public:
   /// @pre the scene's floor is z = 0 (LevelScene)

@@ -11,8 +11,8 @@ namespace mh {
 struct Agreement {
   std::int64_t pixels = 0;
   std::int64_t same_class = 0, same_instance = 0;
-  /// Pixels that show different instances at the same depth (to 1e-5 of it): two coplanar objects,
-  /// where either answer is right.
+  /// Pixels that show different instances at the same depth (relative difference up to 1e-5): two
+  /// coplanar objects, where either answer is right.
   std::int64_t ties = 0;
   std::int64_t same_color = 0;   ///< every channel within two gray levels
   std::int64_t smooth = 0;       ///< pixels outside silhouettes, see below

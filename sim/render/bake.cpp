@@ -25,7 +25,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-// Incremented whenever the same scene and config result in different light.
+// Incremented whenever the same scene and config would result in different light.
 constexpr std::uint64_t kBakeVersion = 2;
 constexpr int kRaysAtOnce = 16;
 constexpr int kVerticesPerJob = 1024;
@@ -35,8 +35,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kMaxAlbedo = 0.95F;
 // A vertex is inside something if more than this share of its rays hit back faces.
 constexpr float kInsideShare = 0.5F;
-// A side with less than this share of the scene's mean light, and of the other side's, is dark:
-// inside a closed box that is turned inside out.
+// A side with less than this share of the scene's mean light, and of the other side's, is dark,
+// like the inside of a closed box that is turned inside out.
 constexpr float kDarkShare = 0.02F;
 /// Evenly spread points of the unit disc (Vogel's sunflower), rotated by a random angle and shifted
 /// by a random share of a step: the same low-discrepancy pattern at each vertex, but no two
@@ -242,14 +242,14 @@ class Baker {
                            Vector3f a, b;
                            make_frame(to_lamp.normalized(), a, b);
                            way = to_lamp + lamp.radius_m * (p.x() * a + p.y() * b);
-                           end = 0.999F;  // what is at the lamp does not shade its light
+                           end = 0.999F;  // what is at the lamp does not block its light
                            const float square = way.squaredNorm();
                            return normal.dot(way) / std::sqrt(square) / std::max(square, nearest);
                          });
   }
 
-  /// Mean of what `aim` returns for each point of the shadow pattern, 0 if something opaque is in
-  /// the way or the source is behind the surface.
+  /// Mean of what `aim` returns for the points of the shadow pattern; a point counts as 0 if
+  /// something opaque is in the way or the source is behind the surface.
   template <class Aim>
   float shadowed_mean(std::size_t v, float side, const Turn& turn, const Aim& aim) const {
     float sum = 0.0F;

@@ -20,8 +20,9 @@ struct BakeConfig {
 /// Receives the share of the rays that have been traced, in [0, 1].
 using BakeWatch = std::function<void(double)>;
 
-/// Digest (xxh3-64) of everything that determines bake_light's result for a scene: its code's
-/// version and the config without `threads`. With the scene's own digest, the key of a baked scene.
+/// Digest (xxh3-64) of everything that determines bake_light's result for a scene: the code's
+/// version and the config without `threads`. Together with the scene's own digest, it is the key of
+/// a baked scene.
 std::uint64_t digest(const BakeConfig& config);
 
 /// Computes Scene::light (irradiance / pi at every vertex, linear RGB) by ray tracing: sun through
@@ -30,8 +31,8 @@ std::uint64_t digest(const BakeConfig& config);
 ///
 /// How vertices are handled in real-world scenes:
 /// - Light is that of the side that the faces' normals point to. Only if that side gets almost none
-///   (a closed box turned inside out), the other side's is used. "The brighter side" would let the
-///   sky shine through every thin outer wall.
+///   (a closed box turned inside out) is the other side's used. Always using the brighter side
+///   would let the sky shine through every thin outer wall.
 /// - Light is sampled all over the nearer half of the vertex's faces, so that a vertex in a corner
 ///   is not sampled inside the neighboring wall, and the edge of a shadow becomes a ramp as wide as
 ///   the faces instead of a staircase.
@@ -49,7 +50,7 @@ void bake_light(Scene& scene, const BakeConfig& config = {}, const BakeWatch& wa
 /// Returns the exposure (see RenderConfig) that maps the median of visible radiance to
 /// `median_radiance` (linear; 0.2 is sRGB 124). Measured with rays from places in the rooms at the
 /// height of a robot's camera, up to 34 deg up and down, or from anywhere in a scene without a
-/// plan. 1 for an empty or black scene.
+/// floor plan. 1 for an empty or black scene.
 float suggest_exposure(const Scene& scene, float median_radiance = 0.2F);
 
 }  // namespace mh

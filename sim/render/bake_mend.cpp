@@ -8,9 +8,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Light is averaged only between vertices whose normals differ by less than 25 deg, and with less
-// weight the more their light differs beyond this share, the size of the noise: contact shadows
-// stay.
+// Light is averaged only between vertices whose normals differ by less than 25 deg, with weights
+// that fall once their light differs by more than kNoise, the relative size of the noise, so that
+// contact shadows stay.
 constexpr float kSameSurface = 0.9F;
 constexpr float kNoise = 0.1F;
 

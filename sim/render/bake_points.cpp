@@ -7,7 +7,7 @@
 namespace mh {
 namespace {
 
-constexpr float kLiftM = 1e-3F;  // off the surface: below any visible gap
+constexpr float kLiftM = 1e-3F;  // off the surface: smaller than any visible gap
 
 float fraction(float x) {
   return x - std::floor(x);
@@ -39,7 +39,7 @@ BakePoints::BakePoints(const Scene& scene) : scene_(scene) {
   for (std::uint32_t f = 0; f < scene.triangles.size(); ++f)
     for (std::uint32_t k = 0; k < 3; ++k) faces_[next[scene.triangles[f][k]]++] = 4 * f + k;
   for (std::size_t v = 0; v < count; ++v) {
-    // Back-to-back faces cancel out: then the largest one decides.
+    // Back-to-back faces cancel out; then the largest face decides.
     const bool canceled = sum[v].norm() < 0.2F * area[v];
     const Eigen::Vector3f& n = canceled ? largest[v] : sum[v];
     normals_.push_back(area[v] > 0.0F ? n.normalized() : Eigen::Vector3f::UnitZ());

@@ -34,8 +34,8 @@ const std::array<float, 256> kDecode = make_decode_table();
 
 using DecodeTable = std::array<float, 256>;
 
-/// Calls use(channel, value) for the table's values of eight channels each, then use_one for the
-/// last few.
+/// Calls use_eight(channel, values) with the table's values for eight channels at a time, then
+/// use_one(channel, value) for the last few.
 template <class UseEight, class UseOne>
 void for_decoded(std::span<const Rgb8> row, const DecodeTable& table, const UseEight& use_eight,
                  const UseOne& use_one) {

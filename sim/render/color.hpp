@@ -15,8 +15,8 @@ namespace mh {
 float srgb_to_linear(std::uint8_t value);
 Eigen::Vector3f srgb_to_linear(Rgb8 color);
 
-/// The nearest 8-bit sRGB value of a linear one, clamped to [0, 1]; a table of 2^14 entries, whose
-/// steps are below 1/4 of a gray level.
+/// The nearest 8-bit sRGB value of a linear one, clamped to [0, 1]; from a table of 2^14 entries,
+/// whose steps are below 1/4 of a gray level.
 std::uint8_t linear_to_srgb(float linear);
 
 // The same for rows, eight values at a time.

@@ -49,7 +49,7 @@ struct Scratch {
   }
   std::vector<Packet> packets;
   std::vector<Seen> seen;
-  std::vector<Radiance> light;  // of supersampling
+  std::vector<Radiance> light;  // when supersampling
   Tile tile;
   FlushDenormals flush;
 };
@@ -116,7 +116,7 @@ class EmbreeRenderer final : public Renderer {
     return render_rows(camera, world_from_camera, 0, camera.height_px);
   }
 
-  /// Traces and smooths whole blocks, so that packets are those of the whole image.
+  /// Traces and smooths whole blocks, so that the packets are the same as for the whole image.
   RenderedFrame render_rows(const Camera& camera, const SE3& world_from_camera, int first,
                             int last) const override {
     check_projection(camera);
@@ -124,7 +124,7 @@ class EmbreeRenderer final : public Renderer {
     RenderedFrame frame = empty_frame(view.width, view.height);
     const int first_block = std::max(0, first) / kEdgeBlock;
     const int end_block = (std::min(last, view.height) + kEdgeBlock - 1) / kEdgeBlock;
-    // An edge is found by the rows above and below.
+    // Finding an edge takes the rows above and below it.
     const int first_tile = std::max(0, first_block * kEdgeBlock - 1) / Tile::kHeight;
     const int end_tile = std::min(end_block * kEdgeBlock / Tile::kHeight + 1,
                                   (view.height + Tile::kHeight - 1) / Tile::kHeight);

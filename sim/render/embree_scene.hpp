@@ -63,7 +63,7 @@ class EmbreeScene {
 
   /// Traces 16 rays to their first hits; lanes whose `valid` is 0 are left alone.
   void intersect16(const int* valid, RTCRayHit16& rays, bool coherent) const;
-  /// The same ray by ray: the baseline that packets are compared with.
+  /// The same, one ray at a time: the baseline that packets are compared with.
   void intersect_each(RTCRayHit16& rays) const;
   /// Tests for 16 rays whether anything is in the way: the tfar of an occluded one becomes
   /// -infinity.
@@ -73,7 +73,7 @@ class EmbreeScene {
   std::uint32_t face_of(unsigned geometry_id, unsigned primitive_id) const {
     return faces_[first_[geometry_id] + primitive_id];
   }
-  /// The same, as a list: faces()[first_faces()[geometry] + primitive].
+  /// The same as a list: faces()[first_faces()[geometry] + primitive].
   const std::vector<std::uint32_t>& faces() const { return faces_; }
   const std::array<std::uint32_t, 8>& first_faces() const { return first_; }
 

@@ -86,8 +86,8 @@ class Meter {
   std::vector<Vector3f> albedo_;
 };
 
-/// Appends what sixteen rays from a point see; nothing if the point is inside something, since most
-/// rays then hit back faces.
+/// Appends what sixteen rays from a point see; nothing if the point is inside something, where most
+/// rays hit back faces.
 void look_around(const EmbreeScene& bvh, const Meter& meter, const Vector3f& eye,
                  const RandomStream& stream, std::vector<float>& seen) {
   alignas(64) RTCRayHit16 packet;

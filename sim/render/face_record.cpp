@@ -40,8 +40,8 @@ std::map<const void*, std::uint32_t> add_textures(const Scene& scene, TextureTab
   return place_of;
 }
 
-/// One per material, at least one. Without texture coordinates, textures are left out, and their
-/// mean colors go into the faces' records.
+/// One surface per material, at least one. Without texture coordinates, textures are left out, and
+/// their mean colors go into the faces' records.
 std::vector<Surface> make_surfaces(const Scene& scene, float exposure, TextureTable& textures) {
   std::map<const void*, std::uint32_t> place_of;
   if (!scene.uvs.empty()) place_of = add_textures(scene, textures);
@@ -88,7 +88,7 @@ FaceTexture make_texture(const Scene& scene, const Surface& surface, std::size_t
   if (surface.texture == TextureTable::kWhite) return record;
   const auto& corners = scene.triangles[face];
   const Eigen::Vector2f& first = scene.uvs[corners[0]];
-  const Eigen::Vector2f at = first - first.array().floor().matrix();  // it repeats: keep it small
+  const Eigen::Vector2f at = first - first.array().floor().matrix();  // periodic: keep it small
   const Eigen::Vector2f step1 = scene.uvs[corners[1]] - first;
   const Eigen::Vector2f step2 = scene.uvs[corners[2]] - first;
   record.u = at.x(), record.v = at.y();

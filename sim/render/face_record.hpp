@@ -12,9 +12,9 @@
 
 namespace mh {
 
-/// What shading needs of every face; a quantity that varies over the face is stored as its value at
-/// corner 0 and its differences to corners 1 and 2. Half floats. The field after a color is read
-/// along with it, as a fourth channel that is ignored.
+/// What shading needs for every face; a quantity that varies over the face is stored as its value
+/// at corner 0 and its differences to corners 1 and 2. Numbers are half floats. The field after a
+/// color is read along with it, as a fourth channel that is ignored.
 struct alignas(32) FaceRecord {
   /// Light x vertex color x base color x exposure: linear RGB that the face reflects with a white
   /// texture.
@@ -27,7 +27,7 @@ struct alignas(32) FaceRecord {
 };
 static_assert(sizeof(FaceRecord) == 32);
 
-/// What it needs in addition if the face has a texture.
+/// What shading needs in addition if the face has a texture.
 struct alignas(32) FaceTexture {
   float u = 0, v = 0, du1 = 0, dv1 = 0;  // texture coordinates
   float du2 = 0, dv2 = 0;
@@ -36,7 +36,7 @@ struct alignas(32) FaceTexture {
 };
 static_assert(sizeof(FaceTexture) == 32);
 
-/// Both, in one cache line.
+/// A face's record and texture, in one cache line.
 struct alignas(64) TexturedFace {
   FaceRecord record;
   FaceTexture texture;

@@ -41,7 +41,7 @@ struct OffscreenContext::Library {
     handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr)
       throw MachineError(fmt::format(
-          "OSMesa is not on this machine ({}): install libosmesa6, or render with embree",
+          "OSMesa is not installed on this machine ({}): install libosmesa6, or render with embree",
           dlerror()));
     const auto find = [&](auto& function, const char* name) {
       function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(handle, name));
@@ -55,7 +55,7 @@ struct OffscreenContext::Library {
         kFormat,       kRgba, kDepthBits,    24, kProfile, kCoreProfile,
         kMajorVersion, 4,     kMinorVersion, 5,  0};
     context = create(wanted.data(), nullptr);
-    if (context == nullptr) throw MachineError("OSMesa cannot do OpenGL 4.5");
+    if (context == nullptr) throw MachineError("OSMesa does not support OpenGL 4.5");
   }
   // The library itself stays loaded: its compiler threads outlive their contexts.
   ~Library() { destroy(context); }

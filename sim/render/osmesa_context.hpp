@@ -9,7 +9,7 @@
 
 namespace mh {
 
-// The OpenGL functions used, as (name, its type's name). OSMesa and they are loaded at run time, so
+// The OpenGL functions used, as (name, its type's name). They and OSMesa are loaded at run time, so
 // that a machine without OSMesa runs everything else.
 #define MH_GL_FUNCTIONS(F)                            \
   F(ActiveTexture, ACTIVETEXTURE)                     \
@@ -83,7 +83,7 @@ class OffscreenContext {
 
   const Gl& gl() const { return gl_; }
 
-  /// Makes it the calling thread's context during its lifetime; one at a time.
+  /// Makes the context the calling thread's during its own lifetime; one at a time.
   class Current {
    public:
     explicit Current(const OffscreenContext& context);

@@ -62,7 +62,7 @@ class OsmesaRenderer final : public Renderer {
   }
 
  private:
-  /// Light brighter than white may not be white behind a pane.
+  /// Where light is cut off: behind a pane, light brighter than white may end up darker than white.
   float white() const { return has_panes_ ? std::numeric_limits<float>::max() : 1.0F; }
 
   void check(const char* what) const {
@@ -90,7 +90,7 @@ class OsmesaRenderer final : public Renderer {
     if (linked == 0) {
       std::array<char, 512> log{};
       gl_.GetProgramInfoLog(program_, static_cast<GLsizei>(log.size()) - 1, nullptr, log.data());
-      throw MachineError(fmt::format("OSMesa refuses the shaders: {}", log.data()));
+      throw MachineError(fmt::format("OSMesa rejects the shaders: {}", log.data()));
     }
     gl_.UseProgram(program_);
     gl_.Uniform1i(place("picture"), 0);

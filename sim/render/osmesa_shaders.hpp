@@ -24,7 +24,7 @@ void main() {
 }
 )";
 
-// The level of detail follows TextureTable::look_up: the texels that a pixel covers. Holes follow
+// The level of detail follows TextureTable::place: the texels that a pixel covers. Holes follow
 // CutOuts::is_hole. Only a scene with holes pays for them: with a shader that may discard, the
 // depth test runs after it.
 inline constexpr const char* kVersion = "#version 450 core\n";

@@ -24,7 +24,7 @@ struct Pixel {
   int x = 0, y = 0;
 };
 
-/// Everything of one image that does not change between tiles. The direction through a pixel is
+/// Everything about an image that does not change between tiles. The direction through a pixel is
 /// column + row, with z = 1 in the camera's frame, so that the distance along a ray is the depth.
 struct View {
   View(const Camera& camera, const SE3& world_from_camera)
@@ -77,7 +77,7 @@ struct alignas(64) Packet {
     }
   }
 
-  /// Aims it at the pixels from (x0, y0) on.
+  /// Aims the packet at the pixels from (x0, y0) on.
   void aim(const View& view, int x0, int y0, const Offset& offset = {}) {
     const std::array<float*, 3> direction = {rays.ray.dir_x, rays.ray.dir_y, rays.ray.dir_z};
     const std::array<float, 3> beside = view.beside(offset);

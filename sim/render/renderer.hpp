@@ -20,7 +20,7 @@ namespace mh {
 /// Value of RenderedFrame::faces for a pixel that shows no face.
 inline constexpr std::uint32_t kNoFace = ~std::uint32_t{0};
 
-/// The exact image of a moment: no noise, no lens. All grids have the camera's size. Everything is
+/// The exact image at one time: no noise, no lens. All grids have the camera's size. Everything is
 /// sampled by the ray through the pixel's center, except color if it is smoothed (Antialiasing).
 struct RenderedFrame {
   Grid2d<Rgb8> color;            ///< sRGB
@@ -48,7 +48,7 @@ struct ExtraOutputs {
 /// How color approximates the mean of light over a pixel, which a sensor cell measures.
 enum class Antialiasing {
   kNone,        ///< only the ray through the center
-  kEdges,       ///< two more rays at edges of objects or depth; textures are filtered anyway
+  kEdges,       ///< two more rays at edges of objects or depth; textures are always filtered
   kSupersample  ///< four rays in each pixel, 2 x 2
 };
 
@@ -71,8 +71,8 @@ class Renderer {
                                       std::span<const Eigen::Vector2i> pixels) const;
 };
 
-/// What both renderers refuse: a size or focal length out of range. The principal point may be
-/// anywhere: a rolling shutter renders strips of an image, most of which do not contain it.
+/// Rejects what neither renderer accepts: a size or focal length out of range. The principal point
+/// may be anywhere: a rolling shutter renders strips of an image, most of which do not contain it.
 /// @throws InputError naming the field.
 inline void check_projection(Camera camera) {
   camera.cx_px = camera.cy_px = 0;

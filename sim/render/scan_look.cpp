@@ -161,7 +161,8 @@ class Volume {
                 const std::vector<InstanceId>& owner, Scene& out) const {
     const Voxel &a = voxels_[index(at)], &b = voxels_[index(at + Vector3i::Unit(axis))];
     if (!known(a) || !known(b) || (a.distance_m < 0) == (b.distance_m < 0)) return;
-    // Far behind a surface the sign flips again at the end of another view's band: not a surface.
+    // Far behind a surface, the sign flips again at the end of another view's band: that is no
+    // surface.
     if (std::abs(a.distance_m - b.distance_m) > 2.5 * config_.voxel_m) return;
     const Vector3i u = Vector3i::Unit((axis + 1) % 3), v = Vector3i::Unit((axis + 2) % 3);
     std::array<std::uint32_t, 4> q{};
@@ -170,7 +171,7 @@ class Volume {
       q[k] = vertex_of[index(cells[k])];
       if (q[k] == kNone) return;
     }
-    if (a.distance_m > 0) std::swap(q[1], q[3]);  // faces show the side from which they were seen
+    if (a.distance_m > 0) std::swap(q[1], q[3]);  // faces face where they were seen from
     for (const auto& t : {std::array{q[0], q[2], q[1]}, std::array{q[0], q[3], q[2]}}) {
       out.triangles.push_back(t);
       out.instance_of.push_back(owner[t[0]]);
@@ -206,11 +207,11 @@ void measure(const Scene& source, Scene& out) {
 Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& camera,
                 std::span<const SE3> world_from_camera, const ScanLookConfig& config) {
   if (config.voxel_m < 0.005 || config.voxel_m > 0.1 || config.band_m < 2 * config.voxel_m)
-    throw InputError(fmt::format(
-        "scan look: voxels of {} m in a band of {} m: wanted are 0.005 to 0.1 m and at least twice "
-        "that",
-        config.voxel_m, config.band_m));
-  if (world_from_camera.empty()) throw InputError("scan look: there is no view");
+    throw InputError(
+        fmt::format("scan look: voxels of {} m in a band of {} m: voxels must be 0.005 to 0.1 m, "
+                    "the band at least twice that",
+                    config.voxel_m, config.band_m));
+  if (world_from_camera.empty()) throw InputError("scan look: there are no views");
   const auto each_point = [&](const RenderedFrame& frame, const SE3& pose, const auto& use) {
     for (int y = 0; y < camera.height_px; y += 4)
       for (int x = 0; x < camera.width_px; x += 4)

@@ -18,13 +18,13 @@ struct ScanLookConfig {
   std::uint64_t seed = 0;
 };
 
-/// Returns the scene as a hand-held scan would reconstruct it: the views, fused into a signed
+/// Returns the scene as a handheld scan would reconstruct it: the views, fused into a signed
 /// distance volume (Curless and Levoy, SIGGRAPH 1996) and meshed by surface nets (Gibson, MICCAI
 /// 1998), with colors per vertex, rounded edges, uneven surfaces, and holes where no view looked.
 /// Classes, instances and rooms are those of the scene; its light is baked into the colors.
 /// @param renderer  of that scene
 /// @throws InputError if a size is out of range, there is no view, or the views cover more than
-/// fits into memory (600 million voxels).
+/// fits in memory (600 million voxels).
 Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& camera,
                 std::span<const SE3> world_from_camera, const ScanLookConfig& config = {});
 

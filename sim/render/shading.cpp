@@ -50,7 +50,8 @@ void Shading::find_places(const Packet& packet, float pixel_area, Seen& seen) co
     const auto [u, v, du1, dv1] = load_fields(place);
     const Float8 along1 = load8(hit.u + i), along2 = load8(hit.v + i);
     // A pixel covers depth^2 / (fx fy) of the plane z = depth; on a face of unit normal n, it
-    // covers 1 / |n . d| times that, with d having camera z = 1; and Ng = n x twice its area.
+    // covers 1 / |n . d| times that, with d scaled to camera z = 1; and Ng is n times twice the
+    // face's area.
     const Float8 facing = load8(hit.Ng_x + i) * load8(ray.dir_x + i) +
                           load8(hit.Ng_y + i) * load8(ray.dir_y + i) +
                           load8(hit.Ng_z + i) * load8(ray.dir_z + i);

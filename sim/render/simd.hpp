@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// Eight lanes of AVX2; arithmetic and comparisons by the compiler's operators. Nothing here is
+/// Eight lanes of AVX2; arithmetic and comparisons use the compiler's operators. Nothing here is
 /// contracted to fused operations, so that every build gives the same bits.
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = int __attribute__((vector_size(32)));

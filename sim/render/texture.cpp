@@ -12,8 +12,8 @@ namespace {
 
 using Image = Grid2d<Eigen::Vector3f>;
 
-/// Weights of the texels that form one of a row of half the length: with an odd length, three
-/// contribute to each.
+/// Weights of the texels that are averaged into each texel of a row of half the length; with an odd
+/// length, three contribute to each.
 struct Halved {
   explicit Halved(int length) : before(length), after(std::max(1, length / 2)) {}
 
@@ -31,7 +31,7 @@ struct Halved {
   int before, after;
 };
 
-/// Halves the size by area averages, of an image given by `texel(x, y)`.
+/// Halves the size of an image, given by `texel(x, y)`, by averaging over areas.
 template <class Texel>
 Image halve(int width, int height, const Texel& texel) {
   const Halved across(width), down(height);
@@ -67,7 +67,7 @@ std::uint16_t sixteen_bits(float linear) {
   return static_cast<std::uint16_t>(std::lround(linear * 65535.0F));
 }
 
-/// @param texel  of (x, y), as linear RGB
+/// @param texel  texel(x, y) is the linear RGB there
 template <class Texel>
 void append_wrapped(std::vector<std::uint16_t>& texels, int width, int height, const Texel& texel) {
   for (int y = 0; y <= height; ++y)
@@ -151,7 +151,7 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
   std::array<std::array<Float8, 4>, 2> levels;
   const Int8 level = load8(place.level.data());
   const Level* first = &levels_[place.level[0]];
-  if (all8(level == splat(static_cast<int>(place.level[0])))) {  // mostly
+  if (all8(level == splat(static_cast<int>(place.level[0])))) {  // usually
     for (std::size_t i = 0; i < 2; ++i) levels[i] = spread_fields(&first[i].width);
   } else {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -175,7 +175,7 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
                   y - to_float(y0)};
   };
   const Corner fine = corner(levels[0]), coarse = corner(levels[1]);
-  // Truncated toward zero, so that four shares of one never sum to more than one.
+  // Truncated toward zero, so that four shares of 1 never sum to more than 1.
   const auto share = [](Float8 part) { return to_int(part * kOne); };
   const auto two = [](Int8 low, Int8 high) { return low | high << 16; };
   const auto store = [](std::array<std::uint64_t, 8>& to, Int8 low, Int8 high) {
@@ -194,7 +194,7 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
         two(share(blend * (1.0F - coarse.right)), share(blend * coarse.right)));
   store(lookup.down, two(share(1.0F - fine.down), share(fine.down)),
         two(share(1.0F - coarse.down), share(coarse.down)));
-  // The coarser level's lower row is mostly near its upper one, or another lane's.
+  // The coarser level's lower row is left out: it is mostly near its upper one or another lane's.
   for (const std::array<unsigned, 8>& places : std::span(lookup.texels).first(3))
     for (const unsigned at_texel : places)
       _mm_prefetch(reinterpret_cast<const char*>(texel(at_texel)), _MM_HINT_T0);

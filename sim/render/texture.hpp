@@ -23,7 +23,7 @@ inline constexpr int kMipLevels = 16;
 std::vector<Grid2d<Eigen::Vector3f>> mip_pyramid(const Grid2d<Rgb8>& image);
 
 /// The textures of a scene with their mip pyramids, filtered in linear light. They repeat. Texel
-/// centers are at half-integers, (u, v) = (0, 0) is the outer corner of the first texel.
+/// centers are at half-integers; (u, v) = (0, 0) is the outer corner of the first texel.
 ///
 /// Laid out for lookups without branches: texels are three 16-bit channels, each level has a copy
 /// of its first column and row at its end, so that the neighbors of a lookup are one load of 16
@@ -43,7 +43,7 @@ class TextureTable {
   /// @returns the position of the image's level 0 in the table.
   std::uint32_t add(const Grid2d<Rgb8>& image);
 
-  /// What eight lanes are to read.
+  /// What eight lanes read.
   struct Lookup {
     /// The left texels of four pairs: fine upper and lower, coarse upper and lower.
     alignas(32) std::array<std::array<unsigned, 8>, 4> texels;
@@ -112,8 +112,8 @@ class TextureTable {
         _mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(a))),
         _mm_loadu_si128(reinterpret_cast<const __m128i*>(b)), 1);
   }
-  /// Picks the 16-bit number at byte a, b, c, d for the three channels of each of four texels; 0
-  /// after each two.
+  /// Picks the 16-bit number at byte a, b, c, d for the three channels of each of four texels, with
+  /// a 0 after every two texels.
   static __m256i spread(int a, int b, int c, int d) {
     const auto twice = [](int at) { return static_cast<short>(at | (at + 1) << 8); };
     constexpr short kZero = -1;

@@ -11,7 +11,7 @@
 namespace mh {
 
 /// sum[i] = weights[0] * rows[0][i] + weights[1] * rows[1][i] + ..., added in this order, for i up
-/// to `count` rounded up to eight.
+/// to `count` rounded up to a multiple of eight.
 inline void weighted_sum(const std::vector<const float*>& rows, const std::vector<float>& weights,
                          std::size_t count, float* sum) {
   for (std::size_t i = 0; i < count; i += 8) {
@@ -21,18 +21,17 @@ inline void weighted_sum(const std::vector<const float*>& rows, const std::vecto
   }
 }
 
-/// Size of an image of `channels` floats per pixel, side by side.
+/// Size of an image with `channels` interleaved floats per pixel.
 struct FloatImage {
   int width = 0, height = 0;
   std::size_t channels = 1;
 };
 
-/// Blurs an image by a Gaussian, horizontally and then vertically, with only the rows in memory
-/// that the kernel spans; beyond its borders it is extended by its outermost pixels.
+/// Blurs an image with a Gaussian, horizontally and then vertically, keeping in memory only the
+/// rows that the kernel spans; beyond its borders, the image is extended by its outermost pixels.
 /// @param kernel  see gaussian_kernel()
-/// @param fill    fill(y, row) writes row y; called in the order of rows, never for a row that was
-///                used
-/// @param use     use(y, row) receives the blurred row y, in the order of rows
+/// @param fill    fill(y, row) writes row y; called for rows in order, for each before it is used
+/// @param use     use(y, row) receives the blurred row y; called for rows in order
 template <class Fill, class Use>
 void blur_rows(const FloatImage& image, const std::vector<float>& kernel, const Fill& fill,
                const Use& use) {

@@ -21,7 +21,7 @@ constexpr std::array<std::pair<std::string_view, ClassSet>, 4> words(ClassSet) {
            {"two", ClassSet::kTwo}}};
 }
 
-/// The class that represents a class in a set: the same for all classes of a group. Void and
+/// The class that represents `class_id` in a set: the same for all classes of a group. Void and
 /// background stay as they are.
 ClassId class_in(ClassSet set, ClassId class_id);
 

@@ -22,11 +22,11 @@ inline constexpr double kSecondsPerMs = 1e-3;
 /// and Elberink, "Accuracy and resolution of Kinect depth data", Sensors 2012. Range: ASUS Xtion
 /// data sheet.
 struct DepthNoiseConfig {
-  bool enabled = true;        ///< off: the exact depth at any range
-  bool axial = true;          ///< sigma_z(z, incidence)
-  bool lateral = true;        ///< ragged edges: normal offsets of lookups, sigma_L(incidence) px
-  bool quantization = true;   ///< 1/8 px disparity steps
-  bool grazing_holes = true;  ///< no return beyond kMaxIncidenceRad
+  bool enabled = true;            ///< off: the exact depth at any range
+  bool axial = true;              ///< sigma_z(z, incidence)
+  bool lateral = true;            ///< ragged edges: normal lookup offsets, sigma_L(incidence) px
+  bool quantization = true;       ///< 1/8 px disparity steps
+  bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
   bool projector_shadow = false;  ///< no return where the projector's light is blocked
   double min_range_m = 0.4;
   double max_range_m = 8.0;  ///< above min_range_m
@@ -39,13 +39,14 @@ void fields(C& c, Visit& v) {
          max_range_m] = c;
   v("enabled", enabled, setting::kSwitch, "off: the exact depth at any range");
   v("axial", axial, setting::kSwitch, "noise along the ray");
-  v("lateral", lateral, setting::kSwitch, "noise across the ray: ragged edges");
+  v("lateral", lateral, setting::kSwitch, "noise perpendicular to the ray: ragged edges");
   v("quantization", quantization, setting::kSwitch, "steps of 1/8 px of disparity");
   v("grazing_holes", grazing_holes, setting::kSwitch, "no return beyond 80 degrees of incidence");
   v("projector_shadow", projector_shadow, setting::kSwitch,
     "no return where the projector's light is blocked");
   v("min_range_m", min_range_m, {0, setting::kMany}, "nearer surfaces give no return");
-  v("max_range_m", max_range_m, {0, setting::kMany}, "farther ones give none; above min_range_m");
+  v("max_range_m", max_range_m, {0, setting::kMany},
+    "farther surfaces give no return; must be above min_range_m");
 }
 
 /// All depth faults off and no range limits: a base for enabling a single fault.
@@ -69,15 +70,15 @@ template <MaybeConst<ColorNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, sigma] = c;
   v("enabled", enabled, setting::kSwitch, "Gaussian noise in gray levels");
-  v("sigma", sigma, setting::kShare, "standard deviation, share of full scale");
+  v("sigma", sigma, setting::kShare, "standard deviation, as a share of full scale");
 }
 
 /// Light is counted in electrons: shot noise has variance L * well (L = linear light, 1 at white),
-/// read noise the standard deviation read_noise_e; the noisy count is divided by the well, the
-/// electron count of a white pixel (well_e / gain). Defaults: OV5640,
-/// from Aldebaran's documentation of Pepper's 2D camera. Signal-to-noise ratio at most 36 dB: well
-/// of 10^3.6 = 3981 electrons. Dynamic range 68 dB: read noise of 3981 / 10^3.4 = 1.6 electrons.
-/// Model: Healey and Kondepudy, PAMI 1994.
+/// read noise has standard deviation read_noise_e; the noisy count is divided by the well, the
+/// electron count of a white pixel (well_e / gain). Defaults: OV5640, from Aldebaran's
+/// documentation of Pepper's 2D camera. Signal-to-noise ratio at most 36 dB: well of 10^3.6 = 3981
+/// electrons. Dynamic range 68 dB: read noise of 3981 / 10^3.4 = 1.6 electrons. Model: Healey and
+/// Kondepudy, PAMI 1994.
 struct ShotNoiseConfig {
   bool enabled = false;
   double well_e = 3981.0;
@@ -98,7 +99,8 @@ void fields(C& c, Visit& v) {
   v("read_noise_e", read_noise_e, {0, 1e6}, "electrons, standard deviation");
   v("gain", gain, {1, 1000}, "a white pixel holds well_e / gain electrons");
   v("gain_at_exposure", gain_at_exposure, {0, 1e6},
-    "the exposure at which gain applies, scaled in proportion at others; 0: it always applies");
+    "the exposure at which gain applies; at others, it is scaled in proportion; 0: it always "
+    "applies");
 }
 
 /// Gain that follows the mean luminance with a lag, like the average-based control of OmniVision's
@@ -243,7 +245,7 @@ struct DepthBiasConfig {
   /// TUM's Kinects before their authors corrected them: 1.035 (freiburg1), 1.031 (freiburg2).
   double scale = 1.0;
   /// TUM fr1 after that correction: 0.01 (docs/measurements/tracking.md). Teichman, Miller and
-  /// Thrun (CLAMS, RSS 2013) learn such multipliers over image and distance.
+  /// Thrun (CLAMS, RSS 2013) learn multipliers of this kind, which vary over image and distance.
   double bend = 0.0;
   std::uint64_t camera = 0;
   double shift_x_px = 0.0, shift_y_px = 0.0;
@@ -254,12 +256,13 @@ template <MaybeConst<DepthBiasConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, scale, bend, camera, shift_x_px, shift_y_px] = c;
   v("enabled", enabled, setting::kSwitch, "systematic errors of depth");
-  v("scale", scale, {0.5, 2}, "factor of all depth");
+  v("scale", scale, {0.5, 2}, "factor on all depths");
   v("bend", bend, {0, 0.2},
-    "root mean square of a smooth multiplier minus 1, over the image and with distance");
-  v("camera", camera, setting::kSeed, "which camera: the seed of the multiplier's shape");
-  v("shift_x_px", shift_x_px, {-50, 50}, "a pixel reads the depth so far to its right");
-  v("shift_y_px", shift_y_px, {-50, 50}, "and so far below it");
+    "root mean square of (multiplier - 1); the multiplier varies smoothly over the image and with "
+    "distance");
+  v("camera", camera, setting::kSeed, "which camera: seed of the multiplier's shape");
+  v("shift_x_px", shift_x_px, {-50, 50}, "a pixel reads the depth this far to its right");
+  v("shift_y_px", shift_y_px, {-50, 50}, "and this far below it");
 }
 
 /// The fraction of frames that are blank (black, without depth and labels) or never arrive.
@@ -291,7 +294,7 @@ void fields(C& c, Visit& v) {
   auto& [enabled, speed] = c;
   v("enabled", enabled, setting::kSwitch, "a handheld camera moves faster along its path");
   v("speed", speed, setting::required({1, 10}),
-    "multiple of the speed of the path; a robot that drives keeps its own");
+    "multiple of the path's own speed; a driving robot keeps its speed");
 }
 
 /// How finely motion within a frame is sampled: the image is the mean, in linear light, of images
@@ -306,8 +309,8 @@ struct MotionSampling {
 
 /// An inertial sensor in the camera's housing. Defaults: noise of the Bosch BMI055 (data sheet:
 /// 0.014 deg/s/sqrt(Hz), 150 ug/sqrt(Hz), zero-rate offset 1 deg/s), as in Intel's D435i; the walks
-/// of the ADIS16448 in EuRoC's sensor.yaml (Burri et al., IJRR 2016), and an accelerometer's offset
-/// as that data set's ground truth has it.
+/// of the ADIS16448 in EuRoC's sensor.yaml (Burri et al., IJRR 2016), and an accelerometer offset
+/// as in that data set's ground truth.
 struct ImuConfig {
   double rate_hz = 200;
   double gyro_noise = 2.44e-4;   ///< rad/s/sqrt(Hz)
@@ -322,13 +325,13 @@ struct ImuConfig {
 template <MaybeConst<ImuConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [rate_hz, gyro_noise, gyro_walk, gyro_bias, accel_noise, accel_walk, accel_bias] = c;
-  v("rate_hz", rate_hz, {10, 2000}, "readings per second, where a suite gives them");
+  v("rate_hz", rate_hz, {10, 2000}, "readings per second, in suites that provide them");
   v("gyro_noise", gyro_noise, {0, 1}, "rad/s/sqrt(Hz)");
-  v("gyro_walk", gyro_walk, {0, 1}, "of the bias, rad/s^2/sqrt(Hz)");
-  v("gyro_bias", gyro_bias, {0, 10}, "at the start, standard deviation, rad/s");
+  v("gyro_walk", gyro_walk, {0, 1}, "random walk of the bias, rad/s^2/sqrt(Hz)");
+  v("gyro_bias", gyro_bias, {0, 10}, "standard deviation of the bias at the start, rad/s");
   v("accel_noise", accel_noise, {0, 10}, "m/s^2/sqrt(Hz)");
-  v("accel_walk", accel_walk, {0, 10}, "of the bias, m/s^3/sqrt(Hz)");
-  v("accel_bias", accel_bias, {0, 100}, "at the start, standard deviation, m/s^2");
+  v("accel_walk", accel_walk, {0, 10}, "random walk of the bias, m/s^3/sqrt(Hz)");
+  v("accel_bias", accel_bias, {0, 100}, "standard deviation of the bias at the start, m/s^2");
 }
 
 struct SensorConfig {

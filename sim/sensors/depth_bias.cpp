@@ -37,7 +37,7 @@ Shape shape_of(std::uint64_t camera, double rms) {
       a[i][j] = stream.normal(draw++);
       b[i][j] = stream.normal(draw++);
       if (i == 0 && j == 0) a[i][j] = 0;
-      // The mean of cos^2 is 1/2, except of the constant.
+      // The mean of cos^2 is 1/2, except for the constant.
       const double mean = (i == 0 ? 1.0 : 0.5) * (j == 0 ? 1.0 : 0.5);
       squares += mean * (a[i][j] * a[i][j] + b[i][j] * b[i][j]);
     }
@@ -70,7 +70,7 @@ Grid2d<float> biased_depth(const Grid2d<float>& depth_m, const DepthBiasConfig& 
   const auto scale = static_cast<float>(config.scale);
   const auto across = cosines(out.width()), along = cosines(out.height());
   for (int y = 0; y < out.height(); ++y) {
-    // Of this row: the coefficients of each cosine across the image.
+    // For this row: the coefficients of each cosine in x.
     std::array<float, kOrders> fixed = {}, with_distance = {};
     for (std::size_t i = 0; i < kOrders; ++i)
       for (std::size_t j = 0; j < kOrders; ++j) {

@@ -28,7 +28,7 @@ double angular_term(double incidence_rad) {
   return ratio * ratio;
 }
 
-/// Tables of what depends only on the incidence, by its cosine.
+/// Tables of what depends only on the incidence, indexed by its cosine.
 class IncidenceTable {
  public:
   IncidenceTable() {
@@ -39,7 +39,7 @@ class IncidenceTable {
     }
   }
   float lateral_px(float cosine) const { return lateral_px_[step(cosine)]; }
-  /// The angular part of axial sigma times the root of the depth.
+  /// The angular part of axial sigma times the square root of the depth.
   float angular(float cosine) const { return angular_[step(cosine)]; }
 
  private:
@@ -52,7 +52,7 @@ class IncidenceTable {
 
 /// The surface seen at a pixel as a plane: over pixels, the inverse depth of a plane is affine.
 struct Surface {
-  float inverse_depth = 0;         // 1/m; 0 = nothing there
+  float inverse_depth = 0;         // 1/m; 0 = nothing seen
   float slope_x = 0, slope_y = 0;  // 1/m per px
   float cosine = 0;                // of the incidence
 };
@@ -127,7 +127,7 @@ struct Row {
   std::vector<int> column;          ///< in the projector's image
 };
 
-/// Processes an image row by row, in one pass after the other over each.
+/// Processes an image row by row, with several passes over each row.
 class DepthSensor {
  public:
   DepthSensor(const Grid2d<float>& depth_m, const Camera& camera, const DepthNoiseConfig& config,
@@ -190,7 +190,7 @@ class DepthSensor {
     }
   }
 
-  /// To the nearest integer, a half to the even one.
+  /// Rounds to the nearest integer, halves to even.
   static int round(float value) { return static_cast<int>(std::rint(value)); }
 
   void fetch_surfaces() {
@@ -204,8 +204,9 @@ class DepthSensor {
     }
   }
 
-  /// Depth of the surfaces seen, some pixels away from where they were seen. Following their planes
-  /// limits the lateral noise to the edges: on a slope it would duplicate the axial noise.
+  /// Depth at each pixel, on the plane of the surface that it sees, which was measured some pixels
+  /// away. Following these planes limits the lateral noise to the edges: on a slope it would
+  /// duplicate the axial noise.
   void follow_planes(std::span<float> depth) const {
     const float *inverse = row_.inverse_depth.data(), *slope_x = row_.slope_x.data(),
                 *slope_y = row_.slope_y.data(), *dx = row_.away_x.data(), *dy = row_.away_y.data();
@@ -226,8 +227,8 @@ class DepthSensor {
       depth[x] = row_.cosine[x] < least ? 0.0F : depth[x];
   }
 
-  /// What the projector sees of a row, nearest first: a pixel with disparity d is at column x - d
-  /// of the projector's image. Pixels behind another are in its shadow.
+  /// Removes the pixels of a row that are in shadow: a pixel with disparity d is at column x - d of
+  /// the projector's image, and where several fall on one column, only the nearest is lit.
   void cast_shadow(int y, std::span<float> depth) {
     constexpr float kStep = 1.0F;  // px of disparity; a smooth surface does not shade itself
     const float focal_base = steps_per_inverse_depth_ / static_cast<float>(kDisparityStepsPerPx);

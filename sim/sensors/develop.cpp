@@ -56,7 +56,8 @@ void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& confi
     const float* lit = share.data();
     for (Rgb8& c : color.row(y)) {
       const std::uint64_t bits = stream.bits(pixel++);
-      // Less light through the lens has less noise: sigma is proportional to the root of the share.
+      // Less light through the lens has less noise: sigma is proportional to the square root of the
+      // share.
       const float factor = scale * *lit, noise_factor = scale * std::sqrt(*lit);
       ++lit;
       const auto read = [&](std::uint8_t value, int k) {
@@ -72,7 +73,7 @@ void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& confi
 }
 
 void add_gray_noise(Grid2d<Rgb8>& color, double sigma, RandomStream stream) {
-  // In 1/256 gray level: one table entry per equally probable normal number.
+  // In units of 1/256 gray level, an entry for each of the equally probable normal numbers.
   std::array<int, 1 << kNormalBits> noise;
   std::transform(normal_table().begin(), normal_table().end(), noise.begin(), [&](float normal) {
     return static_cast<int>(std::lrint(256.0 * 255.0 * sigma * normal));

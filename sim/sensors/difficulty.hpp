@@ -5,14 +5,14 @@
 
 namespace mh {
 
-/// Difficulty 1: the hardest published conditions of handheld cameras. Light and exposure together
+/// Difficulty 1: the hardest published conditions for handheld cameras. Light and exposure together
 /// set the gain.
 struct Difficult {
   /// Exposure control that suppresses the flicker of mains light at 50 Hz takes multiples of 10 ms;
-  /// 30 is the longest that 30 frames per second leave (OmniVision OV7675 data sheet, 4).
+  /// 30 is the longest possible at 30 frames per second (OmniVision OV7675 data sheet, 4).
   double exposure_ms = 30;
-  /// Light, as a share of what the level expects: 100 lx for 500 lx, what EN 12464-1 requires in
-  /// corridors and in offices.
+  /// Light, as a share of what the level expects: 100 lx instead of 500 lx, which EN 12464-1
+  /// requires in corridors and in offices, respectively.
   double light = 0.2;
   /// Multiple of the path's speed. It brings a scan's median of 0.22 m/s and 13 deg/s close to
   /// EuRoC's difficult sequences, 0.75 m/s and 0.66 rad/s (Burri et al., IJRR 2016, table 2).

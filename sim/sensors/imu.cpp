@@ -38,8 +38,8 @@ class SmoothPath {
   Matrix3d rotation(double t_s) const {
     const auto [i, h, u] = at(t_s);
     const Vector3d whole = turn_rad(i, i + 1);
-    // A cubic Hermite curve in the tangent space at pose i. There the rate at the other end appears
-    // turned by half of the way.
+    // A cubic Hermite curve in the tangent space at pose i. There, the rate at the other end
+    // appears rotated by half of the rotation between the poses.
     const Vector3d start = h * turns_rad_per_s_[i];
     const Vector3d end = h * (turns_rad_per_s_[i + 1] + whole.cross(turns_rad_per_s_[i + 1]) / 2);
     const double u2 = u * u, u3 = u2 * u;
@@ -65,7 +65,7 @@ class SmoothPath {
                    path_[b].world_from_camera.rotation());
   }
 
-  /// Of a natural cubic spline: a tridiagonal system, solved from both ends.
+  /// Accelerations of a natural cubic spline: a tridiagonal system, solved forward and then back.
   void find_accelerations() {
     const std::size_t n = times_s_.size();
     accelerations_.assign(n, Vector3d::Zero());
@@ -84,8 +84,8 @@ class SmoothPath {
 
   const Trajectory& path_;
   std::vector<double> times_s_;
-  std::vector<Vector3d> accelerations_;    // in the world
-  std::vector<Vector3d> turns_rad_per_s_;  // in the camera
+  std::vector<Vector3d> accelerations_;    // world frame
+  std::vector<Vector3d> turns_rad_per_s_;  // camera frame
 };
 
 Vector3d normals(RandomStream stream, std::uint64_t first) {

@@ -102,12 +102,12 @@ std::vector<VisibleObject> with_faults(std::vector<VisibleObject> objects,
 void erode(Grid2d<std::uint8_t>& index, int radius_px) {
   assert(radius_px >= 0);
   if (radius_px == 0) return;
-  // A square window is even if its rows are even and equal to each other.
+  // A square window is uniform if its rows are uniform and equal to each other.
   const int w = index.width(), h = index.height();
   Grid2d<std::uint8_t> uneven(w, h);
   for (int y = 0; y < h; ++y) mark_line(&index(0, y), &uneven(0, y), w, 1, radius_px);
   Grid2d<std::uint8_t> rows = index;
-  constexpr std::uint8_t kUneven = 255;  // larger than any palette
+  constexpr std::uint8_t kUneven = 255;  // larger than any palette index
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (uneven.data()[i]) rows.data()[i] = kUneven;
   for (int x = 0; x < w; ++x) mark_line(&rows(x, 0), &uneven(x, 0), h, w, radius_px);

@@ -15,7 +15,7 @@ class FaultDraws {
   FaultDraws(const LabelConfig& config, const SE3& world_from_camera, RandomStream frame);
   /// Standard normal; `purpose` makes decisions independent.
   double normal(std::uint64_t purpose, std::uint64_t thing) const;
-  /// Uniform in [0, 1], from the same numbers.
+  /// Uniform in [0, 1], computed from the same numbers.
   double uniform(std::uint64_t purpose, std::uint64_t thing) const;
   /// Bits that are constant for an object.
   std::uint64_t persistent_bits(std::uint64_t purpose, std::uint64_t thing) const;

@@ -37,7 +37,7 @@ SemanticImage boxes_image(const RenderedFrame& truth, std::vector<VisibleObject>
 
 /// Gives each visible object an entry of its own: equal distributions under different entries. If
 /// the palette is too small, the smallest objects stay under the entry of their class.
-/// @param image  of classes: entry c is class c
+/// @param image  labels by class: entry c is class c
 void name_objects(SemanticImage& image, const Grid2d<InstanceId>& instances) {
   constexpr std::size_t kMost = 256;
   struct Object {
@@ -102,7 +102,7 @@ void group_classes(SemanticImage& image, ClassSet set) {
   }
 }
 
-/// Labels of pixels or boxes, an entry of the palette for each class.
+/// Labels of pixels or boxes, with one palette entry per class.
 SemanticImage without_faults(const RenderedFrame& truth, LabelMode mode) {
   return is_per_pixel(mode) ? SemanticImage{truth.classes, one_hot_palette()}
                             : boxes_image(truth, visible_objects(truth));

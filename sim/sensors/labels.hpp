@@ -36,21 +36,22 @@ inline constexpr int kMediumPixels = 32 * 32, kLargePixels = 96 * 96;
 /// arXiv 1804.02767, table 3 (608 px, COCO test-dev): AP 33.0, AP50 57.9, AP75 34.4, and by size
 /// 18.3, 35.4, 41.9. [B] AlexeyAB/darknet issue 6670, the original weights at confidence 0.25 on
 /// COCO val2017: 9571 true and 4112 false detections of its first four classes, so a precision of
-/// 0.70. [C] Redmon et al., "You only look once", CVPR 2016, figure 4: of a YOLO's false detections
-/// 55 % are badly placed, 31 % of the wrong class, 14 % on background.
+/// 0.70. [C] Redmon et al., "You only look once", CVPR 2016, figure 4: of a YOLO's false
+/// detections, 55 % are badly placed, 31 % of the wrong class, 14 % on background.
 struct DetectorConfig {
   // Recall at IoU 0.5 by size: [A] AP by size times AP50 / AP. AP50 approximates the recall at the
-  // operating point; that of all guesses is higher (0.41, 0.75, 0.97 by the AR of
+  // operating point; the recall of all guesses is higher (0.41, 0.75, 0.97 from the AR in
   // ultralytics/yolov3 issue 9).
   double recall_small = 0.321, recall_medium = 0.621, recall_large = 0.735;
   /// Share of an object's detections with the wrong class: 31 % of the 30 % that are false [B, C],
   /// relative to all detections of objects.
   double confusion = 0.097;
   /// Expected detections of nothing per image: 14 % of the 30 % that are false, relative to the 4.3
-  /// right ones per image of 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
+  /// correct ones per image, from 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
   double false_alarms = 0.26;
   /// Standard deviation of the error of each side of a box, as a share of the box's width or
-  /// height: chosen so that of boxes with an IoU above 0.5, 34.4 / 57.9 have one above 0.75 [A].
+  /// height: chosen so that 34.4 / 57.9 of the boxes with an IoU above 0.5 have an IoU above 0.75
+  /// [A].
   double box_sigma = 0.087;
   friend bool operator==(const DetectorConfig&, const DetectorConfig&) = default;
 };
@@ -59,19 +60,20 @@ template <MaybeConst<DetectorConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [recall_small, recall_medium, recall_large, confusion, false_alarms, box_sigma] = c;
   v("recall_small", recall_small, setting::kShare, "of objects below 32 x 32 px");
-  v("recall_medium", recall_medium, setting::kShare, "of objects between");
-  v("recall_large", recall_large, setting::kShare, "of objects from 96 x 96 px on");
-  v("confusion", confusion, setting::kShare, "of an object's detections with the wrong class");
-  v("false_alarms", false_alarms, {0, 8}, "expected detections of nothing per image");
+  v("recall_medium", recall_medium, setting::kShare, "of objects in between");
+  v("recall_large", recall_large, setting::kShare, "of objects of 96 x 96 px or more");
+  v("confusion", confusion, setting::kShare,
+    "share of an object's detections with the wrong class");
+  v("false_alarms", false_alarms, {0, 8}, "expected detections per image where there is no object");
   v("box_sigma", box_sigma, setting::kShare,
-    "of a box's width or height by which its sides stray, standard deviation");
+    "standard deviation of the error of a box's sides, as a share of its width or height");
 }
 
 /// Configurable faults on top of any kind of labels, for dose-response studies: 0 is none.
 struct LabelNoiseConfig {
   bool enabled = false;
   double confusion = 0.0;  ///< share of instances that carry a wrong class
-  double swap = 0.0;       ///< share of instances that begin an exchange of classes with their
+  double swap = 0.0;       ///< share of instances that start an exchange of classes with their
                            ///< nearest neighbor in the image
   double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
   int erosion_px = 0;      ///< pixels within this many px of a border between labels become void
@@ -87,13 +89,14 @@ struct LabelNoiseConfig {
 template <MaybeConst<LabelNoiseConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, confusion, swap, dropout, erosion_px, class_set] = c;
-  v("enabled", enabled, setting::kSwitch, "the five dials below; what follows them holds anyway");
-  v("confusion", confusion, setting::kShare, "of instances that carry a wrong class");
+  v("enabled", enabled, setting::kSwitch,
+    "switches the five dials below; the settings after them always apply");
+  v("confusion", confusion, setting::kShare, "share of instances that carry a wrong class");
   v("swap", swap, setting::kShare,
-    "of instances that exchange classes with their nearest neighbor");
-  v("dropout", dropout, setting::kShare, "of instances that carry no label");
-  v("erosion_px", erosion_px, {0, 1000}, "pixels so near to a border between labels become void");
-  v("class_set", class_set, {}, "classes that are distinguished: all, thirteen, five or two");
+    "share of instances that exchange classes with their nearest neighbor");
+  v("dropout", dropout, setting::kShare, "share of instances that carry no label");
+  v("erosion_px", erosion_px, {0, 1000}, "pixels this near to a border between labels become void");
+  v("class_set", class_set, {}, "classes that are told apart: all, thirteen, five or two");
 }
 
 /// Label faults depend on what is seen and from where, as a network's do: each is decided by a
@@ -106,7 +109,7 @@ struct LabelConfig {
   DetectorConfig detector = {};
   double persistent_share = 0.4;  ///< of the variance, 0 to 1
   double frame_share = 0.1;       ///< as above; the two sum to at most 1, the rest is the view's
-  std::uint64_t seed = 0;         ///< another seed acts as another network
+  std::uint64_t seed = 0;         ///< a different seed acts as a different network
   friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
 };
 
@@ -116,10 +119,11 @@ void for_each_setting(C& config, Visit& v) {
   v.section("label_noise");
   fields(noise, v);
   v("persistent_share", persistent_share, setting::kShare,
-    "of the variance of faults: what an instance keeps for ever");
+    "share of the faults' variance that is constant for an instance");
   v("frame_share", frame_share, setting::kShare,
-    "of it: new in each frame; with persistent_share at most 1, the view's is the rest");
-  v("seed", seed, setting::kSeed, "another seed is another network");
+    "share that is drawn again in each frame; the two sum to at most 1, the rest depends on the "
+    "view");
+  v("seed", seed, setting::kSeed, "a different seed acts as a different network");
   v.section("detector");
   fields(detector, v);
 }
@@ -134,7 +138,7 @@ SemanticImage label_image(const RenderedFrame& truth, LabelMode mode);
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const LabelConfig& config,
                           const SE3& world_from_camera, RandomStream stream);
 
-/// One box of a detector, all bounds included.
+/// One box of a detector; its bounds are inclusive.
 struct Detection {
   int left = 0, top = 0, right = 0, bottom = 0;
   ClassDistribution classes;

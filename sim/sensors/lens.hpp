@@ -26,8 +26,8 @@ class Lens {
   std::vector<Source> source_;  // by pixel; empty without distortion
 };
 
-/// Blurs by a slightly soft lens and the interpolation of a color filter: a Gaussian in linear
-/// light of this standard deviation, px; 0 or less: no change.
+/// Blurs like a slightly soft lens and the interpolation of a color filter array: with a Gaussian
+/// of this standard deviation (px) in linear light; 0 or less: no change.
 void blur_by_lens(Grid2d<Rgb8>& color, double sigma_px);
 
 /// A distorted pixel's point at unit depth: the inverse of the distortion, by Newton's method. NaN

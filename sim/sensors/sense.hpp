@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// Maximum incidence, 80 deg: Nguyen et al. could not measure beyond it; the sensor returned too
-/// little.
+/// Maximum incidence, 80 deg: Nguyen et al. could not measure beyond it, since the sensor returned
+/// too few readings.
 inline constexpr double kMaxIncidenceRad = 1.3962634015954636;
 /// Disparity steps per pixel: Khoshelham and Elberink, section 3.2.
 inline constexpr double kDisparityStepsPerPx = 8.0;
@@ -21,11 +21,11 @@ inline constexpr double kDisparityStepsPerPx = 8.0;
 /// of Nguyen et al., their angular term from 60 deg on; the incidence is clamped to
 /// kMaxIncidenceRad.
 double axial_sigma_m(double depth_m, double incidence_rad);
-/// Standard deviation (px) across the axis; equation of Nguyen et al., incidence clamped the same
-/// way.
+/// Standard deviation (px) perpendicular to the axis; equation of Nguyen et al., incidence clamped
+/// in the same way.
 double lateral_sigma_px(double incidence_rad);
 
-/// The gain for an image of this exposure: never below 1, since a camera then shortens the exposure
+/// The gain for an image of this exposure: never below 1, since a camera would shorten the exposure
 /// time instead. Unknown exposure (0): the configured gain.
 double analog_gain(const ShotNoiseConfig& config, float exposure);
 

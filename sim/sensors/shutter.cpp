@@ -203,7 +203,7 @@ RenderedFrame Shutter::render(const Camera& pinhole, std::size_t i, double after
   return scene->render(pinhole, pose);
 }
 
-/// How many images are to be blended into a frame.
+/// Number of images to blend into a frame.
 int Shutter::images_within(std::size_t i) const {
   const MotionSampling& sampling = config_.motion_sampling;
   const double duration_s = Rows::duration_s(config_);
@@ -221,8 +221,8 @@ int Shutter::images_within(std::size_t i) const {
   return std::clamp(wanted, 3, std::max(3, sampling.max_images | 1));
 }
 
-/// Blends the images of a frame's time.
-/// @param image  of the stamp; empty: its rows are rendered as they are needed
+/// Blends the images taken within a frame's exposure.
+/// @param image  the image at the stamp; empty: its rows are rendered as they are needed
 void Shutter::blur(RenderedFrame& image, std::size_t i, int images, LabelMode labels) const {
   const Camera& camera = lens_.pinhole();
   const Rows rows(config_, camera.height_px, images);
@@ -272,7 +272,7 @@ std::vector<double> Shutter::exposure_gains() const {
     for (const Rgb8& c : render(meter, i, 0.0).color)
       mean += luminance(srgb_to_linear(c)) / (kWidth * kHeight);
     const double wanted = std::clamp(std::log(config.target / std::max(mean, 1e-6)), -limit, limit);
-    // At the first frame the control has settled.
+    // At the first frame, the control has settled.
     const double share =
         i == 0 || config.time_constant_s <= 0.0
             ? 1.0

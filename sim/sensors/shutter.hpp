@@ -17,7 +17,8 @@ namespace mh {
 /// with a constant twist; before the first and after the last it is at rest.
 SE3 pose_at(const Trajectory& path, std::size_t i, double after_s);
 
-/// Indices of the frames that arrive, at least the first. Draws are keyed by the frame's index.
+/// Indices of the frames that arrive, at least the first. Random draws are keyed by the frame's
+/// index.
 std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config,
                                   RandomStream stream);
 /// The frames of a path that arrive.
@@ -30,7 +31,7 @@ class Shutter {
   /// A scene in which something moves: its renderer at a given time.
   using SceneAt = std::function<std::shared_ptr<const Renderer>(Stamp)>;
 
-  /// @param renderer  of the scene; shared, one serves every path
+  /// @param renderer  of the scene; shared: one renderer serves every path
   /// @param path      world_from_camera, at least one pose
   Shutter(SceneAt scene, const Camera& camera, Trajectory path, const SensorConfig& config);
   Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
@@ -70,7 +71,7 @@ class Shutter {
     std::once_flag made;
     std::vector<double> by_frame;
   };
-  std::shared_ptr<Gains> gains_ = std::make_shared<Gains>();  // made when the first is needed
+  std::shared_ptr<Gains> gains_ = std::make_shared<Gains>();  // computed when the first is needed
 };
 
 /// The camera with the distortion that a level specifies.

@@ -24,7 +24,8 @@ enum DetectorDraw : std::uint64_t {
 
 // False alarms come from this many independent sources, each at most once per image.
 constexpr std::uint64_t kAlarms = 8;
-// Any class with boxes, to draw a different one from; person is the most frequent class in COCO.
+// A class with boxes, from which wrong_class() draws a different one; person is the most frequent
+// class in COCO.
 constexpr ClassId kPerson = 31;
 // A palette has room for 255 entries; two are taken.
 constexpr std::size_t kMostDetections = 253;

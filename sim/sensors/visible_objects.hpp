@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// The visible part of an instance in an image. The box includes all its bounds.
+/// The visible part of an instance in an image. The box's bounds are inclusive.
 struct VisibleObject {
   int left = 0, top = 0, right = 0, bottom = 0;
   ClassId class_id = kVoid;
@@ -36,7 +36,7 @@ inline bool is_coco(ClassId class_id) {
   return classes()[class_id].coco80 >= 0;
 }
 
-/// Sorts larger ones first, so that smaller boxes are painted over them; then by instance.
+/// Sorts larger objects first, so that smaller boxes are painted over them; then by instance.
 void sort_for_painting(std::vector<VisibleObject>& objects);
 
 }  // namespace mh

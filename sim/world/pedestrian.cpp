@@ -123,9 +123,9 @@ Pedestrian load_pedestrian(const std::filesystem::path& file) {
     pedestrian.path_m.emplace_back(xy[0], xy[1]);
     if (pedestrian.path_m.size() > 1 &&
         pedestrian.path_m.back() == pedestrian.path_m[pedestrian.path_m.size() - 2])
-      place.fail("is the place before it again");
+      place.fail("repeats the place before it");
   }
-  if (pedestrian.path_m.size() < 2) path.fail("a path needs two places or more");
+  if (pedestrian.path_m.size() < 2) path.fail("a path needs at least two places");
   pedestrian.speed_m_per_s = yaml.number_or("speed_m_per_s", pedestrian.speed_m_per_s, 0.01, 10.0);
   pedestrian.start_s = yaml.number_or("start_s", pedestrian.start_s, 0.0, 1e6);
   yaml.finish();

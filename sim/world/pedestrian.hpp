@@ -16,7 +16,7 @@ namespace mh {
 struct Pedestrian {
   std::vector<Eigen::Vector2d> path_m;  ///< two places or more, world
   double speed_m_per_s = 1.2;           ///< above 0
-  double start_s = 0;  ///< when the pedestrian sets off; waits at the first place until then
+  double start_s = 0;                   ///< when the pedestrian leaves the first place
 };
 
 /// Reads a pedestrian (YAML): `path: [[x, y], ...]`, optional `speed_m_per_s`, `start_s`.
@@ -33,12 +33,12 @@ Scene build_pedestrian(const Eigen::Vector3f& light);
 inline constexpr double kPedestrianRadius_m = 0.22;
 inline constexpr double kPedestrianHeight_m = 1.72;
 
-/// The pedestrian's instance in a scene: one above its own.
+/// The pedestrian's instance in a scene: one above the scene's own instances.
 InstanceId pedestrian_instance(const Scene& scene);
 
 /// A scene with a pedestrian on its floor. The two are rendered separately and merged by depth, so
 /// the pedestrian occludes what is behind and is occluded by what is in front; a pedestrian casts
-/// no shadow and is lit by the scene's mean light, not by that of its place.
+/// no shadow and is lit by the scene's mean light, not by the light at its place.
 class PedestrianScene {
  public:
   /// @param scene     the scene of `renderer`; its mean light lights the pedestrian
@@ -49,7 +49,7 @@ class PedestrianScene {
   PedestrianScene(const PedestrianScene&) = delete;
   PedestrianScene& operator=(const PedestrianScene&) = delete;
 
-  /// The scene as it is at one moment. Must not outlive this.
+  /// The scene as it is at a given time. Must not outlive this.
   std::shared_ptr<const Renderer> at(Stamp stamp_ns) const;
   const Pedestrian& pedestrian() const { return pedestrian_; }
 

@@ -30,7 +30,7 @@ std::vector<std::size_t> moments(const Shutter& shutter, const SensorConfig& sen
 
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t i) {
-  constexpr std::uint64_t kSecond = ~std::uint64_t{0};  // no frame's number
+  constexpr std::uint64_t kSecond = ~std::uint64_t{0};  // not the number of any frame
   const RandomStream seed(options.seed);
   auto [seen, exact] = sense_moment(shutter, sensors, options.labels, i,
                                     options.is_second ? seed.fork(kSecond) : seed);

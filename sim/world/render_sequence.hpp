@@ -15,10 +15,10 @@ struct RenderSequenceOptions {
   std::size_t every = 1;          ///< only every n-th of them
   LabelMode labels = LabelMode::kExact;
   std::uint64_t seed = 0;  ///< of the sensors' noise
-  bool is_second = false;  ///< camera of a pair: its noise is its own, and it loses the same frames
+  bool is_second = false;  ///< camera of a pair: has its own noise but loses the same frames
   int threads = 2;         ///< each works on its own frame, from rays to files
   bool resume = false;     ///< skips frames that already exist
-  /// Replaces a frame's labels, if set: of the path's i-th moment. Called by several threads.
+  /// If set, replaces the labels of the frame at the path's i-th pose. Called by several threads.
   std::function<void(RgbdFrame& frame, std::size_t i)> relabel = nullptr;
 };
 
@@ -26,19 +26,20 @@ struct RenderSequenceOptions {
 /// frames.
 Camera recorded_camera(Camera camera, const RenderSequenceOptions& options);
 
-/// Returns the requested moments of the shutter's path that are delivered, in order.
+/// Returns the indices of the requested poses of the shutter's path whose frames are delivered, in
+/// order.
 std::vector<std::size_t> moments(const Shutter& shutter, const SensorConfig& sensors,
                                  const RenderSequenceOptions& options);
 
-/// Returns the frame of the path's i-th moment, with the truth; its classes are the delivered
-/// labels: each pixel's most probable one, void where there is none.
+/// Returns the frame at the path's i-th pose, with the ground truth; its classes are the delivered
+/// labels: each pixel's most probable class, void where there is none.
 ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
                        const RenderSequenceOptions& options, std::size_t i);
 
 struct RenderedSequence {
   std::size_t frames = 0;   ///< written by this run
-  std::size_t resumed = 0;  ///< that already existed
-  /// Time spent in the stages, summed over all threads and over the written frames.
+  std::size_t resumed = 0;  ///< skipped because they already existed
+  /// Time spent in each stage, summed over all threads and written frames.
   double render_s = 0, encode_s = 0;
 };
 

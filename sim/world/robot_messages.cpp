@@ -143,7 +143,7 @@ class RobotMessages {
     for (std::size_t i = 0; i < moments.size(); ++i) {
       ros::Imu message;
       message.header = header(i, "imu_link");
-      message.orientation_covariance[0] = -1;  // as the type prescribes for one that is unknown
+      message.orientation_covariance[0] = -1;  // as the message type prescribes if it is unknown
       message.angular_velocity = vector_message(moments[i].turn_rad_per_s);
       message.linear_acceleration = vector_message(moments[i].specific_force_m_per_s2);
       log_.add(imu, stamp_ns(i), message);
@@ -210,7 +210,7 @@ DriveRecord record_drive(const Scene& scene, const Robot& robot, const DrivenPat
   }
   try {
     record.grid = make_floor_grid(*level, {.top_m = robot.height_m});
-  } catch (const InputError&) {  // a scene without a floor has none
+  } catch (const InputError&) {  // a scene without a floor has no grid
   }
   return record;
 }

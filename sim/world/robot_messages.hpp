@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// A drive, as the robot under it would report it.
+/// A drive, as its robot would report it.
 struct DriveRecord {
   const Robot& robot;
   const DrivenPath& path;                 ///< of a robot that drove
@@ -30,8 +30,9 @@ DriveRecord record_drive(const Scene& scene, const Robot& robot, const DrivenPat
                          const std::vector<MovingObstacle>& others);
 
 /// The messages of a robot: tf (map, odom, base_footprint, base_link, camera_link,
-/// camera_optical_frame and the sensors' frames), the true pose of its base and, where it has the
-/// sensors, odometry, laser scans, sonars, bumpers and IMU; the floor's grid. Sorted by stamp.
+/// camera_optical_frame and the sensors' frames), the true pose of its base, the readings of those
+/// sensors that it has (odometry, laser scans, sonars, bumpers, IMU), and the floor's grid. Sorted
+/// by stamp.
 MessageLog robot_messages(ros::Wire wire, const DriveRecord& drive);
 
 }  // namespace mh

@@ -20,11 +20,11 @@ struct SceneDrive {
   std::filesystem::path level;  ///< of the sensors; empty = no noise
   std::uint64_t seed = 0;       ///< determines which frames are delivered
   SceneFrame frame = {};
-  std::function<void(Scene&)> light = {};  ///< adds its light; empty: it is baked
+  std::function<void(Scene&)> light = {};  ///< adds the scene's light; empty: it is baked
 };
 
 /// Opens a scene seen by a robot along a tour, with exact labels, rendered on demand.
-/// @param notes  receives what was repaired in the scene, one line each; may be null
+/// @param notes  receives one line for each repair of the scene; may be null
 /// @throws InputError naming file and place.
 std::unique_ptr<Sequence> open_scene(const SceneDrive& source,
                                      std::vector<std::string>* notes = nullptr);

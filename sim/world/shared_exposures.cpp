@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 
 // The file: an entry per frame, then records in the order in which they were made. An entry is
-// written after its record, so that whoever finds an entry finds the record.
+// written after its record, so that a process that finds an entry also finds its record.
 
 namespace mh {
 namespace {
@@ -27,7 +27,7 @@ namespace {
 struct Entry {
   std::uint64_t offset = 0, digest = 0;  // of the record
   std::uint32_t runs = 0;
-  std::uint32_t number = 0;  // of the frame, from 1; 0: not there yet
+  std::uint32_t number = 0;  // of the frame, from 1; 0: not written yet
 };
 static_assert(sizeof(Entry) == 24);
 
@@ -84,7 +84,7 @@ std::vector<Run> runs_of(const RenderedFrame& seen) {
   return runs;
 }
 
-/// Whether the runs fill the image.
+/// Expands the runs into an image; false if they do not fill it exactly.
 bool expand(std::span<const Run> runs, RenderedFrame& seen) {
   std::size_t at = 0;
   for (const Run& run : runs) {
@@ -110,7 +110,7 @@ std::string folder_of(const std::vector<RandomStream>& noises) {
   return fmt::format("{:016x}", noises.front().key());
 }
 
-/// The right to make a frame: a lock that ends with the process.
+/// The right to make a frame: a lock, released at the latest when the process ends.
 class SharedExposures::FrameLock {
  public:
   FrameLock(int file, std::size_t i, bool wait) : file_(file), i_(i) {
@@ -258,7 +258,7 @@ void SharedExposures::write(std::size_t i, const Shutter::Exposed& exposed) {
       pwrite(file_descriptor_, &entry, sizeof entry, static_cast<off_t>(i * sizeof entry)) ==
           sizeof entry)
     return;
-  // The disk is full, or the like: the space is freed once no process reads the file.
+  // The disk is probably full: the space is freed once no process reads the file.
   writable_ = false;
   unlink(file_.c_str());
 }

@@ -16,15 +16,16 @@
 
 namespace mh {
 
-/// Where processes that see the same images leave them for each other.
+/// Where processes that need the same images share them.
 struct SharedImages {
   std::filesystem::path folder;   ///< created if missing; empty: every process makes its own
-  std::uint64_t limit_bytes = 0;  ///< of all files in it and in its folders
-  /// Images with one of these noises are left there, too.
+  std::uint64_t limit_bytes = 0;  ///< of all files in it and its subfolders
+  /// Images with one of these noises are shared there, too.
   std::vector<RandomStream> noises = {};
 };
 
-/// The folder, in that of the images, for those with these noises; at least one.
+/// Name of the subfolder for images with these noises.
+/// @pre at least one noise
 std::string folder_of(const std::vector<RandomStream>& noises);
 
 /// The exposures of one path, made once for all processes that need them: the first one to need an
@@ -32,16 +33,16 @@ std::string folder_of(const std::vector<RandomStream>& noises);
 /// damaged there is made again: the file saves time and never changes a bit.
 ///
 /// Nothing is written beyond the limit, nor once the disk has less than kLeaveFree_bytes left. A
-/// process that needs an exposure that another one is making makes one that both will need next,
-/// or waits.
+/// process that needs an exposure that another one is making makes one that both will need next or,
+/// if there is none, waits.
 class SharedExposures {
  public:
   using Make = std::function<Shutter::Exposed(std::size_t)>;
 
-  /// @param name    names the file, which may have its own folders; identifies scene, camera, path,
-  ///                sensors and, if exposures are given with it, noise
+  /// @param name    names the file, which may be in subfolders; identifies scene, camera, path,
+  ///                sensors and, if the exposures include it, noise
   /// @param camera  of the exposures
-  /// @param frames  of the path
+  /// @param frames  number of frames of the path
   SharedExposures(SharedImages where, const std::string& name, const Camera& camera,
                   std::size_t frames);
   ~SharedExposures();

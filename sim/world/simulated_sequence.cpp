@@ -18,14 +18,14 @@ Shutter::SceneAt scene_at(std::shared_ptr<const Renderer> renderer,
   return [renderer = std::move(renderer)](Stamp) { return renderer; };
 }
 
-/// Senses what the shutter exposed at the path's i-th moment; without labels.
+/// Senses what the shutter exposed at the path's i-th pose; without labels.
 RgbdFrame sense_exposed(const Shutter& shutter, const SensorConfig& sensors, std::size_t i,
                         RandomStream noise, const Shutter::Exposed& exposed) {
   return sense(exposed.seen, shutter.camera(), sensors, noise.fork(i), shutter.path()[i].stamp_ns,
                exposed.gain);
 }
 
-/// Labels what is seen at the path's i-th moment; uses only classes and instances of `seen`.
+/// Labels what is seen at the path's i-th pose; uses only classes and instances of `seen`.
 SemanticImage label_exposed(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
                             std::size_t i, RandomStream noise, const RenderedFrame& seen) {
   return sense_labels(seen, labels, sensors, shutter.path()[i].world_from_camera, noise.fork(i));
@@ -44,7 +44,8 @@ SimulatedSequence::SimulatedSequence(std::shared_ptr<const Renderer> renderer, C
 
 void SimulatedSequence::share(const SharedImages& images, const std::string& name) {
   images_ = images;
-  // Annotated labels belong to another moment; all other labels see the same.
+  // Annotated labels need exposures with the classes at the stamp; all other labels share the same
+  // exposures.
   name_ = labels_ == LabelMode::kAnnotated ? name + "-annotated" : name;
   shared_ = std::make_unique<SharedExposures>(images, name_, camera(), size());
 }

@@ -17,14 +17,14 @@
 
 namespace mh {
 
-/// One moment of a shutter's path: what the camera delivers, and the exact frame behind it.
+/// What the camera delivers at one pose of a shutter's path, and the exact frame behind it.
 struct SensedMoment {
   RgbdFrame frame;
   RenderedFrame exact;
 };
 
-/// Exposes, senses and labels the path's i-th moment, as SimulatedSequence::frame() does in steps
-/// that it can share. Noise is keyed by (noise, i, pixel).
+/// Exposes, senses and labels the frame at the path's i-th pose; SimulatedSequence::frame() does
+/// the same in steps whose results it can share. Noise is keyed by (noise, i, pixel).
 SensedMoment sense_moment(const Shutter& shutter, const SensorConfig& sensors, LabelMode labels,
                           std::size_t i, RandomStream noise);
 
@@ -37,17 +37,17 @@ class SimulatedSequence : public Sequence {
                     LabelMode labels,
                     std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
-  /// From now on, exposures are shared with the processes that give the same folder and name, and
-  /// frames with one of images.noises with those that also give the same noises.
+  /// From now on, exposures are shared with the processes that pass the same folder and name;
+  /// frames with one of images.noises, with those that also pass the same noises.
   /// @param name identifies everything that the constructor received, except labels
   void share(const SharedImages& images, const std::string& name);
 
-  /// From now on frames carry the odometry of their moment.
-  /// @param odom_from_camera  as many as there are frames
+  /// From now on, frames carry the odometry at their stamp.
+  /// @param odom_from_camera  one pose per frame
   void set_odometry(std::vector<SE3> odom_from_camera) {
     odom_from_camera_ = std::move(odom_from_camera);
   }
-  /// From now on frames carry what the lasers measure at their moment.
+  /// From now on, frames carry what the lasers measure at their stamp.
   using LasersAt = std::function<std::vector<LaserScan>(std::size_t i)>;
   void set_lasers(LasersAt lasers) { lasers_ = std::move(lasers); }
   void set_imu(std::vector<ImuReading> readings) { imu_ = std::move(readings); }
@@ -70,7 +70,7 @@ class SimulatedSequence : public Sequence {
   std::vector<SE3> odom_from_camera_;        // or empty
   std::vector<ImuReading> imu_;              // or empty
   LasersAt lasers_;                          // or empty
-  SharedImages images_;                      // shared
+  SharedImages images_;                      // where exposures are shared
   std::string name_;                         // of their file
   std::unique_ptr<SharedExposures> shared_;  // or null
   mutable std::mutex opening_;

@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-/// Ticks that a frame depends on: its motion, and what an exposure control saw before.
+/// Number of ticks that a frame depends on: its motion, and what the exposure control saw before.
 constexpr std::size_t kClip = 10;
 
 Shutter::SceneAt moment_of_scene(const SimulatedScene& scene) {

@@ -29,8 +29,8 @@ struct SimulatedScene {
 struct SimulationConfig {
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0;
-  /// A frame is delivered every this many ticks of the camera: 3 give 10 of 30 Hz, what Pepper's
-  /// driver publishes (naoqi_driver aed1b87, boot_config.json).
+  /// A frame is delivered once in this many ticks of the camera: with 3, a 30 Hz camera delivers
+  /// the 10 Hz that Pepper's driver publishes (naoqi_driver aed1b87, boot_config.json).
   int ticks_per_frame = 3;
   LabelMode labels = LabelMode::kExact;
   std::uint64_t seed = 0;  ///< of all noise
@@ -40,14 +40,14 @@ struct SimulationConfig {
 /// What the robot's sensors deliver after a step.
 struct RobotObservation {
   Stamp stamp_ns = 0;
-  /// If one was due during the step; the latest, if several. Stamped one tick of the camera before
-  /// it arrives: an exposure is over before it is read out.
+  /// Set if a frame was due during the step (the latest, if several were). Stamped one tick of the
+  /// camera before it arrives: an exposure is over before it is read out.
   std::optional<RgbdFrame> frame;
-  Grid2d<InstanceId> instances;  ///< of its pixels: not for systems; empty without a frame
+  Grid2d<InstanceId> instances;  ///< of its pixels, not for SLAM; empty without a frame
   /// Lasers, sonars and bumpers now; the IMU one tick ago.
   RobotReading reading;
   SE3 odom_from_base;    ///< wheel odometry
-  SE3 odom_from_camera;  ///< the same of the camera at the frame's stamp
+  SE3 odom_from_camera;  ///< the same for the camera, at the frame's stamp
 };
 
 /// A robot in a scene, stepped by its controller: physics, sensors and camera of a robot that is
@@ -71,7 +71,7 @@ class Simulation {
   /// While the light is off, frames are blank.
   void switch_light(bool on) { light_ = on; }
 
-  // The truth: for scores only.
+  // The ground truth: for scoring only.
   const CommandedBase& truth() const { return base_; }
   /// world_from_camera of the last frame that was delivered, at its stamp; or none.
   const std::optional<TimedPose>& truth_of_frame() const { return frame_pose_; }
@@ -80,7 +80,7 @@ class Simulation {
  private:
   void tick();
   TimedPose pose_now() const;
-  /// Index of the last tick's pose but one in recent_: of what arrives now.
+  /// Index in recent_ of the second-to-last tick's pose: the pose of the frame that arrives now.
   std::size_t tick_before() const { return recent_.size() < 2 ? 0 : recent_.size() - 2; }
   SensedMoment frame() const;
 

@@ -66,8 +66,7 @@ Motion parse(const std::string& motion) {
     return {.file = motion};
   }
   if (parts.size() > (by_hand ? 3U : 2U))
-    throw InputError(
-        fmt::format("motion '{}': there is no such part as '{}'", motion, parts.back()));
+    throw InputError(fmt::format("motion '{}': unexpected part '{}'", motion, parts.back()));
   Motion result{.kind = by_hand ? Motion::Kind::kHandheld : Motion::Kind::kAuto, .survey = survey};
   if (parts.size() > 1) result.seed = number(motion, parts[1], "seed");
   if (parts.size() > 2) {
@@ -77,7 +76,7 @@ Motion parse(const std::string& motion) {
   return result;
 }
 
-/// What parts of a recorded path cannot be replayed. @throws InputError if nothing can
+/// Notes on the parts of a recorded path that cannot be replayed. @throws InputError if none can be
 std::vector<std::string> notes_on_replay(const std::filesystem::path& file) {
   std::vector<std::string> notes;
   read_trajectory(file, &notes);
@@ -134,7 +133,7 @@ std::string note_on(const std::string& motion, const Robot& robot) {
   constexpr double kDegreesPerRad = 180 / std::numbers::pi;
   const auto slower = [&](const char* key, double asked, double limit) {
     return asked <= limit ? ""
-                          : fmt::format("{}: {} {:g} is more than robot '{}' does: {:g}",
+                          : fmt::format("{}: {} {:g} is more than robot '{}' can do: {:g}",
                                         parsed.file.string(), key, asked, robot.name, limit);
   };
   if (tour.max_velocity_m_per_s)
@@ -151,7 +150,8 @@ std::string note_on(const std::string& motion, const Robot& robot) {
     for (const Waypoint& waypoint : tour.waypoints)
       if (waypoint.look_at_m)
         return fmt::format(
-            "{}:{}: robot '{}' has a differential drive: it faces its way, not the place of 'face'",
+            "{}:{}: robot '{}' has a differential drive: it faces its direction of travel, not the "
+            "place in 'face'",
             parsed.file.string(), waypoint.line, robot.name);
   return "";
 }
@@ -172,7 +172,7 @@ DrivenPath travel(const Scene& scene, const Robot& robot, const std::string& mot
   const LevelScene level(scene);
   DrivenPath path = travel_on_level(*level, robot, parse(motion), others);
   if (scene.floor.is_level_zero()) return path;
-  if (!path.moved.empty()) path.moved += ", their ground put onto the scene's floor";
+  if (!path.moved.empty()) path.moved += ", their ground plane moved onto the scene's floor";
   for (Trajectory* poses : {&path.camera, &path.base})
     for (TimedPose& pose : *poses)
       pose.world_from_camera = level.world_from_level() * pose.world_from_camera;
@@ -205,7 +205,7 @@ DrivenPath hurried(DrivenPath path, const std::string& motion, const SensorConfi
   }
   path.contact_time_s /= speed;
   if (!path.moved.empty())
-    path.moved += fmt::format(", {:g} times as fast by the level's hurry", speed);
+    path.moved += fmt::format(", {:g} times as fast because of the level's hurry", speed);
   return path;
 }
 

@@ -13,11 +13,11 @@ namespace mh {
 // SLAM settings by full name: "features.count". @pre A name passed in is one of setting_names();
 // otherwise std::logic_error.
 
-/// In the order of the settings file.
+/// All full names, in the order of the settings file.
 std::vector<std::string> setting_names();
 bool is_setting(std::string_view name);
 
-/// The value as a settings file writes it.
+/// The value as written in a settings file.
 std::string setting_text(const SlamConfig& config, std::string_view name);
 /// The value as a number: a switch is 0 or 1, a word its index among the allowed words.
 double setting_value(const SlamConfig& config, std::string_view name);

@@ -19,11 +19,12 @@ template <MaybeConst<FeatureConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [count, levels, scale, fast_threshold, fast_threshold_low, max_depth_m] = c;
   v("count", count, {10, 20000}, "keypoints wanted per frame");
-  v("levels", levels, {1, 16}, "of the image pyramid");
-  v("scale", scale, {1.01, 2}, "between levels");
+  v("levels", levels, {1, 16}, "levels of the image pyramid");
+  v("scale", scale, {1.01, 2}, "scale factor between levels");
   v("fast_threshold", fast_threshold, setting::kGray, "gray levels");
-  v("fast_threshold_low", fast_threshold_low, setting::kGray, "where the first finds nothing");
-  v("max_depth_m", max_depth_m, {0.1, 1000}, "depth beyond is dropped");
+  v("fast_threshold_low", fast_threshold_low, setting::kGray,
+    "used where the first threshold finds nothing");
+  v("max_depth_m", max_depth_m, {0.1, 1000}, "larger depths are dropped");
 }
 
 }  // namespace mh

@@ -11,8 +11,9 @@ struct KeyframeConfig {
   double min_tracked_share = 0.5;  ///< of the reference keyframe's landmarks
   int min_close_tracked = 100;     ///< fewer tracked close points than this, and
   int min_close_new = 70;          ///< more untracked close points than this: a keyframe is needed
-  double close_depth_m = 3.5;      ///< up to here, landmarks are created from depth at once
-  double redundant_share = 0.9;    ///< of a keyframe's landmarks seen by 3 others: culled
+  double close_depth_m = 3.5;      ///< up to this depth, landmarks are created at once
+  double redundant_share =
+      0.9;  ///< a keyframe is culled if 3 others see this share of its landmarks
   friend bool operator==(const KeyframeConfig&, const KeyframeConfig&) = default;
 };
 
@@ -23,14 +24,14 @@ void fields(C& c, Visit& v) {
   v("max_interval", max_interval, setting::kCount,
     "frames after which untracked close points alone call for a keyframe");
   v("min_tracked_share", min_tracked_share, setting::kShare,
-    "of the reference keyframe's landmarks");
+    "a keyframe is added if a smaller share of the reference keyframe's landmarks is tracked");
   v("min_close_tracked", min_close_tracked, {0, setting::kMany},
-    "fewer close points tracked than this and");
+    "a keyframe is added if fewer close points than this are tracked and");
   v("min_close_new", min_close_new, {0, setting::kMany},
-    "more close points new than this: a keyframe");
-  v("close_depth_m", close_depth_m, {0.1, 1000}, "depth makes a landmark at once up to here");
+    "more close points than this are untracked");
+  v("close_depth_m", close_depth_m, {0.1, 1000}, "up to this depth, landmarks are created at once");
   v("redundant_share", redundant_share, setting::kShare,
-    "of its landmarks seen by 3 others: culled");
+    "a keyframe is culled if 3 others see this share of its landmarks");
 }
 
 }  // namespace mh

@@ -9,8 +9,8 @@ struct LoopConfig {
   bool enabled = true;
   bool augmented = false;  ///< candidates by equation 1 with labels; otherwise by words alone
   int min_gap = 10;        ///< keyframes between the two ends, at least
-  /// Below this number of shared landmarks, chance matches across a drift of a few centimeters tie
-  /// the ends too loosely to correct it.
+  /// The ends of a loop share fewer landmarks than this: chance matches across a drift of a few
+  /// centimeters tie them too loosely to correct it.
   int loosely_shared = 60;
   /// Minimum similarity of a candidate, as a share of the similarity of the least similar strong
   /// neighbor.
@@ -25,11 +25,12 @@ struct LoopConfig {
   double max_drift_rad = 0.35;
   double negligible_m = 0.01;  ///< below this, landmarks are merged but poses stay
   double negligible_rad = 0.003;
-  /// Pieces of a map are joined where this many keyframes agree on it, over this way of the camera.
+  /// Pieces of a map are joined once this many keyframes agree on their relative pose, over this
+  /// length of the camera's path.
   int joining = 5;
   double joining_m = 1.5;
-  /// If not 0, only where the camera's motion from one to the other is known this well (two
-  /// standard deviations), so that no copy of the place is within reach.
+  /// If not 0, pieces are joined only if the camera's motion between them is known this accurately
+  /// (two standard deviations), so that no look-alike place is within reach.
   double joining_within_m = 0;
   friend bool operator==(const LoopConfig&, const LoopConfig&) = default;
 };
@@ -41,27 +42,30 @@ void fields(C& c, Visit& v) {
          negligible_rad, joining, joining_m, joining_within_m] = c;
   v("enabled", enabled, setting::kSwitch, "whether loops are looked for");
   v("augmented", augmented, setting::kSwitch,
-    "candidates by equation 1 with labels; else by words alone");
-  v("min_gap", min_gap, setting::kCount, "keyframes between the two ends");
-  v("loosely_shared", loosely_shared, setting::kCount, "landmarks: the two ends share fewer");
+    "candidates by equation 1 with labels; otherwise by words alone");
+  v("min_gap", min_gap, setting::kCount, "keyframes between the two ends, at least");
+  v("loosely_shared", loosely_shared, setting::kCount,
+    "the two ends share fewer landmarks than this");
   v("min_similarity_share", min_similarity_share, setting::kShare,
-    "of the least alike strong neighbor's");
-  v("agreeing", agreeing, setting::kCount, "keyframes that must agree on the same drift,");
+    "least similarity of a candidate, as a share of that of the least similar strong neighbor");
+  v("agreeing", agreeing, setting::kCount, "keyframes that must agree on the drift");
   v("patience", patience, setting::kCount,
-    "each at most this many keyframes after the previous one");
-  v("same_drift_m", same_drift_m, setting::kLength_m, "what counts as the same");
+    "each of them follows the previous one by at most this many keyframes");
+  v("same_drift_m", same_drift_m, setting::kLength_m,
+    "drifts that differ by at most this and same_drift_rad agree");
   v("same_drift_rad", same_drift_rad, setting::kAngle_rad, "");
-  v("max_drift_m", max_drift_m, setting::kLength_m,
-    "no loop moves the camera farther than this and");
-  v("max_drift_share", max_drift_share, setting::kShare, "this share of the way between its ends,");
-  v("max_drift_rad", max_drift_rad, setting::kAngle_rad, "nor turns it farther");
-  v("negligible_m", negligible_m, setting::kLength_m, "below, landmarks are joined but poses stay");
+  v("max_drift_m", max_drift_m, setting::kLength_m, "a loop moves the camera by at most this plus");
+  v("max_drift_share", max_drift_share, setting::kShare,
+    "this share of the path between its ends,");
+  v("max_drift_rad", max_drift_rad, setting::kAngle_rad, "and turns it by at most this");
+  v("negligible_m", negligible_m, setting::kLength_m,
+    "below this and negligible_rad, landmarks are joined but poses stay");
   v("negligible_rad", negligible_rad, setting::kAngle_rad, "");
   v("joining", joining, setting::kCount, "keyframes that must agree before pieces are joined,");
-  v("joining_m", joining_m, setting::kLength_m, "over this way of the camera,");
+  v("joining_m", joining_m, setting::kLength_m, "over this length of the camera's path,");
   v("joining_within_m", joining_within_m, setting::kLength_m,
-    "and only if the motion between them is known this well, since copies may be farther away; 0: "
-    "always");
+    "and only if the motion between the pieces is known this accurately, so that no look-alike "
+    "place is within reach; 0: always");
 }
 
 }  // namespace mh

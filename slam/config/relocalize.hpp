@@ -12,7 +12,8 @@ namespace mh {
 
 /// What it takes to accept a candidate keyframe's pose.
 enum class Acceptance {
-  kOurs,     ///< any consensus of ransac.min_inliers; guided searches follow, whatever its size
+  kOurs,     ///< any consensus of at least ransac.min_inliers; guided searches follow, whatever its
+             ///< size
   kOrbSlam2  ///< by ORB-SLAM2's rules (Mur-Artal and Tardos 2017): see candidate_trial.hpp
 };
 constexpr std::array<std::pair<std::string_view, Acceptance>, 2> words(Acceptance) {
@@ -24,7 +25,7 @@ constexpr std::array<std::pair<std::string_view, Acceptance>, 2> words(Acceptanc
 enum class NeighborScores {
   kFresh,      ///< computed with this query
   kCleared,    ///< 0: ORB-SLAM2's mRelocScore if it were cleared before each query
-  kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Answers
+  kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Replies
                ///< then depend on the order of the queries.
 };
 constexpr std::array<std::pair<std::string_view, NeighborScores>, 3> words(NeighborScores) {
@@ -38,9 +39,10 @@ struct RelocalizeConfig {
   NeighborScores neighbor_scores = NeighborScores::kFresh;
   int min_word_matches = 15;
   int min_inliers = 50;    ///< to accept a pose
-  double rival_share = 0;  ///< a pose is refused if one elsewhere has at least this share of its
-                           ///< inliers; 0: the first pose is taken
-  /// Around where a pose from few matches predicts a landmark; the second search uses 4 px.
+  double rival_share = 0;  ///< a pose is refused if a rival elsewhere has at least this share of
+                           ///< its inliers; 0: the first pose is taken
+  /// Around the position that a pose from few matches predicts for a landmark; the second search
+  /// uses 4 px.
   double search_radius_px = 10;
   /// Standard deviation of a true pair's disparity error (in addition to the keypoint's own, as in
   /// Camera) before the pose is refined on the local map; never less than the camera's own. The
@@ -57,17 +59,20 @@ template <MaybeConst<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, rival_share, search_radius_px,
          disparity_sigma_px, ransac] = c;
-  v("acceptance", acceptance, {}, "of a candidate's pose: ours or orb_slam2");
+  v("acceptance", acceptance, {},
+    "by which rules a candidate's pose is accepted: ours or orb_slam2");
   v("neighbor_scores", neighbor_scores, {},
-    "in equation 5: fresh, cleared or as_released (by ORB-SLAM2)");
-  v("min_word_matches", min_word_matches, setting::kPoints, "with a candidate keyframe");
-  v("min_inliers", min_inliers, setting::kPoints, "to accept a pose");
+    "scores of neighbors in equation 5: fresh, cleared or as_released (as in ORB-SLAM2)");
+  v("min_word_matches", min_word_matches, setting::kPoints,
+    "matches by words that a candidate keyframe needs");
+  v("min_inliers", min_inliers, setting::kPoints, "inliers needed to accept a pose");
   v("rival_share", rival_share, setting::kShare,
-    "of its inliers refuse a pose if another has them elsewhere; 0: the first is taken");
+    "a pose is rejected if another one elsewhere has this share of its inliers; 0: the first pose "
+    "is taken");
   v("search_radius_px", search_radius_px, setting::kRadius_px,
-    "of the first search by pose (ours)");
+    "of the first search by pose (acceptance: ours)");
   v("disparity_sigma_px", disparity_sigma_px, {0, 1000},
-    "how far a true pair's depth strays; at least the camera's own");
+    "standard deviation of a true pair's disparity error; at least the camera's own");
   fields(ransac, v);
 }
 

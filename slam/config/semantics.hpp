@@ -32,7 +32,7 @@ constexpr std::array<std::pair<std::string_view, CandidateLists>, 2> words(Candi
   return {{{"one", CandidateLists::kOne}, {"side_by_side", CandidateLists::kSideBySide}}};
 }
 
-/// Where relocalization also looks for matches if a candidate has too few by words.
+/// Where relocalization also looks for matches if matching by words gives a candidate too few.
 enum class WiderSearch {
   kNone,
   kSameLabel,  ///< among all keypoints with the landmark's label
@@ -85,20 +85,20 @@ void fields(C& c, Visit& v) {
          wider_search, min_agreement] = c;
   v("gamma", gamma, {0, setting::kMany}, "weight of a label, equation 1");
   v("label_mass", label_mass, {0, 0.99},
-    "if not 0: queries take the gamma with which labels hold this share of the keyframes' vectors");
-  v("xi", xi, {1, setting::kMany}, "factor where labels disagree, equation 2");
+    "if not 0: queries use the gamma at which labels hold this share of the keyframes' vectors");
+  v("xi", xi, {1, setting::kMany}, "factor on the distance where labels disagree, equation 2");
   v("alpha", alpha, setting::kOpenShare, "equation 4");
   v("beta", beta, setting::kOpenShare, "equation 6");
   v("overlap", overlap, {}, "what equation 3 counts: labels, augmented or words");
   v("void_is_a_label", void_is_a_label, setting::kSwitch, "void disagrees with every label");
   v("candidates", candidates, {},
-    "of relocalization: one list, or words' and labels' side_by_side");
+    "of relocalization: one list, or that list and one by words alone, interleaved (side_by_side)");
   v("nearness", nearness, {0, 100},
-    "power of the agreement of sizes by which a candidate's score is multiplied; 0: off");
+    "exponent of the size agreement that multiplies a candidate's score; 0: off");
   v("wider_search", wider_search, {},
-    "below relocalize.min_word_matches: none, same_label or all keypoints");
+    "what else to search below relocalize.min_word_matches: none, same_label or all keypoints");
   v("min_agreement", min_agreement, setting::kShare,
-    "of the labels of a pose's inliers, or relocalization refuses it; 0: off");
+    "relocalization rejects a pose if a smaller share of its inliers' labels agree; 0: off");
 }
 
 }  // namespace mh

@@ -9,8 +9,8 @@ namespace mh {
 
 struct SlamConfig;
 
-/// All settings of SLAM as an immutable value that is cheap to copy. A header with a
-/// member of this type need not include every setting: slam/config/slam.hpp, where they are read.
+/// All settings of SLAM as an immutable value that is cheap to copy. A header with a member of this
+/// type need not include slam/config/slam.hpp; only files that read the settings do.
 class SharedSlamConfig {
  public:
   SharedSlamConfig();                                      ///< the defaults

@@ -28,7 +28,7 @@ struct SlamConfig {
   friend bool operator==(const SlamConfig&, const SlamConfig&) = default;
 };
 
-/// Its sections.
+/// Visits the sections.
 template <MaybeConst<SlamConfig> C, class Visit>
 void fields(C& config, Visit& v) {
   auto& [features, semantics, match, pose, bundle, keyframe, track, relocalize, loop] = config;

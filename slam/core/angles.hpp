@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// A degree in rad.
+/// One degree in rad.
 inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 }  // namespace mh

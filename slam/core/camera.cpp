@@ -17,7 +17,7 @@ namespace {
 Eigen::Matrix2d jacobian_of(const Distortion& d, const Eigen::Vector2d& p) {
   const double x = p.x(), y = p.y(), r2 = x * x + y * y, radial = d.radial(r2);
   const double below = 1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6));
-  // Twice the derivative of the numerator, then of the quotient, by r^2.
+  // Twice the derivatives with respect to r^2: of numerator and denominator, then of the quotient.
   const double above_slope = 2.0 * (d.k1 + r2 * (2.0 * d.k2 + 3.0 * r2 * d.k3)),
                below_slope = 2.0 * (d.k4 + r2 * (2.0 * d.k5 + 3.0 * r2 * d.k6));
   const double slope = (above_slope - radial * below_slope) / below;

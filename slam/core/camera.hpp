@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// Brown-Conrady ("plumb bob") lens distortion, or with k4 to k6 OpenCV's rational one;
+/// Brown-Conrady ("plumb bob") lens distortion or, with k4 to k6, OpenCV's rational model;
 /// coefficients in the order of OpenCV and ROS.
 struct Distortion {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
@@ -33,11 +33,11 @@ struct Distortion {
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
 /// "k1 0.1, k2 0, ...", with k4 to k6 only where they are not 0.
-/// @param is  between a name and its value
+/// @param is  text between a name and its value
 std::string text_of(const Distortion& distortion, const char* is = " ");
 /// @param coefficients  k1 k2 p1 p2 [k3 [k4 k5 k6]], absent ones are 0
 Distortion distortion_of(std::vector<double> coefficients);
-/// The inverse: five coefficients, or eight if k4 to k6 are not all 0.
+/// The inverse of distortion_of(): five coefficients, or eight if k4 to k6 are not all 0.
 std::vector<double> coefficients_of(const Distortion& distortion);
 
 /// A pinhole RGB-D camera: x right, y down, z forward; pixel centers at integers.
@@ -52,8 +52,9 @@ struct Camera {
   /// determines how much the depth weighs. 0.075 m: Khoshelham and Elberink, Sensors 2012.
   double baseline_m = 0.075;
   /// Standard deviation of the disparity at a keypoint of octave 0; at higher octaves it grows like
-  /// the keypoint's own, which reads its depth at the wrong pixel. If none is given, SLAM begins
-  /// with this one and learns it (slam/optimize/depth_trust.hpp).
+  /// that of the keypoint's position, since a misplaced keypoint reads its depth at the wrong
+  /// pixel. If none is given, SLAM begins with this value and learns it
+  /// (slam/optimize/depth_trust.hpp).
   double disparity_sigma_px = 0.3;
   bool disparity_sigma_is_given = false;
 
@@ -80,7 +81,7 @@ struct Camera {
 /// principal point inside the image.
 void validate(const Camera& camera);
 
-/// The camera with an image of another size that shows the same.
+/// The camera whose image shows the same view at a different size.
 Camera resized(Camera camera, int width_px, int height_px);
 
 }  // namespace mh

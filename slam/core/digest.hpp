@@ -14,7 +14,7 @@ namespace mh {
 
 /// xxh3-64 digests of a run's inputs and outputs: equal bits, equal digest. `seed` chains them.
 std::uint64_t digest_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
-/// Digest of the digests so far and the next one.
+/// Extends `sum`, the digest of the digests so far, by the next one.
 std::uint64_t chained(std::uint64_t sum, std::uint64_t next);
 /// Digest of a file's bytes. @throws InputError if it cannot be read.
 std::uint64_t digest_file(const std::filesystem::path& file, std::uint64_t seed = 0);

@@ -10,14 +10,14 @@
 
 namespace mh {
 
-/// What an inertial sensor delivers along a path, with its truth.
+/// Readings of an inertial sensor along a path, with ground truth.
 struct ImuPath {
   std::vector<ImuReading> readings;
-  std::vector<ImuReading> biases;                   ///< of each reading: what it errs by, for long
+  std::vector<ImuReading> biases;                   ///< of each reading: its slowly varying error
   std::vector<Eigen::Vector3d> velocities_m_per_s;  ///< at each pose of the path, in the world
 };
 
-/// The readings after one moment and up to another, of readings in order of stamps.
+/// The readings after one stamp and up to another. @pre `readings` are in order of stamps
 std::span<const ImuReading> imu_between(std::span<const ImuReading> readings, Stamp after_ns,
                                         Stamp to_ns);
 

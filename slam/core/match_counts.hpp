@@ -26,8 +26,9 @@ std::string_view name(Matcher matcher);
 
 /// Effect of equation 2 in one matcher during one step.
 struct MatcherCounts {
-  std::int64_t compared = 0;        ///< descriptor pairs
-  std::int64_t penalized = 0;       ///< of these, labels known and different: xi multiplies them
+  std::int64_t compared = 0;  ///< descriptor pairs
+  std::int64_t penalized =
+      0;  ///< those whose labels are known and differ: xi multiplies their distance
   std::int64_t rejected_by_xi = 0;  ///< best pairs below the threshold before xi, above it after
   std::int64_t ratio_helped =
       0;  ///< pairs that pass the ratio test only because xi inflated the second best

@@ -19,7 +19,7 @@ constexpr std::array<std::pair<const char*, const char*>, 4> kOneAndMore = {
     {{"is not finite", "are not finite"},
      {"has no rotation", "have no rotation"},
      {"repeats a stamp", "repeat a stamp"},
-     {"is no pose", "are no poses"}}};
+     {"is not a pose", "are not poses"}}};
 
 }  // namespace
 
@@ -53,8 +53,8 @@ Trajectory PoseCollector::finish(std::vector<std::string>* notes) {
   std::ranges::stable_sort(poses_, {}, &TimedPose::stamp_ns);
   if (left_out() > 0) notes->push_back(note());
   if (early_ > 0)
-    notes->push_back(fmt::format("{}: {} behind a later one and {} put in order of time", file_,
-                                 counted(early_, "pose stands", "poses stand"),
+    notes->push_back(fmt::format("{}: {} after a later one and {} sorted by time", file_,
+                                 counted(early_, "pose comes", "poses come"),
                                  early_ == 1 ? "is" : "are"));
   return std::exchange(poses_, {});
 }

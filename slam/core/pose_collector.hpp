@@ -41,7 +41,7 @@ class PoseCollector {
   void add(const TimedPose& pose, std::string_view stamp, const LinePlace& place);
   /// @throws InputError if strict
   void leave_out(const BadPose& line);
-  /// The poses; empties the collector. @param notes  receives what was left out or sorted
+  /// The poses; empties the collector. @param notes  receives notes on what was left out or sorted
   /// @throws InputError if most lines are not poses: the file is something else
   Trajectory finish(std::vector<std::string>* notes);
   /// "; line 5: ..." for a message; empty if nothing was left out

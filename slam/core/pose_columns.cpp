@@ -35,7 +35,7 @@ std::vector<Name> names_in(std::string_view line, char separator) {
     const std::size_t bracket = std::min(word.find_first_of("[("), word.size());
     const std::string unit = lower_case(std::string(trimmed(word.substr(bracket), "[]() ")));
     const std::string_view text = trimmed(word.substr(0, bracket), kBlanks);
-    if (bracket == 0 && !word.empty()) {  // "tx [m]" between blanks
+    if (bracket == 0 && !word.empty()) {  // a unit after a space: "tx [m]"
       if (!names.empty()) names.back().unit = unit;
       continue;
     }
@@ -66,7 +66,8 @@ bool begin_alike(const std::string& a, const std::string& b) {
 std::optional<std::array<std::size_t, 7>> pose_in(std::span<const Name> names) {
   for (std::size_t w = 0; w < names.size(); ++w) {
     if (!names[w].text.ends_with('w')) continue;
-    // "x y z w x y z": if position and rotation have the same names, the vector of w follows it.
+    // "x y z w x y z": if position and rotation have the same names, the vector that belongs to w
+    // follows it.
     for (const bool behind : {true, false}) {
       if (!behind && w < 3) continue;
       const std::size_t q = behind ? w + 1 : w - 3;
@@ -93,7 +94,7 @@ std::optional<int> unit_of(const Name& name) {
   return std::nullopt;
 }
 
-/// Finds the columns of time among those that are not the pose's.
+/// Finds the time columns among those that are not the pose's.
 /// @throws InputError if there are several, none of them named as a time
 void find_stamp(std::span<const Name> names, PoseColumns& columns) {
   std::vector<std::size_t> others;
@@ -123,7 +124,7 @@ void find_stamp(std::span<const Name> names, PoseColumns& columns) {
     });
   // If a single column is left and it is the first, it is the time, whatever its name.
   if (stamp == others.end() && (others.empty() || others.size() > 1 || others[0] != 0))
-    throw InputError("its columns are named, but none as a time");
+    throw InputError("its columns have names, but none of them is a time");
   columns.stamp = stamp == others.end() ? others[0] : *stamp;
   columns.unit = unit_of(names[columns.stamp]);
 }
@@ -155,7 +156,7 @@ std::optional<PoseColumns> columns_named_by(std::string_view line, char separato
   const bool is_comment = trimmed(line, kBlanks).starts_with('#');
   auto pose = pose_in(names);
   if (const std::size_t words = names.size() - std::min(names.size(), values);
-      pose && words > 0 && words < std::ranges::min(*pose)) {  // "# format: timestamp tx ..."
+      pose && words > 0 && words < std::ranges::min(*pose)) {  // as in "# format: timestamp tx ..."
     names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(words));
     for (std::size_t& place : *pose) place -= words;
   }
@@ -183,7 +184,7 @@ std::optional<PoseColumns> columns_named_by(std::string_view line, char separato
           listed(names)));
     return std::nullopt;
   }
-  // Seven in a row, after words that do not name columns.
+  // Seven names in a row, after words that do not name columns.
   const auto [first, last] = std::ranges::minmax(*pose);
   if (last - first != 6 || first == 0) return std::nullopt;
   for (std::size_t k = 0; k < 7; ++k) columns.pose[k] = (*pose)[k] - first + 1;

@@ -15,20 +15,22 @@ struct PoseColumns {
   std::size_t stamp = 0;
   /// A column of nanoseconds to add: ROS writes a stamp as whole seconds and the rest.
   std::optional<std::size_t> nanoseconds = {};
-  /// The stamp's unit as a power of ten of a second, -9 for nanoseconds; absent: no name states it.
+  /// The stamp's unit as a power of ten of a second, -9 for nanoseconds; absent if no name states
+  /// it.
   std::optional<int> unit = {};
   std::array<std::size_t, 7> pose = {1, 2, 3, 4, 5, 6, 7};  ///< of x y z qx qy qz qw
   std::size_t least = 8, most = 8;                          ///< values in a line
 };
 
-/// The words of a line: between blanks, or between commas or semicolons, without blanks and quotes
-/// around them; a separator at the end adds none.
-/// @param separator  ' ' for blanks of any kind
+/// The words of a line, separated by whitespace, commas or semicolons, without the whitespace and
+/// quotes around them; a separator at the end adds no word.
+/// @param separator  ' ' for whitespace of any kind
 std::vector<std::string_view> words_of_line(std::string_view line, char separator);
 
-/// The columns that a line of names states. As many names as values, maybe after other words: each
-/// names its column, and other columns may be in between. Otherwise, seven names of a pose state
-/// only the order of what follows the stamp. Lines may end after the last value in use.
+/// The columns that a line of names declares. If there are as many names as values, not counting
+/// words before them, each names its column, and there may be columns besides the pose's.
+/// Otherwise, the seven names of a pose give only the order of what follows the stamp. Lines may
+/// end after the last value in use.
 /// @param line     with or without a leading # or %
 /// @param usual defaults for what is not named
 /// @param values   number of values in a line of data

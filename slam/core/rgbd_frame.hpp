@@ -51,7 +51,7 @@ struct ImuReading {
 /// about z by first_rad + k * step_rad.
 struct LaserScan {
   std::string name;
-  SE3 camera_from_laser;  ///< at the frame's stamp, by the joints between them
+  SE3 camera_from_laser;  ///< at the frame's stamp, from the joints between the two
   double first_rad = 0, step_rad = 0;
   double min_range_m = 0, max_range_m = 0;
   std::vector<float> ranges_m;  ///< 0 = nothing in range
@@ -63,10 +63,10 @@ struct RgbdFrame {
   Grid2d<Rgb8> color;
   Grid2d<float> depth_m;  ///< along the optical axis, registered to color; 0 = no return
   SemanticImage semantics;
-  /// Where the wheels alone place the camera at the stamp; their frame of reference drifts. Absent:
+  /// Camera pose by wheel odometry alone at the stamp, in a frame of reference that drifts. Absent:
   /// no odometry.
   std::optional<SE3> odom_from_camera = {};
-  /// What the inertial sensor delivered since the frame that was shown before, in order of stamps.
+  /// What the inertial sensor delivered since the previously shown frame, in order of stamps.
   std::vector<ImuReading> imu = {};
   std::vector<LaserScan> lasers = {};  ///< at the stamp
 };

@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-// Below this angle the closed forms lose digits to cancellation; the second-order series is exact
+// Below this angle, the closed forms lose digits to cancellation; the second-order series is exact
 // to double precision there.
 constexpr double kSmallAngle_rad = 1e-5;
 

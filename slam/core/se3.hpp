@@ -62,7 +62,7 @@ class SE3 {
 /// Angle (rad) of the rotation between two orientations, in [0, pi].
 double angle_between_rad(const SE3& a, const SE3& b);
 
-/// How far two poses are apart in place and direction together: 1 rad counts as 1 m.
+/// Distance between two poses in position and rotation together: 1 rad counts as 1 m.
 double pose_distance(const SE3& a, const SE3& b);
 
 }  // namespace mh

@@ -23,14 +23,15 @@ class Sequence {
   virtual Stamp stamp_ns(std::size_t i) const = 0;
   /// Returns frame i. Equal arguments give equal bits, regardless of when and in what order frames
   /// are requested.
-  /// @param noise  of the sensors; a recording contains its own noise and ignores it
+  /// @param noise  of the sensors; ignored by a recording, which contains its own
   /// @throws InputError if this frame is unavailable; others may still work.
   virtual RgbdFrame frame(std::size_t i, RandomStream noise) const = 0;
   /// Ground-truth camera poses, ordered by stamp; null if unknown. Frames without a valid pose are
   /// absent.
   virtual const Trajectory* truth() const = 0;
-  /// All that an inertial sensor delivered, in order of stamps; empty: there is none. Frames come
-  /// without it: what a system is shown before decides which readings a frame brings.
+  /// All that an inertial sensor delivered, in order of stamps; empty: there is none. Frames do not
+  /// contain it: which readings belong to a frame depends on the frame that a system was shown
+  /// before it.
   virtual std::span<const ImuReading> imu() const { return {}; }
 };
 

@@ -11,7 +11,7 @@ namespace mh {
 
 Stamp parse_stamp(std::string_view text, int unit) {
   const auto fail = [&] {
-    throw InputError(fmt::format("'{}' is no time in {}seconds from 0 to 9.2e{}", text,
+    throw InputError(fmt::format("'{}' is not a time in {}seconds from 0 to 9.2e{}", text,
                                  unit == 0    ? ""
                                  : unit == -3 ? "milli"
                                  : unit == -6 ? "micro"

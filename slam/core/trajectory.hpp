@@ -15,7 +15,7 @@ namespace mh {
 struct TimedPose {
   Stamp stamp_ns = 0;
   SE3 world_from_camera;
-  std::uint32_t map = 0;  ///< whose world it is, of a system that keeps several
+  std::uint32_t map = 0;  ///< the map in whose world the pose is, for a system with several maps
 };
 
 /// Poses ordered by strictly increasing stamp.
@@ -29,7 +29,7 @@ inline Trajectory of_map(const Trajectory& all, std::uint32_t map) {
   return poses;
 }
 
-/// The map with the most poses; of equals, the one with the lower number. 0 if there are none.
+/// The map with the most poses; ties go to the lower number. 0 if there are no poses.
 inline std::uint32_t largest_map(const Trajectory& all) {
   std::map<std::uint32_t, std::size_t> poses_of;
   for (const TimedPose& pose : all) ++poses_of[pose.map];

@@ -36,7 +36,7 @@ double parse_number(std::string_view word, const char* field, const LinePlace& p
   return *value;
 }
 
-/// Calls `use` with each line and its number.
+/// Calls `use` with each line and its number until it returns false.
 void for_each_line(std::string_view text,
                    const std::function<bool(std::string_view line, int number)>& use) {
   int number = 0;
@@ -77,7 +77,7 @@ struct Layout {
   char separator = ' ';
   PoseColumns columns;
   int first_line = std::numeric_limits<int>::max();  ///< of data
-  bool is_table = false;                             ///< between commas or semicolons
+  bool is_table = false;  ///< values are separated by commas or semicolons
 };
 
 /// Data begin at the first line that is neither a comment nor names. The columns are those that an
@@ -102,7 +102,7 @@ Layout layout_of(const std::string& text, const std::string& name) {
     return false;
   });
   layout.is_table = layout.separator != ' ';
-  if (layout.is_table) {  // EuRoC's
+  if (layout.is_table) {  // as in EuRoC's files
     layout.columns.pose = {1, 2, 3, 5, 6, 7, 4};
     layout.columns.most = std::numeric_limits<std::size_t>::max();
   }
@@ -163,7 +163,7 @@ StampRange range_of_stamps(const std::string& text, const Layout& layout) {
 
 /// The unit of stamps if no name states it, as a power of ten of a second. Times since 1970 reveal
 /// it by their size. Smaller ones are seconds, unless they are whole numbers and either EuRoC's, in
-/// nanoseconds, or hours apart as seconds would be.
+/// nanoseconds, or would be hours apart if they were seconds.
 int likely_unit(const StampRange& range, bool commas) {
   if (range.most >= 1e17) return -9;
   if (range.most >= 1e14) return -6;
@@ -209,12 +209,12 @@ TimedPose pose_in(const Words& words, const PoseColumns& columns, const LinePlac
   return {stamp_ns, SE3(rotation, position_m)};
 }
 
-/// @param notes  null: nothing is left out
+/// @param notes  null: nothing may be left out
 /// @param may_be_empty  whether a file without poses is accepted
 Trajectory parse(const std::string& text, const std::string& name, std::vector<std::string>* notes,
                  bool may_be_empty) {
   if (text.find('\0') != std::string::npos)
-    throw InputError(name + ": is not text, as files of poses are");
+    throw InputError(name + ": is not text, and a file of poses must be");
   Layout layout = layout_of(text, name);
   if (!layout.columns.unit) {
     const StampRange range = range_of_stamps(text, layout);
@@ -222,7 +222,7 @@ Trajectory parse(const std::string& text, const std::string& name, std::vector<s
     const bool usual = *layout.columns.unit == (layout.is_table && range.whole ? -9 : 0);
     if (!usual && notes != nullptr)
       notes->push_back(
-          fmt::format("{}: its stamps are taken for {}", name, unit_name(*layout.columns.unit)));
+          fmt::format("{}: its stamps are taken as {}", name, unit_name(*layout.columns.unit)));
   }
   PoseCollector collector(name, notes == nullptr);
   for_each_line(text, [&](std::string_view line, int number) {
@@ -282,7 +282,7 @@ Trajectory parse_kitti(const std::string& text, const std::string& name, Stamp p
     if (words.empty()) return true;
     const LinePlace place{name, number};
     if (words.size() != 12)
-      place.fail(fmt::format("pose: {}, expected 12 (3x4 matrix by rows)",
+      place.fail(fmt::format("pose: {}, expected 12 (3x4 matrix, row by row)",
                              counted(words.size(), "value")));
     Eigen::Matrix<double, 3, 4> matrix;
     for (int row = 0; row < 3; ++row)

@@ -15,12 +15,12 @@ namespace mh {
 inline constexpr double kFarthestPose_m = 1e8;
 
 /// Reads poses, true or estimated, from text in common formats: one pose per line, in TUM's order
-/// `stamp tx ty tz qx qy qz qw` between blanks (s, m, camera to world), or in EuRoC's `timestamp, p
-/// x y z, q w x y z` and ignored columns between commas or semicolons (ns, m). A line of names
-/// before the poses, a comment or not, gives the order of columns and may state the unit of stamps
-/// (columns_named_by()); otherwise it is inferred from their size. '#' starts a comment. Stamps are
-/// read exactly, digit by digit, to nanoseconds; quaternions are normalized; poses of EuRoC are
-/// those of the sensor or body that the file is about.
+/// `stamp tx ty tz qx qy qz qw` separated by whitespace (s, m, camera to world), or in EuRoC's
+/// `timestamp, p x y z, q w x y z`, then ignored columns, separated by commas or semicolons (ns,
+/// m). A line of names before the poses, a comment or not, gives the order of columns and may state
+/// the unit of stamps (columns_named_by()); otherwise it is inferred from their size. '#' starts a
+/// comment. Stamps are read exactly, digit by digit, to nanoseconds; quaternions are normalized;
+/// poses in EuRoC's format are those of the sensor or body that the file is about.
 /// @param notes  receives one line that counts what is left out: poses that are not finite, that
 ///   have a quaternion of zeros, that repeat a stamp (the first is kept), and lines that are not
 ///   poses; further lines if stamps were not in order (poses are sorted) or their unit had to be

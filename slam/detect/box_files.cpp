@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A box as a file states it.
+/// A box as given in a file.
 struct FiledBox {
   double left = 0, top = 0, width = 0, height = 0;
   double score = 1;
@@ -51,8 +51,8 @@ struct FiledBoxes {
 };
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
-constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: a larger number is pixels
-constexpr std::size_t kMostFrames = 100'000'000;  // a larger number is a stamp in nanoseconds
+constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: larger numbers are pixels
+constexpr std::size_t kMostFrames = 100'000'000;  // larger numbers are stamps in nanoseconds
 
 /// The boxes of a frame that a file calls "17" or "1305031229.528748" (a stamp, s).
 std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
@@ -74,7 +74,7 @@ std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,
   return named(all.by_stamp[std::llround(seconds * 1e6) * 1000]);
 }
 
-/// If one whole number in a file is beyond every index, all are stamps in ns.
+/// If one whole number in a file is too large for an index, all are stamps in ns.
 void move_stamps(FiledBoxes& all) {
   if (all.by_index.empty() || all.by_index.rbegin()->first < kMostFrames) return;
   for (auto& [number, filed] : all.by_index) {
@@ -101,11 +101,12 @@ void check(const FiledBox& box, const ClassNames& names, const std::string& plac
     throw InputError(fmt::format("{}: score {} is outside [0, 1]", place, box.score));
   if (box.network_class < 0 || static_cast<std::size_t>(box.network_class) >= names.size())
     throw InputError(
-        fmt::format("{}: class {} is none of the {} that are named, which count from {}", place,
+        fmt::format("{}: class {} is not one of the {} named classes, which count from {}", place,
                     box.network_class + first_class, names.size(), first_class));
 }
 
-/// Numbers of a line, separated by blanks or commas. @throws InputError at any other word.
+/// Numbers of a line, separated by whitespace or commas. @throws InputError if there is any other
+/// word.
 /// @param columns what a line should hold, for the message
 std::vector<double> numbers(std::string line, const std::string& place, const char* columns) {
   std::ranges::replace(line, ',', ' ');
@@ -131,7 +132,8 @@ int whole(double value, const char* what, const std::string& place) {
 template <class Visit>
 void for_each_line(const fs::path& file, const char* columns, const Visit& visit) {
   std::string lines = read_text(file);
-  if (lines.find('\n') == lines.npos) std::ranges::replace(lines, '\r', '\n');  // old Macs'
+  if (lines.find('\n') == lines.npos)
+    std::ranges::replace(lines, '\r', '\n');  // line ends of old Macs
   std::istringstream text(lines);
   int number = 0;
   for (std::string line; std::getline(text, line);) {
@@ -166,8 +168,9 @@ void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxe
       check(box, names, place);
       if (std::ranges::any_of(std::span(v).subspan(1, 4),
                               [](double share) { return std::abs(share) > kLargestShare; }))
-        throw InputError(fmt::format("{}: box {} {} {} {} is not in shares of the image", place,
-                                     v[1], v[2], v[3], v[4]));
+        throw InputError(
+            fmt::format("{}: box {} {} {} {} is not given as fractions of the image size", place,
+                        v[1], v[2], v[3], v[4]));
       boxes.push_back(box);
     });
   }
@@ -181,8 +184,8 @@ void read_mot(const fs::path& file, const ClassNames& names, FiledBoxes& all) {
     if (v.size() < 8)
       throw InputError(fmt::format("{}: {}, not {}", place, counted(v.size(), "number"), kColumns));
     const int frame = whole(v[0], "frame", place);
-    if (frame < 1) throw InputError(fmt::format("{}: frame {}: they count from 1", place, frame));
-    FiledBox box{.left = v[2] - 1,  // the upper left pixel is (1, 1)
+    if (frame < 1) throw InputError(fmt::format("{}: frame {}: frames count from 1", place, frame));
+    FiledBox box{.left = v[2] - 1,  // in MOT, the upper left pixel is (1, 1)
                  .top = v[3] - 1,
                  .width = v[4],
                  .height = v[5],
@@ -201,23 +204,22 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
   using Json = nlohmann::json;
   const std::string text = read_text(file);
   if (is_nested_too_deep(text))
-    throw InputError(fmt::format("{}: is nested too deep", file.string()));
+    throw InputError(fmt::format("{}: is nested too deeply", file.string()));
   Json json;
   try {
     json = Json::parse(text);
   } catch (const Json::out_of_range&) {
-    throw InputError(
-        fmt::format("{}: holds a number that is beyond a double's range", file.string()));
+    throw InputError(fmt::format("{}: holds a number beyond the range of a double", file.string()));
   } catch (const Json::parse_error& error) {
     const std::string_view before = std::string_view(text).substr(0, error.byte);
     throw InputError(fmt::format("{}:{}: is not JSON (which has no NaN and no comments)",
                                  file.string(), 1 + std::ranges::count(before, '\n')));
   }
   if (json.is_object() && json.contains("annotations"))
-    throw InputError(
-        fmt::format("{}: holds COCO's annotations; its results are needed, a list of {{image_id, "
-                    "category_id, bbox, score}}",
-                    file.string()));
+    throw InputError(fmt::format(
+        "{}: holds COCO annotations, but COCO results are needed, a list of {{image_id, "
+        "category_id, bbox, score}}",
+        file.string()));
   if (!json.is_array())
     throw InputError(fmt::format("{}: is not a list of COCO's results", file.string()));
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -234,7 +236,7 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
                              std::ranges::all_of(bbox, [](const Json& v) { return v.is_number(); });
     if (!box_is_good || !score.is_number() || !category.is_number_integer())
       throw InputError(fmt::format(
-          "{}: bbox must be four numbers, score a number, category_id a whole one", place));
+          "{}: bbox must be four numbers, score a number, category_id an integer", place));
     const double id = category.get<double>();
     FiledBox box{.left = bbox[0],
                  .top = bbox[1],
@@ -245,7 +247,7 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
     const int number = whole(id, "category_id", place);
     box.network_class = own_names ? number - 1 : coco80_of_category(number);
     if (box.network_class < 0)
-      throw InputError(fmt::format("{}: category_id {} is none of {}", place, number,
+      throw InputError(fmt::format("{}: category_id {} is not one of {}", place, number,
                                    own_names ? "the named classes, which count from 1" : "COCO's"));
     check(box, names, place);
     std::string frame = image.is_string() ? image.get<std::string>() : image.dump();
@@ -258,7 +260,8 @@ void read_coco(const fs::path& file, const ClassNames& names, bool own_names, Fi
 
 constexpr std::string_view kMot = "MOT";
 
-/// @throws InputError at a setting that only a network takes, since it would have no effect
+/// @throws InputError if a setting is given that only a network takes, since it would have no
+/// effect
 void require_no_network_settings(const DetectorSpec& spec) {
   const DetectorSettings &asked = spec.settings, usual;
   const char* which = !spec.config.empty()                 ? "config"
@@ -271,7 +274,7 @@ void require_no_network_settings(const DetectorSpec& spec) {
                       : asked.height_px != usual.height_px ? "height_px"
                                                            : nullptr;
   if (which != nullptr)
-    throw InputError(fmt::format("{}: `{}` is a setting of networks, and this holds boxes",
+    throw InputError(fmt::format("{}: `{}` is a setting for networks, but this holds boxes",
                                  spec.boxes.string(), which));
 }
 
@@ -291,7 +294,7 @@ class BoxesFromFiles : public Detector {
       kind_ = kMot;
       read_mot(spec.boxes, names_, filed_);
     } else {
-      if (!is_there(spec.boxes)) read_file(spec.boxes);  // for its message
+      if (!is_there(spec.boxes)) read_file(spec.boxes);  // fails with a message
       throw InputError(
           fmt::format("{}: boxes are .json (COCO), .csv or .txt (MOT), or a folder of "
                       ".txt (YOLO)",
@@ -299,7 +302,7 @@ class BoxesFromFiles : public Detector {
     }
     move_stamps(filed_);
     if (is_folder(spec.boxes) && frame_count() == 0)
-      throw InputError(fmt::format("{}: holds no .txt of a frame", spec.boxes.string()));
+      throw InputError(fmt::format("{}: holds no .txt file of a frame", spec.boxes.string()));
   }
 
   Detected detect(const Grid2d<Rgb8>& color, std::size_t index, Stamp stamp_ns) const override {
@@ -350,11 +353,12 @@ class BoxesFromFiles : public Detector {
     for (const auto& [index, boxes] : filed_.by_index) look(boxes);
     for (const auto& [stamp_ns, boxes] : filed_.by_stamp) look(boxes);
     if (found.empty())
-      throw InputError(fmt::format(
-          "{}: none of its {} is one of the sequence's {}, the first is '{}': they are named by {}",
-          file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
-          kind_ == kMot ? "number from 1" : "index from 0 or by stamp"));
-    return fmt::format("{}: {} of its {} are none of the sequence's {}, the first is '{}'{}",
+      throw InputError(
+          fmt::format("{}: none of its {} is one of the sequence's {}, the first is '{}': frames "
+                      "are named by {}",
+                      file_.string(), counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
+                      kind_ == kMot ? "number from 1" : "index from 0 or by stamp"));
+    return fmt::format("{}: {} of its {} are not among the sequence's {}, the first is '{}'{}",
                        file_.string(), frame_count() - found.size(),
                        counted(frame_count(), "frame"), stamps_ns.size(), lost->name,
                        unknown.empty() ? "" : "; " + unknown);

@@ -76,7 +76,7 @@ ClassNames with_ids(std::vector<std::string> names) {
   return all;
 }
 
-/// A quoted text at the start of `rest`, which is moved past it; nullopt if there is none.
+/// A quoted string at the start of `rest`, which is moved past it; nullopt if there is none.
 std::optional<std::string> take_quoted(std::string_view& rest) {
   const char quote = rest.empty() ? '\0' : rest.front();
   if (quote != '\'' && quote != '"') return std::nullopt;
@@ -100,7 +100,7 @@ bool take(std::string_view& rest, char expected) {
   return true;
 }
 
-/// "12:"
+/// An index with its colon, such as `12:`, at the start of `rest`, which is moved past it.
 std::optional<std::size_t> take_index(std::string_view& rest) {
   const bool quoted = !rest.empty() && (rest.front() == '\'' || rest.front() == '"');
   std::string_view digits = rest.substr(quoted ? 1 : 0);
@@ -118,7 +118,7 @@ std::vector<std::string> require_some(std::vector<std::string> names,
   return names;
 }
 
-/// Of a data set's file for Ultralytics: `names`, a list, or a mapping from index to name.
+/// `names` in a data set's file for Ultralytics: a list, or a mapping from index to name.
 std::vector<std::string> names_in_yaml(const std::filesystem::path& file) {
   YamlReader yaml = YamlReader::load(file);
   YamlReader list = yaml.at("names");
@@ -143,7 +143,7 @@ std::vector<std::string> names_in_yaml(const std::filesystem::path& file) {
 
 std::string ClassNames::unknown_note(const std::filesystem::path& of) const {
   if (std::ranges::any_of(ids, [](ClassId id) { return id != kVoid; })) return "";
-  return fmt::format("{}: none of its {} has the name of a class of ours: all labels stay void",
+  return fmt::format("{}: none of its {} has the name of one of our classes: all labels stay void",
                      of.string(), counted(size(), "class", "classes"));
 }
 

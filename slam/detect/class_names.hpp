@@ -17,7 +17,7 @@ struct ClassNames {
   std::vector<std::string> names;
   std::vector<ClassId> ids;  ///< our class of that name; void if there is none
   std::size_t size() const { return names.size(); }
-  /// A line for the user if none of the classes is ours; otherwise "".
+  /// A line for the user if none of the classes is ours; otherwise empty.
   std::string unknown_note(const std::filesystem::path& of) const;
 };
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A value of a section, and the line that states it.
+/// A value in a section, and its line.
 struct Stated {
   std::string value;
   int line = 0;
@@ -53,7 +53,7 @@ std::vector<Section> sections_of(const std::string& config) {
       fmt::format("{}:{}: {} = {}: {}", file.string(), stated.line, key, stated.value, why));
 }
 
-/// The numbers of a list separated by commas. @throws InputError at any other word.
+/// The numbers of a list separated by commas. @throws InputError if there is any other word.
 std::vector<double> numbers_of(const fs::path& file, const std::string& key, const Stated& stated) {
   std::vector<double> numbers;
   std::istringstream words(stated.value);
@@ -77,7 +77,7 @@ int side_of(const fs::path& file, const Section& net, const std::string& key) {
   return static_cast<int>(value[0]);
 }
 
-/// Checks that the layer's anchors are positive and that it uses only those it has.
+/// Checks that the layer's anchors are positive and that it uses only anchors that it has.
 void check_anchors(const fs::path& file, const Section& layer) {
   const auto anchors = layer.values.find("anchors"), mask = layer.values.find("mask");
   if (anchors == layer.values.end()) return;

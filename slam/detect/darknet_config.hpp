@@ -8,9 +8,9 @@
 
 namespace mh {
 
-/// The size of images that section [net] of a Darknet configuration states; 0 where it states none.
+/// The image size in section [net] of a Darknet configuration; 0 where it is missing.
 /// @throws InputError naming file and line if a size or a layer's anchors are invalid: OpenCV's
-/// importer would read beyond them.
+/// importer would read out of bounds.
 InputSize darknet_input(const std::string& config, const std::filesystem::path& file);
 
 }  // namespace mh

@@ -48,11 +48,12 @@ void for_each_depth(const PixelBox& box, const Grid2d<float>& depth_m, const Dep
 constexpr int kBins = 64;
 constexpr float kApart = 1.1F;  // mean depth of the farther part over that of the nearer
 constexpr int kMiddlePercent = 30;
-constexpr float kJump = 1.04F;  // between neighbors on two surfaces: farther over nearer
+constexpr float kJump =
+    1.04F;  // depth of the farther of two neighbors on different surfaces over that of the nearer
 constexpr int kJumpPercent = 50;
 
-/// Whether the pixels nearer than a depth end at a step there. A bed or table that extends into the
-/// room can be cut at any depth, but has no step there.
+/// Whether depth jumps where the pixels nearer than `cut_m` border on farther ones. A bed or table
+/// that extends into the room can be cut at any depth, but its depth does not jump there.
 bool ends_at_a_step(const PixelBox& box, const Grid2d<float>& depth_m, const DepthRange& range,
                     float cut_m) {
   std::int64_t pairs = 0, jumps = 0;

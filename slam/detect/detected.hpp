@@ -30,9 +30,9 @@ struct Detected {
   friend bool operator==(const Detected&, const Detected&) = default;
 };
 
-/// Labels of each pixel. Boxes: each is one palette entry, higher scores cover lower ones, and
-/// pixels outside all boxes are background. BoxFill::kForeground leaves out the pixels of a box
-/// that have depth but not that of its surface: see foreground_depth().
+/// Labels of each pixel. Each box is one palette entry, boxes with higher scores cover those with
+/// lower ones, and pixels outside all boxes are background. BoxFill::kForeground leaves out the
+/// pixels of a box that have depth but not that of its surface: see foreground_depth().
 /// @param depth_m  of the same pixels; may be empty with BoxFill::kBox
 SemanticImage labels_of(const Detected& detected, const Grid2d<float>& depth_m, int width,
                         int height, BoxFill fill);

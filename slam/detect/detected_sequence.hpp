@@ -19,7 +19,7 @@ using KeepDetections =
 Detected detect_kept(const Detector& detector, const RgbdFrame& frame, std::size_t index,
                      const KeepDetections& keep);
 
-/// Another sequence's frames with a detector's labels instead of their own.
+/// The frames of another sequence, with a detector's labels instead of their own.
 class DetectedSequence : public Sequence {
  public:
   /// @param fill  see labels_of()

@@ -28,7 +28,8 @@ class Detector {
   virtual const ClassNames& names() const = 0;
   /// One line for the user: "yolox, 80 classes, input 416 x 416".
   virtual std::string description() const = 0;
-  /// Checks that a box file's frames belong to this sequence, and that a class is one of ours.
+  /// Checks that a box file's frames belong to this sequence, and that at least one class is one of
+  /// ours.
   /// @returns a note on frames or classes that are not used, or "". @throws InputError if no frame
   /// belongs
   virtual std::string check_frames(std::span<const Stamp> /*stamps_ns*/) const { return ""; }
@@ -39,7 +40,8 @@ class Detector {
 
 /// Opens a network or a file of boxes. A network is first imported and run once in a child process,
 /// because OpenCV's importers can crash or exhaust the memory. Sets OpenCV to one thread, as the
-/// program does: results do not depend on the load, and a forked child waits for no thread.
+/// program does: results then do not depend on the machine's load, and a forked child waits for no
+/// thread.
 /// @throws InputError naming the file and what is wrong with it.
 std::unique_ptr<Detector> open_detector(const DetectorSpec& spec);
 

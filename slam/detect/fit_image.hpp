@@ -15,17 +15,17 @@ namespace mh {
 /// with (0, 0) the upper left corner of the upper left pixel.
 struct Placement {
   double scale_x = 1, scale_y = 1;
-  int left = 0, top = 0, width = 0, height = 0;  ///< of the scaled image in the input
+  int left = 0, top = 0, width = 0, height = 0;  ///< where the scaled image is in the input
 
   double image_x(double x) const { return (x - left) / scale_x; }
   double image_y(double y) const { return (y - top) / scale_y; }
 };
 
-/// @param letterbox  not kAuto
+/// @param letterbox  must not be kAuto
 Placement place_image(int width, int height, const InputSize& input, Letterbox letterbox);
 
 /// Returns the input of a network: 1 x 3 x height x width, float.
-/// @param settings  without any kAuto
+/// @param settings  must not contain kAuto
 cv::Mat network_input(const Grid2d<Rgb8>& color, const InputSize& input, const Placement& at,
                       const DetectorSettings& settings);
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kMostScore = 1.001F;  // 1 with slack for rounding
 
-/// The cells of a head without anchors: those of each stride, row by row.
+/// A cell of a head without anchors; these heads list the cells of each stride, row by row.
 struct Cell {
   int x = 0, y = 0, stride = 0;
 };
@@ -33,7 +33,7 @@ std::vector<Cell> cells(const InputSize& input, const std::array<int, 4>& stride
   return all;
 }
 
-/// The cells of that many boxes; empty if no choice of strides gives that many.
+/// The cells of a head with this number of boxes; empty if no choice of strides gives this number.
 std::vector<Cell> cells_of(int boxes, const InputSize& input) {
   for (const auto& strides : kStrides) {
     int count = 0;
@@ -66,8 +66,8 @@ std::optional<Matrix> as_matrix(const Tensor& tensor) {
   return Matrix{shape[shape.size() - 2], shape.back(), tensor.values};
 }
 
-/// Whether a tensor has a channel per class, in the proportions of the input up to a cell: other
-/// networks, such as Yolo-FastestV2, have height, width and channels in this order.
+/// Whether a tensor has a channel per class, and the proportions of the input to within a cell:
+/// other networks, such as Yolo-FastestV2, have height, width and channels in this order.
 bool is_segmentation(const Tensor& tensor, const InputSize& input) {
   const auto& s = tensor.shape;
   return s.size() == 4 && s[0] == 1 && s[1] >= 2 && s[1] <= 4096 && s[2] > 1 && s[3] > 1 &&
@@ -75,7 +75,7 @@ bool is_segmentation(const Tensor& tensor, const InputSize& input) {
              std::max(input.width, input.height);
 }
 
-/// Whether there are such tensors of different sizes: the scales of a detector.
+/// Whether there are tensors with a channel per class in different sizes: the scales of a detector.
 bool has_scales(std::span<const Tensor> outputs, const InputSize& input) {
   const Tensor* first = segmentation_in(outputs, input);
   return first != nullptr && std::ranges::any_of(outputs, [&](const Tensor& tensor) {
@@ -83,7 +83,7 @@ bool has_scales(std::span<const Tensor> outputs, const InputSize& input) {
          });
 }
 
-/// Whether boxes are around their cells in pixels, as decoded ones do; raw ones are offsets of
+/// Whether boxes are near their cells, in pixels, as decoded ones are; raw ones are offsets of
 /// about half a cell.
 bool is_decoded(const Matrix& m, const std::vector<Cell>& of) {
   double from_cell = 0, from_zero = 0;
@@ -165,7 +165,7 @@ void decode_rows(Head head, const Matrix& m, const InputSize& input, double conf
     if (best > kMostScore)
       throw InputError(
           fmt::format("gives a score of {:.4g}, and scores are at most 1: its export lacks the "
-                      "sigmoid, or its head is another",
+                      "sigmoid, or it has a different head",
                       best));
     box.scores.reserve(static_cast<std::size_t>(m.columns - first));
     for (int c = first; c < m.columns; ++c) {
@@ -228,7 +228,7 @@ int class_count(Head head, std::span<const Tensor> outputs, const InputSize& inp
 std::vector<Candidate> decode(Head head, std::span<const Tensor> outputs, const InputSize& input,
                               double confidence) {
   std::vector<Candidate> found;
-  if (head == Head::kDarknet) {  // an output per scale
+  if (head == Head::kDarknet) {  // one output per scale
     for (const Tensor& tensor : outputs)
       if (const auto m = as_matrix(tensor); m && m->columns > 5)
         decode_rows(head, *m, input, confidence, found);

@@ -20,9 +20,9 @@ struct Tensor {
 /// "1 x 3549 x 85"
 std::string shape_text(const Tensor& tensor);
 
-/// What a network's outputs mean, by their shapes. A YOLOX with decoded boxes has the same shape as
-/// one with raw boxes; the values differ.
-/// @param darknet  it comes from a Darknet .cfg
+/// What a network's outputs mean, judging by their shapes. A YOLOX with decoded boxes has the same
+/// shape as one with raw boxes; the values differ.
+/// @param darknet  whether the network comes from a Darknet .cfg
 /// @returns kAuto if none fits
 Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, bool darknet);
 
@@ -55,14 +55,15 @@ std::vector<DetectedBox> select_boxes(const std::vector<Candidate>& candidates, 
                                       int width, int height, const ClassNames& names,
                                       const DetectorSettings& settings);
 
-/// Scores as a distribution over our classes: each gets the scores of the network's classes of that
-/// name; the sum is at most 1. Empty if the best class is not ours; scores below 0.01 are left out.
+/// Scores as a distribution over our classes: each of them gets the scores of the network's classes
+/// with its name; the sum is at most 1. Empty if the best class is not ours; scores below 0.01 are
+/// left out.
 ClassDistribution our_classes(std::span<const float> scores, int best, const ClassNames& names);
 
-/// Labels of an image by a segmenting head: values of each class are probabilities, or are turned
-/// into them (softmax), and are interpolated between the output's cells. An entry of the palette is
-/// the mean of the pixels with the same best class and about the same certainty (steps of a
-/// quarter), its three most probable classes. Pixels where no class reaches `confidence` are void.
+/// Labels of an image from a segmenting head: values of each class are probabilities, or are turned
+/// into them (softmax), and are interpolated between the output's cells. A palette entry is the
+/// mean over the pixels with the same best class and about the same certainty (steps of a quarter),
+/// limited to its three most probable classes. Pixels where no class reaches `confidence` are void.
 SemanticImage segmented(const Tensor& output, const Placement& at, const InputSize& input,
                         const InputSize& of_image, const ClassNames& names, double confidence);
 

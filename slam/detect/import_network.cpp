@@ -50,7 +50,7 @@ std::string reason(const cv::Exception& error) {
   return text;
 }
 
-/// What OpenCV does not import or run.
+/// OpenCV cannot import or run the network.
 struct NotRun : InputError {
   using InputError::InputError;
 };
@@ -90,11 +90,11 @@ void check_weights(const DetectorSpec& spec, cv::dnn::Net& net, std::string_view
     }
     return;
   }
-  refuse_network(spec.network,
-                 fmt::format("holds {} bytes where {} asks for {}: {}", weights.size(),
-                             spec.config.string(), expected,
-                             weights.size() < expected ? "it is truncated, or of another one"
-                                                       : "it is of another one"));
+  refuse_network(spec.network, fmt::format("holds {} bytes, but {} needs {}: {}", weights.size(),
+                                           spec.config.string(), expected,
+                                           weights.size() < expected
+                                               ? "it is truncated, or belongs to another network"
+                                               : "it belongs to another network"));
 }
 
 NetworkOutputs forward(ImportedNetwork& imported, const cv::Mat& input) {
@@ -109,7 +109,7 @@ NetworkOutputs forward(ImportedNetwork& imported, const cv::Mat& input) {
   return out;
 }
 
-/// @throws InputError if an output holds NaN or nothing finite: the weights are damaged.
+/// @throws InputError if an output holds NaN or no finite value: the weights are damaged.
 void check_numbers(const fs::path& file, const NetworkOutputs& out) {
   for (const Tensor& tensor : out.tensors) {
     const auto bad = std::ranges::find_if(tensor.values, [](float v) { return std::isnan(v); });
@@ -133,7 +133,7 @@ void resolve_auto(DetectorSettings& s, Head head) {
   if (s.channels == Channels::kAuto) s.channels = yolox ? Channels::kBgr : Channels::kRgb;
 }
 
-/// Whether a head that the user names can be that of a network that looks like `seen`.
+/// Whether a network whose output looks like `seen` may have the head that the user named.
 bool may_be(Head named, Head seen, bool darknet) {
   if ((named == Head::kDarknet) != darknet) return false;
   const bool one_per_cell = seen == Head::kYolox || seen == Head::kYoloxDecoded;
@@ -148,14 +148,15 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
   if (stated == metadata.end()) return coco80();
   auto names = read_class_names(stated->second);
   if (!names)
-    refuse_network(spec.network,
-                   fmt::format("its metadata's `names` is no list of classes: '{}'; name them by "
-                               "`classes`",
-                               printable(stated->second)));
+    refuse_network(
+        spec.network,
+        fmt::format(
+            "its metadata's `names` is not a list of classes: '{}'; name them with `classes`",
+            printable(stated->second)));
   return *std::move(names);
 }
 
-/// @param classes  of its output
+/// @param classes  number of classes in its output
 [[noreturn]] void refuse_class_count(const DetectorSpec& spec, const NetworkFiles& files,
                                      const ImportedNetwork& imported, int classes, Head seen) {
   const std::string named = counted(imported.names.size(), "class", "classes");
@@ -171,15 +172,16 @@ ClassNames names_of(const DetectorSpec& spec, const NetworkFiles& files) {
                         SettingsWriter::word_of(head), SettingsWriter::word_of(seen));
   refuse_network(
       spec.network,
-      own ? fmt::format("has {} classes, and its metadata names {}: name them by `classes`, a "
+      own ? fmt::format("has {} classes, and its metadata names {}: name them with `classes`, a "
                         "file of one name per line{}",
                         classes, imported.names.size(), other)
-          : fmt::format("has {} classes, not COCO's 80: name them by `classes`, a file of one name "
-                        "per line{}",
-                        classes, other));
+          : fmt::format(
+                "has {} classes, not COCO's 80: name them with `classes`, a file of one name "
+                "per line{}",
+                classes, other));
 }
 
-/// Sets the head, by its stated name or by the output for a gray image, and checks the number of
+/// Sets the head, from the settings or from the output for a gray image, and checks the number of
 /// classes.
 void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNetwork& imported) {
   const std::vector<int> shape = {1, 3, imported.input.height, imported.input.width};
@@ -197,15 +199,14 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNet
             SettingsWriter::word_of(head),
             seen == Head::kAuto ? "" : fmt::format(" but of '{}'", SettingsWriter::word_of(seen))));
   if (head == Head::kAuto && gives_boxes_and_masks(out.tensors, imported.input))
-    refuse_network(spec.network,
-                   fmt::format("gives boxes and masks of objects ({}), which are not read: "
-                               "export a network of the task detect",
-                               fmt::join(shapes, ", ")));
+    refuse_network(spec.network, fmt::format("gives boxes and masks of objects ({}), which are not "
+                                             "supported: export a network for the task detect",
+                                             fmt::join(shapes, ", ")));
   if (head == Head::kAuto)
     refuse_network(
         spec.network,
-        fmt::format("its output ({}) at an input of {} x {} is that of no known head: name it by "
-                    "`head`, or its input by `width_px` and `height_px`",
+        fmt::format("its output ({}) at an input of {} x {} matches no known head: name it with "
+                    "`head`, or set its input with `width_px` and `height_px`",
                     fmt::join(shapes, ", "), imported.input.width, imported.input.height));
   const int classes = class_count(head, out.tensors, imported.input);
   if (classes == 0)
@@ -218,7 +219,7 @@ void understand(const DetectorSpec& spec, const NetworkFiles& files, ImportedNet
     refuse_class_count(spec, files, imported, classes, seen);
 }
 
-/// The input size that the network's own file states; 0 if it is dynamic.
+/// The input size given in the network's own file; 0 if it is dynamic.
 InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
   const fs::path& file = spec.network;
   if (files.is_darknet) return darknet_input(files.config, spec.config);
@@ -227,12 +228,13 @@ InputSize stated_input(const DetectorSpec& spec, const NetworkFiles& files) {
     refuse_network(
         file, fmt::format("takes {} images at once: export it with a batch of 1", input.images));
   if (std::max(input.width, input.height) > std::uint64_t{kLargestInput_px})
-    refuse_network(file, fmt::format("its input is fixed to {} x {}: at most {} pixels are taken",
-                                     input.width, input.height, kLargestInput_px));
+    refuse_network(file,
+                   fmt::format("its input is fixed to {} x {}: at most {} pixels are supported",
+                               input.width, input.height, kLargestInput_px));
   return {static_cast<int>(input.width), static_cast<int>(input.height)};
 }
 
-/// The size of images that Ultralytics' metadata states ("[height, width]"), else 640.
+/// The image size in Ultralytics' metadata ("[height, width]"), else 640.
 InputSize trained_size(const NetworkFiles& files) {
   constexpr int kUsual_px = 640;
   const auto metadata = onnx_metadata(files.network);
@@ -247,17 +249,18 @@ InputSize trained_size(const NetworkFiles& files) {
   return {kUsual_px, kUsual_px};
 }
 
-/// @throws InputError if the metadata of Ultralytics states a task whose output is not boxes.
+/// @throws InputError if Ultralytics' metadata names a task whose output is not boxes.
 void require_detection(const DetectorSpec& spec, const NetworkFiles& files) {
   if (files.is_darknet) return;
   const auto metadata = onnx_metadata(files.network);
   const auto task = metadata.find("task");
   constexpr std::array kOthers = {"segment", "pose", "obb", "classify"};
   if (task == metadata.end() || std::ranges::find(kOthers, task->second) == kOthers.end()) return;
-  refuse_network(spec.network,
-                 fmt::format("is of the task '{}': of Ultralytics' networks, those of the task "
-                             "detect are read",
-                             task->second));
+  refuse_network(
+      spec.network,
+      fmt::format(
+          "is for the task '{}': only Ultralytics networks for the task detect are supported",
+          task->second));
 }
 
 /// What is missing, and how to export a network that runs.
@@ -268,19 +271,20 @@ std::string export_advice(const NetworkFiles& files) {
       return fmt::format(
           "; it selects its boxes itself ([{}]): export it without (nms=False end2end=False)",
           node.op);
-  return "; a YOLO of Ultralytics runs by `yolo export format=onnx opset=12 simplify=True`";
+  return "; export an Ultralytics YOLO with `yolo export format=onnx opset=12 simplify=True`";
 }
 
-/// The sides of the input: by settings, by the file, or the usual ones.
+/// The size of the input: from the settings or the file, otherwise the usual one.
 InputSize input_size(const DetectorSpec& spec, const NetworkFiles& files) {
   const InputSize declared = stated_input(spec, files);
   const InputSize usual = files.is_darknet ? InputSize{} : trained_size(files);
   const auto side = [&](int named, int stated, int otherwise, const char* key) {
     if (named > 0 && stated > 0 && named != stated && !files.is_darknet)
-      refuse_network(spec.network, fmt::format("its input is fixed to {} x {}: `{}: {}` cannot be",
-                                               declared.width, declared.height, key, named));
+      refuse_network(spec.network,
+                     fmt::format("its input is fixed to {} x {}: `{}: {}` does not fit",
+                                 declared.width, declared.height, key, named));
     if (files.is_darknet && named <= 0 && stated <= 0)
-      refuse_network(spec.config, fmt::format("section [net] states no {}: name it by `{}`",
+      refuse_network(spec.config, fmt::format("section [net] has no {}: set it with `{}`",
                                               key[0] == 'w' ? "width" : "height", key));
     return named > 0 ? named : stated > 0 ? stated : otherwise;
   };

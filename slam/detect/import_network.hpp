@@ -27,7 +27,7 @@ struct ImportedNetwork {
   cv::dnn::Net net;
   std::vector<cv::String> outputs;
   InputSize input;
-  DetectorSettings settings;  ///< without any kAuto
+  DetectorSettings settings;  ///< contains no kAuto
   ClassNames names;
 };
 
@@ -41,7 +41,7 @@ struct NetworkOutputs {
   std::vector<Tensor> tensors;
 };
 
-/// Runs the network on an input and checks what it gives. @throws InputError
+/// Runs the network on an input and checks its output. @throws InputError
 NetworkOutputs run_network(const std::filesystem::path& file, ImportedNetwork& imported,
                            const cv::Mat& input);
 

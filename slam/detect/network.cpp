@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Imports and runs the network once where a crash does no harm.
+/// Imports and runs the network once in a child process, where a crash does no harm.
 void try_in_child(const DetectorSpec& spec, const NetworkFiles& files) {
   if (reads_here()) return;
   constexpr std::uint64_t kMemoryPerByte = 20;
@@ -48,7 +48,7 @@ class Network : public Detector {
     digest_ = XXH3_64bits_withSeed(files.config.data(), files.config.size(), digest_);
     std::string decides = fmt::format("{}", fmt::join(imported_.names.names, "\n"));
     DetectorSettings seen = imported_.settings;
-    seen.fill = {};  // decides labels only, which are not cached
+    seen.fill = {};  // affects only labels, which are not cached
     decides += format_detector_settings(seen, false) +
                fmt::format("OpenCV {} input {} x {}", CV_VERSION, imported_.input.width,
                            imported_.input.height);

@@ -10,11 +10,11 @@
 
 namespace mh {
 
-/// A node with what is known of its inputs.
+/// A node with what is known about its inputs.
 struct OnnxCall {
   const OnnxNode& node;
   std::int64_t opset = 0;
-  std::vector<const OnnxShape*> shapes;      ///< of its inputs; null: not known, or no input
+  std::vector<const OnnxShape*> shapes;      ///< of its inputs; null: unknown, or no input
   std::vector<const OnnxTensor*> constants;  ///< null: not constant, or no input
 
   const OnnxShape* shape(std::size_t i) const { return i < shapes.size() ? shapes[i] : nullptr; }
@@ -24,10 +24,10 @@ struct OnnxCall {
   bool has_input(std::size_t i) const { return i < node.inputs.size() && !node.inputs[i].empty(); }
   /// A list of whole numbers that older operator sets keep in an attribute, newer ones in an input.
   std::optional<OnnxShape> list(const char* attribute, std::size_t input) const;
-  /// Such a list of axes of the first input, from 0; nullopt if there is none or one is out of
-  /// range.
+  /// A list() of axes of the first input, counted from 0; nullopt if there is none or an axis is
+  /// out of range.
   std::optional<OnnxShape> axes(std::size_t input, std::size_t rank) const;
-  /// One axis by attribute, from 0.
+  /// The attribute `axis`, counted from 0; `otherwise` if absent.
   std::optional<std::size_t> axis(std::int64_t otherwise, std::size_t rank) const;
 };
 
@@ -38,7 +38,7 @@ std::optional<std::size_t> normal_axis(std::int64_t axis, std::size_t rank);
 struct OnnxCut {
   std::int64_t start = 0, step = 1, count = 0;
 };
-/// Cuts by axis of the first input.
+/// The cut of each axis of the first input.
 std::optional<std::vector<OnnxCut>> cuts_of(const OnnxCall& call);
 
 /// Sizes along the axis of Split.
@@ -47,12 +47,12 @@ std::optional<OnnxShape> split_sizes(const OnnxCall& call);
 /// The broadcast shape by ONNX's rules (those of NumPy); nullopt if the shapes do not fit.
 std::optional<OnnxShape> broadcast(const OnnxShape& a, const OnnxShape& b);
 
-/// The shapes of the outputs of those operators that detectors are made of; nullopt where not
-/// known.
+/// The shapes of the outputs, for those operators that detectors are made of; nullopt where
+/// unknown.
 std::vector<std::optional<OnnxShape>> output_shapes(const OnnxCall& call);
 
 /// The outputs, if all of their inputs are constant.
-/// @param shapes  of output_shapes()
+/// @param shapes  from output_shapes()
 std::optional<std::vector<OnnxTensor>> evaluate(
     const OnnxCall& call, const std::vector<std::optional<OnnxShape>>& shapes);
 

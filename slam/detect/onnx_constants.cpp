@@ -13,7 +13,7 @@ namespace {
 /// Larger tensors are not precomputed.
 constexpr std::size_t kMostComputed = std::size_t{1} << 24;
 
-/// Steps of a shape's axes in its row-major values; 0 where they repeat along `out`.
+/// Strides of a shape's axes in its row-major values; 0 for axes along which the values repeat.
 std::vector<std::size_t> steps_of(const OnnxShape& shape, std::size_t rank) {
   std::vector<std::size_t> steps(rank, 0);
   std::size_t step = 1;
@@ -257,7 +257,7 @@ std::optional<OnnxShape> OnnxCall::list(const char* attribute, std::size_t input
   const OnnxTensor* given = constant(input);
   if (given == nullptr || given->shape.size() > 1) return std::nullopt;
   OnnxShape values;
-  constexpr double kMost = 1 << 30;  // more is "to the end"
+  constexpr double kMost = 1 << 30;  // a larger value means "to the end"
   for (const double v : given->values)
     values.push_back(static_cast<std::int64_t>(std::clamp(v, -kMost, kMost)));
   return values;

@@ -39,7 +39,7 @@ constexpr std::uint64_t kName = 1, kType = 2, kTensor = 1, kElement = 1, kShape 
 constexpr std::size_t kMostValues = std::size_t{1} << 28;
 constexpr std::int64_t kMostWhole = std::int64_t{1} << 30;
 
-/// Clamped to the sizes that are computed with: a larger value means "to the end".
+/// Clamped to the range used in computations: a larger value means "to the end".
 std::int64_t bounded(std::uint64_t value) {
   return std::clamp<std::int64_t>(static_cast<std::int64_t>(value), -kMostWhole, kMostWhole);
 }
@@ -147,7 +147,7 @@ std::string write_node(const OnnxNode& written) {
   return bytes;
 }
 
-/// An open side is 0.
+/// A side that is left open is 0.
 OnnxShape read_input_shape(std::string_view info) {
   OnnxShape sides;
   const std::string_view type = proto_bytes(info, value_info::kType),

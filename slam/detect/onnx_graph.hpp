@@ -52,14 +52,14 @@ struct OnnxNode {
 struct OnnxGraph {
   std::int64_t opset = 0;
   std::vector<OnnxNode> nodes;  ///< in an order in which they can be computed
-  std::map<std::string, std::string_view, std::less<>> weights;  ///< by name: TensorProto
+  std::map<std::string, std::string_view, std::less<>> weights;  ///< TensorProto by name
   std::map<std::string, OnnxTensor> constants;                   ///< additional weights
   std::map<std::string, OnnxShape> inputs;                       ///< without weights
   std::vector<std::string> outputs;
-  std::string_view model;  ///< what it was read from
+  std::string_view model;  ///< the bytes from which the graph was read
 };
 
-/// nullopt if the bytes are not a whole model.
+/// nullopt if the bytes are not a complete model.
 std::optional<OnnxGraph> read_onnx_graph(std::string_view model);
 /// The same model with this graph.
 std::string write_onnx_graph(const OnnxGraph& graph);

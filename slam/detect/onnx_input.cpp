@@ -70,7 +70,7 @@ std::size_t value_size(std::uint64_t type) {
   }
 }
 
-/// What is wrong with a TensorProto; "" = nothing.
+/// What is wrong with a TensorProto; empty if nothing is.
 std::string fault_of(std::string_view tensor) {
   std::string name = "a constant";
   for (const ProtoField& field : proto_fields(tensor, kName))
@@ -94,7 +94,7 @@ std::string fault_of(std::string_view tensor) {
     const bool nan = type == kFloat && (any_nan(tensor, kRaw) || any_nan(tensor, kFloats));
     return nan ? fmt::format("weights {} hold a value that is not a number", name) : "";
   }
-  return fmt::format("weights {} hold {} values where their shape states {}", name, held, values);
+  return fmt::format("weights {} hold {} values, but their shape needs {}", name, held, values);
 }
 
 /// 0 if a dimension is dynamic: named, or -1.

@@ -25,7 +25,7 @@ class Rewriter {
 
   OnnxGraph run() {
     for (const OnnxNode& node : std::exchange(graph_.nodes, {})) visit(node);
-    for (const auto& name : halves()) {  // OpenCV 4.6 reads none
+    for (const auto& name : halves()) {  // OpenCV 4.6 cannot read them
       constant(name);
       keep(name);
     }
@@ -53,7 +53,7 @@ class Rewriter {
     return names;
   }
 
-  /// Adds a constant to the graph, unless it is there already.
+  /// Adds a constant to the graph unless the graph already contains it.
   void keep(const std::string& name) {
     const auto found = constants_.find(name);
     if (found == constants_.end()) return;
@@ -108,7 +108,7 @@ class Rewriter {
     return call;
   }
 
-  /// Of convolution weights, which are large, only the shape is needed.
+  /// Only the shape of convolution weights is read, since they are large.
   const OnnxTensor* constant_in(const OnnxNode& node, const std::string& name) {
     const bool weighs = node.op == "Conv" || node.op == "ConvTranspose" || node.op == "Gemm" ||
                         node.op == "BatchNormalization";
@@ -220,7 +220,8 @@ class Rewriter {
     }
     const std::string repeated = add_constant(expanded(*given, out));
     node.inputs = first ? std::vector{repeated, input} : std::vector{input, repeated};
-    if (node.op == "Mul" || node.op == "Div") node.set("axis", std::int64_t{0});  // for Scale
+    if (node.op == "Mul" || node.op == "Div")
+      node.set("axis", std::int64_t{0});  // for OpenCV's Scale layer
     add(std::move(node));
   }
 

@@ -11,7 +11,7 @@ namespace {
 
 using MaybeShape = std::optional<OnnxShape>;
 
-// By operator: https://onnx.ai/onnx/operators
+// Rules for each operator: https://onnx.ai/onnx/operators
 
 bool is_one_of(const std::string& op, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, op) != names.end();
@@ -21,7 +21,7 @@ std::int64_t at_or(const MaybeShape& list, std::size_t i, std::int64_t otherwise
   return list && i < list->size() ? (*list)[i] : otherwise;
 }
 
-/// A window that moves over the axes from the third.
+/// The output shape of an operator whose window moves over all axes from the third on.
 MaybeShape windowed(const OnnxCall& call, const OnnxShape& in, std::int64_t channels,
                     const OnnxShape& kernel) {
   if (in.size() != kernel.size() + 2) return std::nullopt;

@@ -19,7 +19,7 @@ struct ProtoField {
   std::string_view whole;  ///< its bytes with tag and size, to be copied
 };
 
-/// Walks the fields of a message; stops at the first that is not whole.
+/// Walks the fields of a message; stops at the first that is incomplete.
 class ProtoMessage {
  public:
   explicit ProtoMessage(std::string_view bytes) : rest_(bytes) {}

@@ -11,13 +11,13 @@
 namespace mh {
 namespace {
 
-constexpr int kSteps = 4;        // of certainty, for one class
-constexpr std::size_t kTop = 3;  // classes of an entry
+constexpr int kSteps = 4;        // steps of certainty per class
+constexpr std::size_t kTop = 3;  // classes per palette entry
 
 /// Probabilities of our classes at each cell of an output.
 struct Cells {
   int width, height;
-  std::vector<ClassId> ids;   // that occur, ascending
+  std::vector<ClassId> ids;   // all that occur, ascending
   std::vector<float> values;  // by cell, then by id
 
   const float* at(int x, int y) const {

@@ -40,8 +40,7 @@ void read_detector(YamlReader& mapping, const fs::path& folder, DetectorSpec& sp
   if (spec.network.empty() == spec.boxes.empty())
     mapping.fail(spec.boxes.empty()
                      ? "names neither `network` nor `boxes`"
-                     : fmt::format("`network` ({}) and `boxes` ({}) are both named: one of them "
-                                   "says what is run",
+                     : fmt::format("`network` ({}) and `boxes` ({}) are both given: name only one",
                                    spec.network.string(), spec.boxes.string()));
   if (spec.network.extension() == ".weights" && spec.config.empty())
     spec.config = fs::path(spec.network).replace_extension(".cfg");
@@ -56,7 +55,7 @@ void load_detector_settings(const fs::path& file, DetectorSpec& spec) {
 std::string format_detector_settings(const DetectorSettings& settings, bool notes) {
   SettingsWriter writer(notes);
   fields(settings, writer);
-  // Such a file has no sections, so nothing is indented.
+  // A detector's settings file has no sections, so nothing is indented.
   std::string text;
   bool begins = true;
   for (std::size_t i = 0; i < writer.text().size(); ++i) {

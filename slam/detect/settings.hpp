@@ -69,28 +69,29 @@ template <MaybeConst<DetectorSettings> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [head, letterbox, padding, normalize, channels, width_px, height_px, confidence, nms,
          max_detections, fill] = c;
-  v("head", head, {}, "what the output means; auto: by its shape");
+  v("head", head, {}, "format of the output; auto: from its shape");
   v("letterbox", letterbox, {},
-    "where the scaled image stands in the input, or stretched over it; auto: corner for yolox, "
-    "stretch for segmentation, else center");
-  v("padding", padding, {0, 255}, "gray level around it");
+    "where the scaled image is placed in the input, or stretch to fill it; auto: corner for yolox, "
+    "stretch for segmentation, otherwise center");
+  v("padding", padding, {0, 255}, "gray level around the image");
   v("normalize", normalize, {},
-    "of 0 to 255: none, unit (to 0 to 1), imagenet (its mean and deviation); auto: none for yolox, "
-    "imagenet for segmentation, else unit");
-  v("channels", channels, {}, "auto: bgr for yolox, else rgb");
-  v("width_px", width_px, {0, 8192}, "of the input; 0: as the network states, else 640");
-  v("height_px", height_px, {0, 8192}, "of the input; 0: as the network states, else 640");
+    "of values 0 to 255: none, unit (to 0 to 1), imagenet (by its mean and standard deviation); "
+    "auto: none for yolox, imagenet for segmentation, otherwise unit");
+  v("channels", channels, {}, "auto: bgr for yolox, otherwise rgb");
+  v("width_px", width_px, {0, 8192}, "of the input; 0: as the network declares, otherwise 640");
+  v("height_px", height_px, {0, 8192}, "of the input; 0: as the network declares, otherwise 640");
   v("confidence", confidence, setting::kShare,
-    "least score of a box; of a pixel's class, if the network segments");
+    "minimum score of a box, or of a pixel's class if the network segments");
   v("nms", nms, setting::kShare,
-    "a box is dropped that overlaps a better one of its class by more (intersection over union)");
-  v("max_detections", max_detections, {1, 250}, "the best of an image");
+    "a box is dropped if it overlaps a better one of its class by more than this (intersection "
+    "over union)");
+  v("max_detections", max_detections, {1, 250}, "per image; the best are kept");
   v("fill", fill, {},
     "pixels that get a box's label: box (all), foreground (those of its surface, by depth)");
 }
 
-/// A real detector, as suites and the command line name it: a network with its settings, or boxes
-/// that another program found.
+/// A real detector, as suites and the command line specify it: a network with its settings, or
+/// boxes that another program found.
 struct DetectorSpec {
   std::filesystem::path network;  ///< ONNX, or Darknet's weights; empty: boxes
   std::filesystem::path config;   ///< Darknet's .cfg
@@ -118,7 +119,7 @@ DetectorSpec detector_from_file(const std::filesystem::path& file);
 /// `boxes`, relative to `folder`. Does not finish() the mapping.
 void read_detector(YamlReader& mapping, const std::filesystem::path& folder, DetectorSpec& spec);
 
-/// Reads a file of such keys. @throws InputError naming file, line and value.
+/// Reads a file with the same keys. @throws InputError naming file, line and value.
 void load_detector_settings(const std::filesystem::path& file, DetectorSpec& spec);
 
 /// Every setting with its meaning, as a file.

@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// Finds FAST corners above `threshold`, at least `edge_px` from the border. Cells of about 36 px
-/// without any use `low_threshold` instead. Strongest first.
+/// Finds FAST corners above `threshold`, at least `edge_px` from the border. In cells of about 36
+/// px that contain none, `low_threshold` is used instead. Strongest first.
 std::vector<Corner> find_corners(const cv::Mat& image, int edge_px, int threshold,
                                  int low_threshold);
 

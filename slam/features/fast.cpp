@@ -54,6 +54,12 @@ Bytes excess(Bytes a, Bytes b) {
   return {_mm256_subs_epu8(a.v, b.v)};
 }
 
+template <class T>
+T filled(Byte value) {
+  T all;
+  std::memset(&all, value, sizeof all);
+  return all;
+}
 // Calls work.operator()<T>(x) so that it covers [0, count): T = Bytes covers kChunk, the last chunk
 // overlapping the one before; if there are fewer, T = Byte covers one.
 template <class Work>
@@ -117,17 +123,22 @@ T best_arc(const std::array<T, 16>& p) {
   return best;
 }
 
-// Contrast: how much the best arc around each of `count` pixels is brighter or darker than the
-// pixel; 0 = no such arc.
-void contrast_of_row(const Byte* center, std::ptrdiff_t step, int count, Byte* contrast) {
-  std::array<const Byte*, 16> circle;
+using Circle = std::array<const Byte*, 16>;
+
+Circle circle_around(const Byte* center, std::ptrdiff_t step) {
+  Circle circle;
   for (std::size_t i = 0; i < 16; ++i) circle[i] = center + kCircle[i].y * step + kCircle[i].x;
-  for_all(count, [&]<class T>(int x) {
-    std::array<T, 16> p;
-    for (std::size_t i = 0; i < 16; ++i) p[i] = load<T>(circle[i] + x);
-    const T c = load<T>(center + x);
-    store(contrast + x, high(excess(best_arc<Low, High>(p), c), excess(c, best_arc<High, Low>(p))));
-  });
+  return circle;
+}
+
+// Contrast: how much the best arc around each pixel is brighter or darker than the pixel; 0 = no
+// such arc. Without branches, so that one pass serves every threshold.
+template <class T>
+T contrast(const Byte* center, const Circle& circle, int x) {
+  std::array<T, 16> p;
+  for (std::size_t i = 0; i < 16; ++i) p[i] = load<T>(circle[i] + x);
+  const T c = load<T>(center + x);
+  return high(excess(best_arc<Low, High>(p), c), excess(c, best_arc<High, Low>(p)));
 }
 
 // Three rows of contrast around the row being searched.
@@ -146,8 +157,7 @@ void mark_maxima(const Rows& contrast, int count, Byte threshold, Byte* marks) {
     const T sides = high(at(row - 1), at(row + 1));
     const T up = high(at(above), high(at(above - 1), at(above + 1)));
     const T down = high(at(below), high(at(below - 1), at(below + 1)));
-    T limit;
-    std::memset(&limit, threshold, sizeof limit);
+    const T limit = filled<T>(threshold);
     store(marks + x, excess(at(row), high(high(limit, sides), high(up, down))));
   });
 }
@@ -161,23 +171,15 @@ float peak(int before, int at, int after) {
                     -0.49F, 0.49F);
 }
 
-// The parabola is fitted to sums across, weighted 1 2 1: they are less noisy than a single line.
-Corner corner_at(const Rows& c, std::size_t i, int x, int y) {
-  const auto column = [&](std::size_t k) { return c.above[k] + 2 * c.row[k] + c.below[k]; };
-  const auto line = [&](const Byte* r) { return r[i - 1] + 2 * r[i] + r[i + 1]; };
-  return {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
-          static_cast<std::int16_t>(c.row[i] - 1), peak(column(i - 1), column(i), column(i + 1)),
-          peak(line(c.above), line(c.row), line(c.below))};
-}
-
-void collect(const std::vector<Byte>& marks, const Rows& contrast, int left, int y,
+void collect(const std::vector<Byte>& marks, const Byte* contrast, int left, int y,
              std::vector<Corner>& corners) {
   for (std::size_t x = 0; x < marks.size(); x += kChunk) {
     const __m256i unmarked = _mm256_cmpeq_epi8(load<Bytes>(&marks[x]).v, _mm256_setzero_si256());
     for (auto left_over = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(unmarked));
          left_over != 0; left_over &= left_over - 1) {
       const std::size_t i = x + static_cast<std::size_t>(std::countr_zero(left_over));
-      corners.push_back(corner_at(contrast, i, left + static_cast<int>(i), y));
+      corners.push_back({static_cast<std::int16_t>(left + static_cast<int>(i)),
+                         static_cast<std::int16_t>(y), static_cast<std::int16_t>(contrast[i] - 1)});
     }
   }
 }
@@ -193,13 +195,15 @@ std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshol
   // Contrast of three rows at a time, each with one pixel beyond the area on either side. Row y
   // is in buffer y % 3.
   const auto length = static_cast<std::size_t>(width + 2);
-  std::array<std::vector<Byte>, 3> contrast;
-  for (std::vector<Byte>& row : contrast) row.resize(length);
+  std::array<std::vector<Byte>, 3> contrasts;
+  for (std::vector<Byte>& row : contrasts) row.resize(length);
   const auto fill = [&](int y) {
-    contrast_of_row(image.ptr<Byte>(y) + edge_px - 1, static_cast<std::ptrdiff_t>(image.step),
-                    width + 2, contrast[static_cast<std::size_t>(y) % 3].data());
+    const Byte* center = image.ptr<Byte>(y) + edge_px - 1;
+    const Circle circle = circle_around(center, static_cast<std::ptrdiff_t>(image.step));
+    Byte* to = contrasts[static_cast<std::size_t>(y) % 3].data();
+    for_all(width + 2, [&]<class T>(int x) { store(to + x, contrast<T>(center, circle, x)); });
   };
-  const auto row = [&](int y) { return contrast[static_cast<std::size_t>(y) % 3].data() + 1; };
+  const auto row = [&](int y) { return contrasts[static_cast<std::size_t>(y) % 3].data() + 1; };
 
   std::vector<Byte> marks(static_cast<std::size_t>((width + kChunk - 1) / kChunk * kChunk), 0);
   std::vector<Corner> corners;
@@ -209,9 +213,27 @@ std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshol
     fill(y + 1);
     const Rows rows{row(y - 1), row(y), row(y + 1)};
     mark_maxima(rows, width, static_cast<Byte>(threshold), marks.data());
-    collect(marks, rows, edge_px, y, corners);
+    collect(marks, rows.row, edge_px, y, corners);
   }
   return corners;
+}
+
+cv::Point2f peak_of(const cv::Mat& image, const Corner& corner) {
+  assert(corner.x >= kPeakReach_px && corner.x < image.cols - kPeakReach_px &&
+         corner.y >= kPeakReach_px && corner.y < image.rows - kPeakReach_px);
+  // The neighborhood is the first 3 pixels of a chunk; what it reads beyond a row's end is the next
+  // row.
+  std::array<std::array<Byte, kChunk>, 3> near;
+  for (int v = 0; v < 3; ++v) {
+    const Byte* center = image.ptr<Byte>(corner.y + v - 1) + corner.x - 1;
+    const Circle circle = circle_around(center, static_cast<std::ptrdiff_t>(image.step));
+    store(near[static_cast<std::size_t>(v)].data(), contrast<Bytes>(center, circle, 0));
+  }
+  // The parabola is fitted to sums over three pixels perpendicular to it, weighted 1 2 1: they are
+  // less noisy than a single line.
+  const auto column = [&](std::size_t u) { return near[0][u] + 2 * near[1][u] + near[2][u]; };
+  const auto line = [&](std::size_t v) { return near[v][0] + 2 * near[v][1] + near[v][2]; };
+  return {peak(column(0), column(1), column(2)), peak(line(0), line(1), line(2))};
 }
 
 }  // namespace mh

@@ -16,7 +16,14 @@ class FeatureGrid {
   FeatureGrid() = default;
   FeatureGrid(const std::vector<Keypoint>& keypoints, const Camera& camera);
 
-  /// Calls visit(index) for every keypoint whose cell touches the square of half-width radius_px
+  /// What a search needs of a keypoint, side by side in memory.
+  struct Entry {
+    float u_px, v_px;
+    std::int32_t octave;
+    std::uint32_t index;
+  };
+
+  /// Calls visit(Entry) for every keypoint whose cell touches the square of half-width radius_px
   /// around (u_px, v_px): a superset of those inside, in an order fixed by the input.
   template <class Visit>
   void for_each_near(float u_px, float v_px, float radius_px, Visit visit) const {
@@ -24,7 +31,7 @@ class FeatureGrid {
     const int y0 = row(v_px - radius_px), y1 = row(v_px + radius_px);
     for (int y = y0; y <= y1; ++y)
       for (std::uint32_t i = start_[cell(x0, y)]; i < start_[cell(x1, y) + 1]; ++i)
-        visit(order_[i]);
+        visit(entries_[i]);
   }
 
  private:
@@ -37,8 +44,8 @@ class FeatureGrid {
   }
 
   int columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> start_;  // start of each cell in order_, plus the end
-  std::vector<std::uint32_t> order_;  // keypoint indices by cell
+  std::vector<std::uint32_t> start_;  // start of each cell in entries_, plus the end
+  std::vector<Entry> entries_;        // by cell
 };
 
 }  // namespace mh

@@ -28,7 +28,8 @@ struct Tap {
   int next;
 };
 
-// One per target pixel; beyond the source's centers only the outermost pixel.
+// One tap per target pixel; beyond the outermost pixel centers of the source, only the outermost
+// pixel counts.
 std::vector<Tap> taps(int source_size, int target_size) {
   const double step = 1.0 / (static_cast<double>(target_size) / source_size);
   std::vector<Tap> result;
@@ -45,7 +46,7 @@ std::vector<Tap> taps(int source_size, int target_size) {
   return result;
 }
 
-// How kGroup neighboring pixels of a target row come from kReach of the source row.
+// How kGroup neighboring pixels of a target row are computed from kReach pixels of the source row.
 struct Group {
   int source, target;              // first columns
   std::array<Byte, kReach> pairs;  // which bytes to pair: pixel and next, eight times
@@ -57,7 +58,7 @@ std::vector<Group> groups(int source_columns, int target_columns) {
   std::vector<Group> result;
   for (int x = 0; x < target_columns; x += kGroup) {
     Group group{};
-    group.target = std::min(x, target_columns - kGroup);  // the last overlaps the one before
+    group.target = std::min(x, target_columns - kGroup);  // the last group overlaps the one before
     group.source =
         std::min(columns[static_cast<std::size_t>(group.target)].at, source_columns - kReach);
     for (int i = 0; i < kGroup; ++i) {
@@ -98,7 +99,7 @@ void blend_rows(const std::int32_t* upper, const std::int32_t* lower, int next, 
   const __m256i weight = _mm256_set1_epi32(next);
   const __m256i half = _mm256_set1_epi32(kOne * kOne / 2);
   const __m256i lowest_bytes =
-      _mm256_set1_epi32(0x0c080400);  // byte 0 of each of four numbers, as one number
+      _mm256_set1_epi32(0x0c080400);  // gathers byte 0 of each of four numbers
   for (int x = 0;; x += kGroup) {
     x = std::min(x, columns - kGroup);
     const __m256i a = load32(upper + x), b = load32(lower + x);

@@ -49,7 +49,7 @@ void require_undistortable(const Camera& camera) {
     if (!(std::hypot(back[i].x - pixels[i].x(), back[i].y - pixels[i].y()) <
           kAstray_px))  // NaN: diverged as well
       throw InputError(
-          fmt::format("{}: a distortion that cannot be undone at pixel ({:.0f}, {:.0f})",
+          fmt::format("{}: the distortion cannot be inverted at pixel ({:.0f}, {:.0f})",
                       text_of(camera.distortion), pixels[i].x(), pixels[i].y()));
 }
 

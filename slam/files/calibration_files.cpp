@@ -20,13 +20,13 @@ int pixels_in(const YamlReader& node) {
   return static_cast<int>(node.as_int(1, kMostPixels));
 }
 
-/// Only if the key is there: messages list the keys that were asked for.
+/// Marks a key as read, but only if it exists, since messages list the keys that were asked for.
 void pass_over(YamlReader& yaml, const std::string& key) {
   if (yaml.has(key)) yaml.find(key);
 }
 
-/// The numbers of a matrix: a list, or the mapping of rows, cols and data around one (dt is
-/// OpenCV's type of number).
+/// The numbers of a matrix: a list, or `data` in a mapping with rows, cols and, from OpenCV, dt
+/// (the number type).
 YamlReader numbers_of(YamlReader matrix) {
   if (matrix.is_sequence()) return matrix;
   constexpr std::array kKeys{"rows", "cols", "data", "dt"};
@@ -53,7 +53,7 @@ void read_coefficients(const YamlReader& list, std::string_view model, Camera& c
   require_usable(camera, list);
 }
 
-/// `camera_model` is how some drivers name it.
+/// The distortion model, which some drivers call `camera_model`.
 std::string model_in(YamlReader& yaml) {
   std::string model = "plumb_bob";
   for (const char* key : {"distortion_model", "camera_model"})
@@ -72,7 +72,7 @@ void read_camera_calibration(YamlReader& yaml, Camera& camera) {
   const std::string model = model_in(yaml);
   if (const auto distortion = yaml.find("distortion_coefficients"))
     read_coefficients(numbers_of(*distortion), model, camera);
-  // For stereo rigs and for people; the second row is OpenCV's.
+  // Keys for stereo rigs and for human readers; those from nr_of_frames on are OpenCV's.
   for (const char* key :
        {"camera_name", "rectification_matrix", "projection_matrix", "calibration_time", "nframes",
         "nr_of_frames", "board_width", "board_height", "square_size", "flags", "aspectRatio",
@@ -94,7 +94,7 @@ void read_camera_info(YamlReader& yaml, bool ros2, Camera& camera) {
 
 void read_kalibr(YamlReader& yaml, Camera& camera) {
   YamlReader first = yaml.at("cam0");
-  first.entries();  // also of other sensors
+  first.entries();  // marks all keys as read, including those for other sensors
   const auto require = [&](const char* key, std::string_view wanted) {
     if (const YamlReader named = first.at(key); named.as_string() != wanted)
       named.fail(fmt::format("'{}' is not {}", named.as_string(), wanted));

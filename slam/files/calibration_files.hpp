@@ -6,7 +6,7 @@
 
 namespace mh {
 
-/// Reads the camera of another program's calibration: ROS' camera_calibration or OpenCV
+/// Reads the camera of another program's calibration: ROS's camera_calibration or OpenCV
 /// (`camera_matrix: ...`), a CameraInfo as `rostopic echo` prints it (`K: ...`), or the first
 /// camera of Kalibr's camchain (`cam0: ...`). Marks all keys of that program as read; others may be
 /// ours.

@@ -136,7 +136,7 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
                                  std::uint64_t vocabulary_digest) {
   const std::string_view start = bytes.substr(0, kMagic.size());
   if (start.empty() || start != kMagic.substr(0, start.size()))
-    throw InputError(fmt::format("{}: is not a map of Modelhouse's", name));
+    throw InputError(fmt::format("{}: is not a Modelhouse map", name));
   const auto cut_short = [&](std::uint64_t needed) {
     throw InputError(fmt::format("{}: is {}: has {} bytes, needs {}", name,
                                  bytes.size() < needed ? "truncated" : "too long", bytes.size(),
@@ -150,8 +150,8 @@ std::string_view checked_content(std::string_view bytes, const std::string& name
   if (version != kMapFileVersion)
     throw InputError(fmt::format("{}: is a map of version {}, but this program reads {}", name,
                                  version, kMapFileVersion));
-  const std::uint64_t all = bytes.size() - kHeaderSize;  // no sum with sizes from the file: they
-                                                         // may be wrong
+  const std::uint64_t all =
+      bytes.size() - kHeaderSize;  // nothing is added to `size`, which may be wrong and overflow
   if (all < sizeof stored || size != all - sizeof stored)
     cut_short(size > (UINT64_MAX >> 1) ? size : kHeaderSize + size + sizeof stored);
   const std::string_view before = bytes.substr(0, bytes.size() - sizeof stored);
@@ -219,7 +219,7 @@ SlamState decode_slam(const std::string& bytes, const std::string& name,
         "a keyframe of a piece's place");
   state.tracked_frames = read_tracked_frames(content, state.map);
   content(state.last_stamp_ns);
-  content.require(content.at_end(), "it goes on after its end");
+  content.require(content.at_end(), "it has data after its end");
   return state;
 }
 

@@ -84,7 +84,7 @@ Settings read_own(YamlReader yaml, Settings settings) {
 /// are for its viewer, or for other sensors.
 struct OrbSlamKeys {
   const char* program;
-  std::string lens;  ///< what the names of focal lengths, center and distortion begin with
+  std::string lens;  ///< prefix of the names of focal lengths, center and distortion
   std::string baseline, close_depth, depth_scale;
 
   std::vector<std::string> all() const {
@@ -104,7 +104,7 @@ const OrbSlamKeys kOrbSlam2{"ORB-SLAM2", "Camera.", "Camera.bf", "ThDepth", "Dep
 const OrbSlamKeys kOrbSlam3{"ORB-SLAM3", "Camera1.", "Stereo.b", "Stereo.ThDepth",
                             "RGBD.DepthMapFactor"};
 
-/// What we add to them, in the files that we write.
+/// The key that we add to the ORB-SLAM files that we write.
 constexpr const char* kOurSigma = "Modelhouse.disparity_sigma_px";
 
 /// Other keys of such files: the camera type, sizes that its images are shrunk to (ours are not),
@@ -121,8 +121,8 @@ std::string section_of(const std::string& key) {
   return lower_case(key.substr(0, key.find('.')));
 }
 
-/// Unknown keys are errors, at the top and in every section that is read: a typo would silently
-/// drop the camera's distortion. Other sections belong to other programs.
+/// Unknown keys are errors, at the top level and in every section that is read: a typo would
+/// silently drop the camera's distortion. Other sections belong to other programs.
 void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   const std::vector<std::string> known = keys.all();
   std::set<std::string> read_sections{"camera"};
@@ -139,8 +139,8 @@ void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   }
 }
 
-/// "Somebody.Else, ...": keys that are not read, except those that do not matter here, such as the
-/// position of a window (Viewer.*) or the version of the format (File.version).
+/// A list such as "Other.Key, ...": keys that are not read, except those that do not matter here,
+/// such as the position of a window (Viewer.*) or the version of the format (File.version).
 std::string unread_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   const std::vector<std::string> known = keys.all();
   std::vector<std::string> unread;
@@ -173,7 +173,7 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   // Zero means the original's own default.
   const double rate_hz = yaml.number_or("Camera.fps", 0, 0, kMost);
   if (rate_hz != 0) c.rate_hz = rate_hz;
-  // ORB-SLAM2 states the baseline in m times fx.
+  // ORB-SLAM2 gives the baseline in m, times fx.
   const double unit = &keys == &kOrbSlam2 ? c.fx_px : 1;
   c.baseline_m = yaml.number_or(keys.baseline, c.baseline_m * unit, 1e-6, kMost) / unit;
   read_disparity_sigma(yaml, kOurSigma, c);
@@ -182,10 +182,10 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   if (settings.depth_per_meter == 0) settings.depth_per_meter = 1;
   settings.exchange_red_blue = yaml.integer_or("Camera.RGB", 0, 0, 1) == 1;
   if (settings.exchange_red_blue)
-    settings.notes.push_back(fmt::format(
-        "{}: Camera.RGB: 1: the first channel is taken for red where OpenCV reads blue, as "
-        "{} does; write 0 if colors matter and the files are ordinary ones",
-        yaml.file(), keys.program));
+    settings.notes.push_back(
+        fmt::format("{}: Camera.RGB: 1: OpenCV's first channel, blue, is taken as red, as {} does; "
+                    "write 0 if colors matter and the files are ordinary ones",
+                    yaml.file(), keys.program));
 
   FeatureConfig& f = settings.slam.features;
   f.count = static_cast<int>(yaml.integer_or("ORBextractor.nFeatures", f.count, 10, 20000));
@@ -202,7 +202,7 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
 
   const std::string passed_over = unread_keys(yaml, keys);
   if (!passed_over.empty())
-    settings.notes.push_back(fmt::format("{}: passed over: {}", yaml.file(), passed_over));
+    settings.notes.push_back(fmt::format("{}: ignored: {}", yaml.file(), passed_over));
   return settings;
 }
 
@@ -258,8 +258,8 @@ SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
 
 Settings parse_settings(std::string text, const std::string& name, const SlamConfig& base) {
   // OpenCV's dialect starts with "%YAML:1.0", which is not valid YAML; its line is kept, so that
-  // line numbers stay correct. ORB-SLAM2's TUM1.yaml has "key:value" without the blank, TUM3.yaml a
-  // key twice.
+  // line numbers stay correct. ORB-SLAM2's TUM1.yaml has "key:value" without the space; TUM3.yaml
+  // contains a key twice.
   if (text.starts_with("%YAML:")) {
     text[0] = '#';
     text = without_dialect(text);
@@ -277,7 +277,7 @@ Settings parse_settings(std::string text, const std::string& name, const SlamCon
   settings.has_camera = read_calibration(yaml, settings.camera);
   if (settings.has_camera)
     if (const auto ours = yaml.find("camera"))
-      ours->fail("states a camera, as the calibration around it does: which one is meant?");
+      ours->fail("describes a camera, but so does the calibration around it: keep only one");
   return read_own(std::move(yaml), std::move(settings));
 }
 

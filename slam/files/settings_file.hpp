@@ -18,7 +18,7 @@ struct Settings {
   bool has_camera = false;           ///< a file without one serves sources that provide their own
                                      ///< camera
   double depth_per_meter = 5000;     ///< value of a depth pixel at one meter
-  bool has_depth_per_meter = false;  ///< the file states it
+  bool has_depth_per_meter = false;  ///< whether the file sets it
   bool exchange_red_blue = false;
   SlamConfig slam;
   std::vector<std::string> notes;  ///< what was ignored or needs mentioning, one line each
@@ -40,7 +40,7 @@ std::string format_settings(const Settings& settings);
 /// notes, each line ends in a comment stating the meaning and the allowed values.
 std::string format_slam_config(const SlamConfig& config, bool notes = false);
 /// Reads sections of SLAM settings; absent keys keep their values from `config`. `base: orb_slam2`
-/// sets that acceptance. Leaves keys that are not SLAM sections to the caller, who calls
+/// sets Acceptance::kOrbSlam2. Leaves keys that are not SLAM sections to the caller, who calls
 /// yaml.finish(). @throws InputError.
 SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config = {});
 

@@ -64,7 +64,7 @@ void PipeReader::bytes(void* data, std::size_t size) {
   constexpr std::size_t kBuffer = 1U << 14;
   auto* to = static_cast<char*>(data);
   while (size > 0) {
-    if (at_ == waiting_.size() && size >= kBuffer) {  // past the buffer
+    if (at_ == waiting_.size() && size >= kBuffer) {  // bypasses the buffer
       const std::size_t got = some(to, size);
       to += got;
       size -= got;

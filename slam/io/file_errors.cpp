@@ -34,8 +34,8 @@ const char* why_unreadable(const fs::path& file) {
       return "no such file";
     case fs::file_type::none:
       return error == std::errc::permission_denied               ? "no permission"
-             : error == std::errc::too_many_symbolic_link_levels ? "its links lead in a circle"
-                                                                 : "the system refuses";
+             : error == std::errc::too_many_symbolic_link_levels ? "its links form a cycle"
+                                                                 : "the system denies access";
     default:
       return "it is not a file";
   }
@@ -43,9 +43,9 @@ const char* why_unreadable(const fs::path& file) {
 
 void require_readable_at_once(const fs::path& file, std::uintmax_t bytes) {
   if (bytes > kMostReadAtOnce_bytes)
-    throw InputError(fmt::format("{}: cannot be read: it has {:.1f} GB, {:.1f} GB is the most",
-                                 file.string(), static_cast<double>(bytes) * 1e-9,
-                                 static_cast<double>(kMostReadAtOnce_bytes) * 1e-9));
+    throw InputError(fmt::format(
+        "{}: cannot be read: it has {:.1f} GB, at most {:.1f} GB can be read", file.string(),
+        static_cast<double>(bytes) * 1e-9, static_cast<double>(kMostReadAtOnce_bytes) * 1e-9));
 }
 
 void require_readable(const fs::path& file) {

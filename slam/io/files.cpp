@@ -63,7 +63,7 @@ FileObservation::Kind look_at(const fs::path& path) {
 }
 
 /// Creates a new empty file in a folder under an unused name.
-/// @param name  of (process, number)
+/// @param name  returns a file name for (process, number)
 /// @returns nullopt, and sets errno, if it cannot be created
 template <class Name>
 std::optional<fs::path> new_file(const fs::path& folder, const Name& name) {
@@ -93,12 +93,12 @@ fs::path followed(fs::path file) {
 }  // namespace
 
 void make_output_folder(const fs::path& folder) {
-  if (folder.empty()) throw InputError("the folder to write has an empty name");
+  if (folder.empty()) throw InputError("the output folder has an empty name");
   std::error_code error;
   fs::create_directories(folder, error);
   if (error == std::errc::no_space_on_device) throw_unwritable(folder, ENOSPC);
   if (error || !fs::is_directory(folder))
-    throw InputError(fmt::format("{}: cannot be made a folder{}", folder.string(),
+    throw InputError(fmt::format("{}: cannot be created as a folder{}", folder.string(),
                                  error ? ": " + error.message() : ""));
   const auto probe = new_file(folder, [](pid_t process, int number) {
     return fmt::format(".probe.{}.{}", process, number);
@@ -117,7 +117,7 @@ void write_atomically(const fs::path& name, const std::function<void(const fs::p
   // A rename would replace a device such as /dev/stdout with a file.
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
     throw InputError(fmt::format("{}: cannot be written: it is {}", file.string(),
-                                 fs::is_directory(file, error) ? "a folder" : "no file"));
+                                 fs::is_directory(file, error) ? "a folder" : "not a file"));
   const auto temporary = new_file(file.parent_path(), [&](pid_t process, int number) {
     return fmt::format(".{}.{}.{}.tmp{}", file.stem().string(), process, number,
                        file.extension().string());

@@ -41,7 +41,7 @@ constexpr bool kSanitized = true;  // shadow memory cannot be limited, and sanit
 constexpr bool kSanitized = false;
 #endif
 #ifdef __SANITIZE_THREAD__
-constexpr bool kMayFork = false;  // it does not allow threads in a child
+constexpr bool kMayFork = false;  // thread sanitizer does not allow threads in a child
 #else
 constexpr bool kMayFork = true;
 #endif
@@ -195,7 +195,7 @@ void* run_child(void* argument) {
   } catch (const std::exception& error) {
     say(out, Word::kOther, error.what());
   } catch (...) {
-    say(out, Word::kOther, "it does not say why");
+    say(out, Word::kOther, "unknown error");
   }
   out.flush();
   return nullptr;
@@ -243,7 +243,7 @@ class Child {
 };
 
 std::string why_it_ended(std::optional<int> status, const SharedNote& note) {
-  if (!status || !WIFSIGNALED(*status)) return "its reader ended without a word";
+  if (!status || !WIFSIGNALED(*status)) return "its reader ended without a message";
   const int number = WTERMSIG(*status);
   if (number == SIGXCPU)
     return fmt::format("its reader took more than {} s of processor time", note->processor_s);
@@ -291,7 +291,7 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw MachineError(fmt::format("{}: no pipe: {}", file.string(), std::strerror(errno)));
-  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches; works as well if refused
+  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // for fewer context switches; harmless if refused
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
@@ -301,7 +301,7 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
     g_watch = {limits, &note, ends[1], g_bytes_read, mapped_bytes() + limits.stack_bytes};
     obey(limits);
     run_on_own_stack({work, note, ends[1]}, limits.stack_bytes);
-    _exit(0);  // skips flushing and cleaning up the parent's state twice
+    _exit(0);  // avoids flushing and cleaning up the parent's state a second time
   }
   const int forked = errno;
   close(ends[1]);

@@ -14,11 +14,11 @@ namespace mh {
 /// Resources that a file reader may use before it is killed. Large files may use more.
 struct GuardLimits {
   int processor_s = 6;                                  ///< whole seconds, at least 1
-  double processor_s_per_mb = 0.5;                      ///< in addition, per megabyte read
+  double processor_s_per_mb = 0.5;                      ///< more for each megabyte read
   int wall_s = 600;                                     ///< limit for a reader that waits instead
                                                         ///< of working
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< in addition to what this process uses
-  std::uint64_t memory_per_byte = 50;                   ///< in addition, per byte read
+  std::uint64_t memory_per_byte = 50;                   ///< more for each byte read
   std::size_t stack_bytes = std::size_t{512} << 20;     ///< for deeply nested files
 };
 

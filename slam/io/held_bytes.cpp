@@ -44,7 +44,7 @@ const char* reason_of(int error) {
     case EACCES:
       return "no permission";
     default:
-      return "the system refuses";
+      return "the system denies access";
   }
 }
 
@@ -88,7 +88,7 @@ void at_lost_page(int signal, siginfo_t* info, void*) {
       write_all(": was changed while it was in use: start the command again\n");
       _exit(g_exit_code);
     }
-  std::signal(signal, SIG_DFL);  // not ours: it comes again
+  std::signal(signal, SIG_DFL);  // not ours: the signal is raised again
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ HeldBytes hold(std::string bytes);
 /// When the pages of a mapped file are read.
 enum class MapPages { kAtOnce, kAsTouched };
 
-/// Maps a file read-only into memory; the pages are shared with other processes. A file that is
-/// truncated while it is mapped ends the process, see end_at_lost_pages(). @throws InputError
+/// Maps a file read-only into memory; the pages are shared with other processes. If a file is
+/// truncated while it is mapped, the process ends: see end_at_lost_pages(). @throws InputError
 /// naming the file: missing, a folder, no permission.
 HeldBytes map_file(const std::filesystem::path& file, MapPages pages = MapPages::kAtOnce);
 

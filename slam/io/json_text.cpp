@@ -6,7 +6,7 @@
 namespace mh {
 namespace {
 
-/// The part of a text between two others; empty if they are not there.
+/// The part of a text between two others; empty if they are not found.
 std::string between(std::string_view text, std::string_view before, std::string_view after) {
   const std::size_t begin = text.find(before);
   if (begin == text.npos) return {};
@@ -28,9 +28,9 @@ std::string fault_in(int id, std::string_view what) {
     case 403:
       return "has no " + between(what, "key ", " not found");
     case 406:
-      return "holds a number that is beyond a double's range";
+      return "holds a number beyond the range of a double";
     default:
-      return "does not hold what it must";
+      return "does not have the expected contents";
   }
 }
 

@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// Levels of lists and objects within each other that JSON may have: comparing, copying and writing
-/// values recurse at each level, and would overflow the stack at some ten thousand.
+/// How deep lists and objects may be nested in JSON: comparing, copying and writing values recurse
+/// at each level, and would overflow the stack at some ten thousand.
 inline constexpr int kDeepestJson = 200;
 
 /// Whether a text has more levels than that; looks at brackets alone.
@@ -21,8 +21,8 @@ bool is_nested_too_deep(std::string_view json);
 /// What is wrong, in our own words: "3:7: is not JSON", "has no 'id'".
 std::string json_fault(const nlohmann::json::exception& error);
 
-/// Parses what a program or a person wrote.
-/// @throws InputError without a file's name if it is not JSON, or nested too deep.
+/// Parses JSON that a program or a person wrote.
+/// @throws InputError without a file's name if it is not JSON, or nested too deeply.
 template <class Json>
 Json parse_json(std::string_view text) {
   if (is_nested_too_deep(text))

@@ -9,9 +9,9 @@
 
 namespace mh {
 
-/// Detects (by inotify) whether a path was redirected, even temporarily: a file, a folder or a link
-/// along it was moved, replaced or removed. Other changes in these folders do not count. Where the
-/// system offers no watch, nothing is detected.
+/// Detects (with inotify) whether a path was redirected, even temporarily: a file, a folder or a
+/// link along it was moved, replaced or removed. Other changes in these folders do not count. On
+/// systems without inotify, nothing is detected.
 class PathWatch {
  public:
   explicit PathWatch(std::span<const std::filesystem::path> files);

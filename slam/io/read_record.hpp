@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// What the file system says about a file. It changes whenever the file is written, replaced,
+/// What the file system reports about a file. It changes whenever the file is written, replaced,
 /// renamed or touched, and no program can set it back.
 struct FileState {
   std::uint64_t device = 0, inode = 0, bytes = 0;  ///< inode 0: there is no such file
@@ -29,7 +29,7 @@ struct FileObservation {
     kOther,   ///< looked for and found, but neither file nor folder: a pipe, a device
     kListed,  ///< the names in a folder that match a pattern; path = folder / pattern
     kRead,    ///< the whole content of a file
-    kHeld,    ///< a file that is read from again, on demand, or missed again; no part of digests
+    kHeld,    ///< a file that may be read, or looked for in vain, again later; not part of digests
   };
   Kind kind = Kind::kAbsent;
   std::filesystem::path path;  ///< as it was spelled by the caller
@@ -40,9 +40,9 @@ struct FileObservation {
   }
 };
 
-/// Everything that a load observed of the file system, in the order of its requests. A loader
-/// chooses its next request by the answers so far, so equal answers in the same order imply the
-/// same load, and file locations need not be part of the record.
+/// Everything that a load observed in the file system, in the order of its requests. A loader
+/// chooses its next request based on the answers so far, so equal answers in the same order imply
+/// the same load, and file locations need not be part of the record.
 struct ReadRecord {
   std::vector<FileObservation> observations;
   void append(const ReadRecord& more);
@@ -53,7 +53,7 @@ struct ReadRecord {
 /// folder elsewhere has the same digest.
 std::uint64_t digest(const ReadRecord& record);
 
-/// Whether the observation tells the state of its file: read, held or absent.
+/// Whether the observation contains the state of its file: read, held or absent.
 bool is_of_a_state(const FileObservation& observation);
 
 /// A file was changed while a command worked with it: results would mix its old and new states.
@@ -61,8 +61,8 @@ struct InputChanged : InputError {
   using InputError::InputError;
 };
 
-/// Checks that no file was changed since it was read, or appeared since it was missed, so that what
-/// was made from several files, or from one read several times, is consistent.
+/// Checks that no file was changed since it was read, or appeared since it was found missing, so
+/// that what was made from several files, or from one read several times, is consistent.
 /// @throws InputChanged naming the first that was.
 void require_unchanged(const ReadRecord& record);
 
@@ -99,8 +99,8 @@ class ReadScope {
   const bool tells_outer_;
 };
 
-/// Reports to the scopes of this thread that a file was read; free if there are none.
-/// @param before  of the file, taken before it was read
+/// Reports to the scopes of this thread that a file was read; costs nothing if there are none.
+/// @param before  state of the file before it was read
 void report_read(const std::filesystem::path& file, std::string_view content,
                  const FileState& before);
 /// Reports that a file was looked for and is missing, or cannot be read.

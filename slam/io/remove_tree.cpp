@@ -42,7 +42,8 @@ bool remove_one(int folder, const char* name) {
 
 /// Moves a folder into another, under an unused name.
 bool move_up(int from, const char* name, int to, unsigned& number) {
-  if (const int opened = open_folder(from, name); opened >= 0) close(opened);  // to permit moving
+  if (const int opened = open_folder(from, name); opened >= 0)
+    close(opened);  // gets the permission to move it
   char fresh[16];
   char* at = fresh + sizeof fresh;
   *--at = '\0';

@@ -33,7 +33,7 @@ constexpr SettingRange required(SettingRange range) {
 }
 }  // namespace setting
 
-/// Turns a visitor of (name, value) into one of lists that also state ranges and meanings.
+/// Adapts a visitor of (name, value) to field lists that also give ranges and meanings.
 template <class Visit>
 class EachField {
  public:

@@ -17,7 +17,7 @@
 namespace mh {
 
 // Visitors of settings' field lists. A setting is an int, a double, a bool, a text, an enumeration
-// E, whose Names words(E) returns, or an optional or a vector of one of these.
+// E whose names words(E) returns, or an optional or a vector of one of these.
 
 /// "[0, 1)"
 inline std::string interval(const SettingRange& range) {
@@ -84,7 +84,7 @@ class SettingsReader {
   }
   /// The last section; nullopt if the file lacks it.
   const std::optional<YamlReader>& place() const { return section_; }
-  /// @throws InputError at a key of the last section that is not one of its fields.
+  /// @throws InputError if the last section has a key that is not one of its fields.
   void finish() const {
     if (section_) section_->finish();
   }

@@ -47,7 +47,7 @@ std::optional<std::string> nearest_word(std::string_view word,
     const std::string other = plain(candidate);
     const std::size_t longer = std::max(meant.size(), other.size());
     const std::size_t apart = edits(meant, other);
-    if (apart >= least || apart >= longer) continue;  // nothing in common
+    if (apart >= least || apart >= longer) continue;  // the words have nothing in common
     least = apart;
     nearest = candidate;
   }

@@ -18,7 +18,7 @@ std::vector<std::string> words_of(const Range& range, Word word = {}) {
 }
 
 /// Returns the word most likely meant by a misspelled one: the one the fewest edits away (insert,
-/// delete, replace, or swap two neighboring characters; letter case, blanks, '-' and '_' do not
+/// delete, replace, or swap two neighboring characters; letter case, spaces, '-' and '_' do not
 /// count), ties to the first; nullopt if more than a third of the word is wrong.
 std::optional<std::string> nearest_word(std::string_view word,
                                         const std::vector<std::string>& valid);

@@ -25,11 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Written once the lock is held: whoever reads it and gets the lock knows that the folder is not in
-// use.
+// Written once the lock is held: a process that reads it and gets the lock knows that the folder is
+// not in use.
 constexpr std::string_view kMarkerText = "modelhouse works here; it removes this folder\n";
 
-/// What the names of this host's folders begin with: another host's lock may not be visible here.
+/// Prefix of the names of this host's folders: another host's lock may not be visible here.
 std::string name_of_host() {
   char host[256] = {};
   gethostname(host, sizeof host - 1);
@@ -62,8 +62,8 @@ std::optional<OwnedFolder> OwnedFolder::make(const fs::path& folder) {
   OwnedFolder made;
   made.path_ = folder;
   made.marker_ = open((folder / kMarker).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  // On a file system without locks the marker stays empty, so that the folder is never mistaken for
-  // an abandoned one.
+  // On a file system without locks, the marker stays empty, so that the folder is never mistaken
+  // for an abandoned one.
   const bool good =
       made.marker_ >= 0 && (flock(made.marker_, LOCK_EX | LOCK_NB) != 0 ||
                             write(made.marker_, kMarkerText.data(), kMarkerText.size()) > 0);
@@ -123,8 +123,8 @@ void FolderHold::join(const std::function<void()>& begin, const std::function<bo
     ::poll(nullptr, 0, kPoll_ms);
   }
   throw InputError(
-      fmt::format("{}: another command is at work in this folder, with something else than this "
-                  "one: wait for it, or name another folder",
+      fmt::format("{}: another command is at work in this folder, on something different: wait for "
+                  "it, or name another folder",
                   folder_.string()));
 }
 

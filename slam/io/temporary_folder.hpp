@@ -20,7 +20,7 @@ class OwnedFolder {
   /// Creates the folder, whose parent must exist; nullopt if the name is already taken.
   /// @throws as throw_unwritable()
   static std::optional<OwnedFolder> make(const std::filesystem::path& folder);
-  /// Takes over one that is not in use; nullopt if there is no folder of ours by that name.
+  /// Takes over a folder of ours that is not in use; nullopt if there is none with this path.
   static std::optional<OwnedFolder> take(const std::filesystem::path& folder);
 
   const std::filesystem::path& path() const { return path_; }
@@ -53,7 +53,7 @@ class FolderHold {
   void join(const std::function<void()>& begin, const std::function<bool()>& is_same);
 
  private:
-  bool lock(int how);  ///< as flock(); false if another process has it
+  bool lock(int how);  ///< like flock(); false if another process holds it
 
   std::filesystem::path folder_;
   int descriptor_ = -1;

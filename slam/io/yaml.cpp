@@ -37,7 +37,7 @@ class Walk {
       for (const auto& entry : node) {
         if (!entry.first.IsScalar()) fail(entry.first, "a key must be a plain word");
         if (!seen.insert(entry.first.Scalar()).second)
-          fail(entry.first, fmt::format("key '{}' stands twice", entry.first.Scalar()));
+          fail(entry.first, fmt::format("key '{}' appears twice", entry.first.Scalar()));
         visit(entry.second, depth + 1);
       }
     } else if (node.IsSequence()) {
@@ -66,10 +66,8 @@ YamlReader YamlReader::load(const std::filesystem::path& file) {
 YamlReader YamlReader::parse(const std::string& text, const std::string& name) {
   constexpr std::size_t kMostBytes = 4 << 20;  // yaml-cpp takes a second for each megabyte
   if (text.size() > kMostBytes)
-    throw InputError(
-        fmt::format("{}: has {} bytes: no YAML that is meant for this program has more "
-                    "than {}",
-                    name, text.size(), kMostBytes));
+    throw InputError(fmt::format("{}: has {} bytes: YAML files may have at most {}", name,
+                                 text.size(), kMostBytes));
   try {
     YAML::Node node = YAML::Load(text);
     Walk(name).visit(node);
@@ -97,7 +95,7 @@ std::string replaced(const std::string& text,
   return result + text.substr(from);
 }
 
-/// Replaces in every word below a node, in place.
+/// Replaces each ${name} in every word below a node, in place.
 void replace_words(YAML::Node node, const std::string& file,
                    const std::function<std::string(const std::string&)>& value_of) {
   if (node.IsScalar() && node.Scalar().find("${") != std::string::npos) {
@@ -140,7 +138,7 @@ int YamlReader::line() const {
 
 void YamlReader::fail(const std::string& what) const {
   const std::string where = place_.empty() ? "" : place_ + ": ";
-  if (place_.empty() && node_->IsNull()) throw InputError(file_ + ": the file holds nothing");
+  if (place_.empty() && node_->IsNull()) throw InputError(file_ + ": the file is empty");
   throw InputError(fmt::format("{}: {}{}", place_in(file_, *node_), where, what));
 }
 
@@ -163,7 +161,7 @@ YamlReader YamlReader::at(const std::string& key) {
     if (!read_.contains(entry.first.Scalar())) others.push_back(entry.first.Scalar());
   const auto slip = nearest_word(key, others);
   fail(fmt::format("key '{}' is missing{}", key,
-                   slip ? fmt::format("; is '{}' meant to be it?", *slip) : ""));
+                   slip ? fmt::format("; is '{}' a typo for it?", *slip) : ""));
 }
 
 std::vector<YamlReader> YamlReader::items() const {

@@ -22,7 +22,8 @@ constexpr int kStrongEdge = 100;
 /// Which keyframes may be the other end of a loop.
 using IsEnd = std::function<bool(KeyframeId)>;
 
-/// Identifies the keyframes of the newest one's piece that may be the other end of a loop at it.
+/// Identifies the keyframes that may be the other end of a loop at the newest one: those of the
+/// same piece that are older and share little with it.
 class Unrelated {
  public:
   Unrelated(const Map& map, KeyframeId newest, const LoopConfig& config)
@@ -81,9 +82,9 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest, const IsEn
   return result;
 }
 
-/// The path between a keyframe and the newest, along the keyframes in order of creation; starts at
-/// the newest keyframe's strong neighbor that is nearest along the path, since that one is equally
-/// well localized.
+/// Length of the path between a keyframe and the newest, along the keyframes in order of creation;
+/// it starts at the newest keyframe's strong neighbor that is nearest along the path, since that
+/// one is equally well localized.
 double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const LoopConfig& config) {
   std::vector<double> way_m(map.keyframes().size(), 0.0);
   std::optional<Eigen::Vector3d> before;
@@ -114,14 +115,14 @@ bool plausible(const Map& map, KeyframeId old, KeyframeId newest, const SE3& cam
 }
 
 struct Graph {
-  std::vector<KeyframeId> keyframes;  // of each pose; the first is the piece's first one
+  std::vector<KeyframeId> keyframes;  // of each pose; the first is the first keyframe of the piece
   std::vector<SE3> poses;
   std::vector<PoseGraphEdge> edges;
 };
 
 /// The essential graph: each keyframe with its best earlier neighbor, with those that share many
 /// landmarks, and the loop. An edge is weighted by the landmarks that support it: drift arises
-/// where there are few.
+/// where few do.
 Graph essential_graph(const Map& map, const Loop& loop) {
   Graph graph;
   std::vector<std::uint32_t> index(map.keyframes().size(), UINT32_MAX);
@@ -140,7 +141,8 @@ Graph essential_graph(const Map& map, const Loop& loop) {
     bool has_parent = false;
     for (const Keyframe::Neighbor& n : k.covisible) {
       if (!(n.id < k.id)) continue;
-      if (has_parent && n.shared < kStrongEdge) break;  // most shared first
+      if (has_parent && n.shared < kStrongEdge)
+        break;  // neighbors are ordered by shared landmarks, most first
       has_parent = true;
       connect(k.id, n.id, k.camera_from_world * map.at(n.id).camera_from_world.inverse(), n.shared);
     }
@@ -213,7 +215,7 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
 
 namespace {
 
-/// Notes where a keyframe would be in another piece. Each keyframe supports a place once.
+/// Records where a keyframe puts its piece in another one. Each keyframe supports a place once.
 /// @returns the place's index
 std::size_t support(std::vector<PiecePlace>& places, const Keyframe& keyframe, const MapPose& seen,
                     const Map& map, const LoopConfig& config) {
@@ -241,7 +243,8 @@ std::size_t support(std::vector<PiecePlace>& places, const Keyframe& keyframe, c
   return places.size() - 1;
 }
 
-/// Whether a place is supported enough, and no other one of its piece by half as many.
+/// Whether enough keyframes support a place, and no other place of its piece is supported by half
+/// as many.
 bool is_certain(const std::vector<PiecePlace>& places, std::size_t index,
                 const LoopConfig& config) {
   const PiecePlace& place = places[index];

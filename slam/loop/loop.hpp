@@ -12,11 +12,11 @@ namespace mh {
 
 /// Where a piece of the map may be in another one, and what supports it.
 struct PiecePlace {
-  KeyframeId origin, other;  ///< Keyframe::origin of the two
-  SE3 other_from_own;        ///< between their worlds, by the last keyframe that agreed
-  KeyframeId keyframe;       ///< that one
+  KeyframeId origin, other;  ///< Keyframe::origin of the two pieces
+  SE3 other_from_own;        ///< between their worlds, from the last keyframe that agreed
+  KeyframeId keyframe;       ///< the last keyframe that agreed
   int agreeing = 0;          ///< keyframes that agreed so far
-  double way_m = 0;          ///< between them
+  double way_m = 0;          ///< length of the path between these keyframes
 };
 
 /// What loop detection remembers between keyframes.
@@ -29,8 +29,8 @@ struct LoopMemory {
   std::vector<PiecePlace> places = {};  ///< of pieces that are not joined yet
 };
 
-/// A recognized place: the newest keyframe, seen by a part of the map with which it shares little,
-/// or of another piece of the map.
+/// A recognized place: the newest keyframe sees a part of the map with which it shares little, or
+/// another piece of the map.
 struct Loop {
   KeyframeId keyframe;                ///< the newest
   KeyframeId old_keyframe;            ///< the keyframe of the recognized place
@@ -45,17 +45,17 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
                                 RandomStream stream);
 
 /// Looks for the newest keyframe's place in other pieces of the map. A place counts once
-/// LoopConfig::joining keyframes agree on it, over LoopConfig::joining_m, and no other place is
-/// supported by half as many.
+/// LoopConfig::joining keyframes agree on it, over a path of LoopConfig::joining_m, and no other
+/// place is supported by half as many.
 /// @param is_reachable  whether the newest keyframe's piece can be there; its argument holds the
-///   other piece and, in the place of a camera, other_from_own
+///   other piece and, in place of a camera pose, other_from_own
 std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
                                     const SlamContext& context, RandomStream stream,
                                     const IsPossible& is_reachable);
 
 /// Closes a loop: distributes the drift over the keyframe graph, moves landmarks along, merges the
-/// landmarks of the two ends, and adjusts the whole piece of the map. If its ends are of different
-/// pieces, the later one first becomes part of the other.
+/// landmarks of the two ends, and adjusts the whole piece of the map. If its ends are in different
+/// pieces, the later piece first becomes part of the other.
 /// @param map  the context's own map, which is modified
 void close_loop(Map& map, const Loop& loop, const SlamContext& context);
 

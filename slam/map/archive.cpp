@@ -14,7 +14,7 @@ namespace mh {
 namespace archive {
 
 void Reader::bytes(void* data, std::size_t size) {
-  require(size <= bytes_.size(), "it ends too soon");
+  require(size <= bytes_.size(), "it ends too early");
   std::memcpy(data, bytes_.data(), size);
   bytes_.remove_prefix(size);
 }
@@ -50,7 +50,8 @@ void check_features(const Reader& reader, const Keyframe& keyframe, int levels, 
                  "the order of words");
 }
 
-/// Checks ids for range and that chains of parents end: preconditions of Map's own checks.
+/// Checks that ids are within range and that chains of parents end: preconditions of Map's own
+/// checks.
 void check_references(const Reader& reader, const std::vector<Keyframe>& keyframes,
                       const std::vector<Landmark>& landmarks, int levels, std::size_t words) {
   const auto keyframe_stands = [&](KeyframeId id) {

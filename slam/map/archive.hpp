@@ -92,7 +92,7 @@ class Reader {
     if constexpr (std::is_same_v<T, bool>) {
       std::uint8_t byte = 0;
       get(byte);
-      require(byte <= 1, "a yes or no is neither");
+      require(byte <= 1, "a boolean is neither 0 nor 1");
       value = byte == 1;
     } else if constexpr (Number<T> || std::is_same_v<T, Descriptor>) {
       bytes(&value, sizeof value);
@@ -136,7 +136,7 @@ template <class A, MaybeConst<Eigen::Vector3d> T>
 void fields(A& a, T& v) {
   a(v.x(), v.y(), v.z());
 }
-/// The elements of a matrix by rows.
+/// The elements of a matrix, row by row.
 template <class A, class M>
 void elements(A& a, M& m) {
   for (Eigen::Index i = 0; i < m.size(); ++i) a(m(i / m.cols(), i % m.cols()));
@@ -214,8 +214,8 @@ void fields(A& a, T& observation) {
 }
 template <class A, MaybeConst<Landmark> T>
 void fields(A& a, T& landmark) {
-  auto& [id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
-         max_distance_m, first_keyframe, visible, found, erased, described] = landmark;
+  auto& [position_in_world, mean_direction, min_distance_m, max_distance_m, id, label, erased,
+         described, descriptor, observations, first_keyframe, visible, found] = landmark;
   a(erased);
   if (erased) return;
   a(id, position_in_world, observations, descriptor, label, mean_direction, min_distance_m,
@@ -238,7 +238,7 @@ void fields(A& a, T& camera) {
 void write_map(Writer& writer, const Map& map);
 /// Reads a map.
 /// @param levels  pyramid levels of its keypoints.
-/// @param words  in the vocabulary.
+/// @param words  number of words in the vocabulary.
 /// @throws InputError if the bytes are not a consistent map.
 Map read_map(Reader& reader, const Camera& camera, int levels, std::size_t words);
 

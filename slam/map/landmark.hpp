@@ -18,23 +18,25 @@ struct Observation {
   friend bool operator==(const Observation&, const Observation&) = default;
 };
 
+/// What searches read of every landmark comes first: it shares a cache line or two.
 struct Landmark {
-  LandmarkId id;
   Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
-  std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
 
   // Derived from the observations by Map::refresh().
-  Descriptor descriptor{};  ///< the observed one with the least median distance to the others
-  ClassId label = kVoid;    ///< of the observation that supplies the descriptor
   Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< mean over observations, from
                                                               ///< camera to landmark
-  double min_distance_m = 0, max_distance_m = 0;  ///< range in which the pyramid can match it
+  double min_distance_m = 0,
+         max_distance_m = 0;  ///< range in which the pyramid's levels can match it
+  LandmarkId id;
+  ClassId label = kVoid;  ///< of the observation that supplies the descriptor
+  bool erased = false;
+  bool described = false;   ///< descriptor and label match these observations; not saved to files
+  Descriptor descriptor{};  ///< the observed one with the least median distance to the others
 
+  std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
   KeyframeId first_keyframe;
   int visible = 1;  ///< frames in which it was expected to be seen
   int found = 1;    ///< frames in which it was an inlier
-  bool erased = false;
-  bool described = false;  ///< descriptor and label match these observations; not saved to files
 };
 
 }  // namespace mh

@@ -154,7 +154,7 @@ void Map::erase(KeyframeId keyframe) {
   k.erased = true;
   inverted_index_.erase(keyframe, k.words.vector);
   position_index_.remove(keyframe, k.camera_from_world.inverse().translation());
-  k.features = {};  // not needed any more: a long run must not grow
+  k.features = {};  // no longer needed: a long run must not fill the memory
   k.grid = {};
   k.words = {};
   k.landmarks = {};
@@ -205,7 +205,7 @@ void Map::refresh(LandmarkId id, const FeatureConfig& config) {
                                              : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 
   // A corner seen at octave o from distance d is visible at octave 0 from scale^o times as far away
-  // (max), and at the coarsest octave from that over scale^(levels - 1) (min).
+  // (max), and at the coarsest octave from that distance divided by scale^(levels - 1) (min).
   const Observation& reference = l.observations.front();
   const Keyframe& k = at(reference.keyframe);
   const double distance = (k.camera_from_world * l.position_in_world).norm();
@@ -260,20 +260,20 @@ void Map::check_invariants() const {
   };
   for (const Keyframe& k : keyframes_) {
     if (k.erased) {
-      require(k.covisible.empty() && k.landmarks.empty(), "an erased keyframe holds on",
-              k.id.value);
+      require(k.covisible.empty() && k.landmarks.empty(),
+              "an erased keyframe still has landmarks or neighbors", k.id.value);
       continue;
     }
     const auto near = keyframes_near(k.camera_from_world.inverse().translation(), 0.0);
     require(std::binary_search(near.begin(), near.end(), k.id),
-            "a keyframe is not found where it stands", k.id.value);
+            "a keyframe is not found at its position", k.id.value);
     for (std::uint32_t i = 0; i < k.landmarks.size(); ++i) {
       if (!k.landmarks[i].valid()) continue;
       const Landmark& l = at(k.landmarks[i]);
       require(!l.erased, "a keyframe names an erased landmark", k.id.value);
       require(std::find(l.observations.begin(), l.observations.end(), Observation{k.id, i}) !=
                   l.observations.end(),
-              "a landmark does not know its keyframe", l.id.value);
+              "a landmark does not list its keyframe", l.id.value);
     }
     for (const Keyframe::Neighbor& n : k.covisible) {
       const auto& back = at(n.id).covisible;
@@ -283,10 +283,11 @@ void Map::check_invariants() const {
     }
   }
   for (const Landmark& l : landmarks_) {
-    require(l.erased == l.observations.empty(), "a landmark stands that nobody sees", l.id.value);
+    require(l.erased == l.observations.empty(),
+            "a landmark is unobserved but not erased, or the reverse", l.id.value);
     for (const Observation& o : l.observations)
       require(!at(o.keyframe).erased && at(o.keyframe).landmarks[o.feature] == l.id,
-              "a keyframe does not know its landmark", l.id.value);
+              "a keyframe does not list its landmark", l.id.value);
   }
 }
 

@@ -80,7 +80,7 @@ class Map {
                           std::uint32_t feature);
   /// No effect if the keyframe sees the landmark already or the feature has one.
   bool add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_t feature);
-  /// Erases the landmark too if no observation is left.
+  /// Erases the landmark, too, if no observation is left.
   void erase_observation(LandmarkId landmark, KeyframeId keyframe);
   void erase(LandmarkId landmark);
   /// Moves the observations of `from` to `into` (if a keyframe sees both, that of `into` stays),
@@ -115,7 +115,7 @@ class Map {
     return inverted_index_.query(view);
   }
   /// Live keyframes whose cameras may be within a distance of a position (a superset), by id;
-  /// those of other pieces, too, whose worlds are others.
+  /// including those of other pieces, whose positions are in other worlds.
   std::vector<KeyframeId> keyframes_near(const Eigen::Vector3d& place_in_world,
                                          double distance_m) const {
     return position_index_.near(place_in_world, distance_m);

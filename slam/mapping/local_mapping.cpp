@@ -40,16 +40,29 @@ Eigen::Vector3d bearing(const Keypoint& k, const Camera& camera) {
   return camera.unproject(k.u_px, k.v_px, 1.0);
 }
 
-/// Squared distance (px^2) of keypoint b from the epipolar line of keypoint a in b's image.
-double epipolar_distance2(const Keypoint& a, const Keypoint& b, const Eigen::Matrix3d& essential,
-                          const Camera& camera) {
-  // Line in normalized coordinates; focal lengths differ little, so one scale serves both axes.
-  const Eigen::Vector3d line = essential * bearing(a, camera);
-  const double norm2 = line.head<2>().squaredNorm();
-  if (norm2 < 1e-18) return 1e18;
-  const double offset = line.dot(bearing(b, camera));
-  return offset * offset / norm2 * camera.fx_px * camera.fy_px;
-}
+/// Epipolar lines of one view's keypoints in another, and how far its keypoints are from them.
+class EpipolarTest {
+ public:
+  EpipolarTest(const Features& a, const Features& b, const SE3& b_from_a, const Camera& camera)
+      : px2_(camera.fx_px * camera.fy_px) {
+    const Eigen::Matrix3d essential = hat(b_from_a.translation()) * b_from_a.rotation();
+    for (const Keypoint& k : a.keypoints) lines_.emplace_back(essential * bearing(k, camera));
+    for (const Keypoint& k : b.keypoints) bearings_.push_back(bearing(k, camera));
+  }
+  /// Squared distance (px^2) of b's keypoint from the line of a's.
+  double distance2(std::uint32_t a, std::uint32_t b) const {
+    // Line in normalized coordinates; focal lengths differ little, so one scale serves both axes.
+    const Eigen::Vector3d& line = lines_[a];
+    const double norm2 = line.head<2>().squaredNorm();
+    if (norm2 < 1e-18) return 1e18;
+    const double offset = line.dot(bearings_[b]);
+    return offset * offset / norm2 * px2_;
+  }
+
+ private:
+  double px2_;
+  std::vector<Eigen::Vector3d> lines_, bearings_;
+};
 
 bool reprojects(const Eigen::Vector3d& point_in_world, const Keyframe& keyframe, const Keypoint& k,
                 const Camera& camera, const FeatureConfig& features) {
@@ -76,8 +89,8 @@ std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& worl
   return 0.5 * (world_from_a.translation() + sa * da + world_from_b.translation() + sb * db);
 }
 
-/// The point that two matched features see: by parallax if there is enough, otherwise by whichever
-/// depth is available; none if it does not reproject into both.
+/// The point that two matched features show: from parallax if there is enough, otherwise from
+/// whichever depth is available; nullopt if it does not reproject into both.
 std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka, const Keyframe& b,
                                            const Keypoint& kb, const SlamContext& context) {
   const SE3 world_from_a = a.camera_from_world.inverse();
@@ -155,8 +168,8 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext
     const Keyframe& b = map.at(other);
     const SE3 b_from_a = b.camera_from_world * a.camera_from_world.inverse();
     if (b_from_a.translation().norm() < context.camera.baseline_m)
-      continue;  // depth is more accurate
-    const Eigen::Matrix3d essential = hat(b_from_a.translation()) * b_from_a.rotation();
+      continue;  // too close for parallax: depth is more accurate
+    const EpipolarTest epipolar(a.features, b.features, b_from_a, context.camera);
 
     const auto unmapped = [](const Keyframe& k) {
       std::vector<std::uint8_t> use(k.features.size());
@@ -164,10 +177,8 @@ void triangulate_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext
       return use;
     };
     const auto on_line = [&](std::uint32_t fa, std::uint32_t fb) {
-      const Keypoint& kb = b.features.keypoints[fb];
-      const double sigma = octave_scale(context.config.features, kb.octave);
-      return epipolar_distance2(a.features.keypoints[fa], kb, essential, context.camera) <
-             kChi2Line * sigma * sigma;
+      const double sigma = octave_scale(context.config.features, b.features.keypoints[fb].octave);
+      return epipolar.distance2(fa, fb) < kChi2Line * sigma * sigma;
     };
     const std::vector<std::uint8_t> use_a = unmapped(a), use_b = unmapped(b);
     const auto matches =
@@ -273,7 +284,8 @@ std::vector<KeyframeId> observing_keyframes(const Map& map,
   return result;
 }
 
-/// The live keyframes with odometry before and after one in time, where there are any.
+/// The live keyframes with odometry that come just before and just after a keyframe in time;
+/// invalid where there is none.
 std::array<KeyframeId, 2> beside_in_time(const Map& map, const Keyframe& keyframe) {
   std::array<KeyframeId, 2> beside;
   for (const Keyframe& k : map.keyframes()) {
@@ -287,8 +299,8 @@ std::array<KeyframeId, 2> beside_in_time(const Map& map, const Keyframe& keyfram
   return beside;
 }
 
-/// What the wheels did between keyframes that follow each other, at least one of them free. Adds
-/// those that are missing to the fixed ones.
+/// Pairs of successive keyframes, at least one of them free, that wheel odometry links. Adds
+/// keyframes that are neither free nor fixed to the fixed ones.
 std::vector<std::pair<KeyframeId, KeyframeId>> wheel_steps(const Map& map,
                                                            const std::vector<KeyframeId>& free,
                                                            std::vector<KeyframeId>& fixed) {
@@ -310,7 +322,7 @@ std::vector<std::pair<KeyframeId, KeyframeId>> wheel_steps(const Map& map,
 }
 
 BundleMotion motion_of(const Keyframe& a, const Keyframe& b) {
-  constexpr double kLeast_m = 0.005, kLeast_rad = 0.005;  // joints and stamps of the readings
+  constexpr double kLeast_m = 0.005, kLeast_rad = 0.005;  // errors of joints and stamps
   BundleMotion motion;
   motion.b_from_a = b.odom_from_camera->inverse() * *a.odom_from_camera;
   const Vector6d twist = motion.b_from_a.log();
@@ -398,7 +410,7 @@ void adjust_piece(Map& map, KeyframeId origin, const SlamContext& context) {
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context) {
   for (const KeyframeId id : best_neighbors(map, newest, map.keyframes().size())) {
     const Keyframe& k = map.at(id);
-    // Tracking depends on the latest few.
+    // The latest few stay, since tracking depends on them.
     if (id == k.origin || newest.value - id.value < 3) continue;
     int total = 0, redundant = 0;
     for (std::size_t i = 0; i < k.landmarks.size(); ++i) {

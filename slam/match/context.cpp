@@ -12,8 +12,9 @@ namespace {
 void set_distance(MatchedPair& pair, LabeledDescriptor p, LabeledDescriptor q,
                   const SemanticConfig& config) {
   MatcherCounts counts;
-  pair.distance_bits = SemanticMatcher(config, counts)(p, q).semantic;
-  pair.penalized = counts.penalized != 0;
+  const SemanticMatcher::Distance distance = SemanticMatcher(config, counts)(p, q);
+  pair.distance_bits = distance.semantic;
+  pair.penalized = distance.penalized;
 }
 
 LabeledDescriptor view(const Features& features, std::uint32_t i) {
@@ -91,7 +92,7 @@ std::vector<LandmarkId> match_under(const Nodes& nodes, const Keyframe& keyframe
   return landmarks;
 }
 
-/// All features under one node, or each under its label.
+/// Puts all features under one node, or each under its label.
 WordIndex nodes_of(const Features& features, WiderSearch where) {
   WordIndex index;
   for (std::uint32_t i = 0; i < features.size(); ++i) {

@@ -38,7 +38,7 @@ std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& q
                                         const SlamContext& context, Matcher matcher);
 
 /// The same among all features of the frame, or those of the landmark's label, instead of those
-/// under the same vocabulary node. Void has no label. @pre where is not kNone
+/// under the same vocabulary node. Void does not count as a label. @pre where is not kNone
 std::vector<LandmarkId> match_landmarks_widely(const Keyframe& keyframe, const Query& query,
                                                const SlamContext& context, Matcher matcher,
                                                WiderSearch where);

@@ -17,7 +17,8 @@ namespace mh {
 float octave_scale(const FeatureConfig& config, int octave);
 
 /// Predicts where and at which octave a landmark appears to a camera; nullopt if it is outside the
-/// image, outside the distances that its octaves can match, or seen from more than 60 degrees off.
+/// image, outside the distances that its octaves can match, or seen from more than 60 degrees off
+/// its mean viewing direction.
 /// @param radius_px  search radius at octave 0; grows with the predicted octave's scale.
 std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& camera_from_world,
                                        const Eigen::Vector3d& camera_in_world, const Camera& camera,
@@ -28,8 +29,8 @@ PoseObservation observe(const Eigen::Vector3d& point_in_world, const Keypoint& k
                         const Camera& camera, const FeatureConfig& features);
 
 /// All landmarks that an image's features are matched to, as input of the optimizers.
-/// @param landmarks   one per feature, or none
-/// @param feature_of  becomes the feature of each observation
+/// @param landmarks  per feature; invalid = none
+/// @param feature_of  receives the feature of each observation
 std::vector<PoseObservation> observe(const Features& features,
                                      const std::vector<LandmarkId>& landmarks, const Map& map,
                                      const Camera& camera, const FeatureConfig& config,

@@ -32,10 +32,10 @@ constexpr std::string_view name(MatchGate gate) {
   return name_of(gate, words(gate));
 }
 
-/// One such pair, as a matcher logs it.
+/// A pair, as a matcher logs it.
 struct GatedPair {
   std::uint32_t asked = 0;    ///< the searched point: a feature of the first view, or a target
-  std::uint32_t feature = 0;  ///< the nearest one, after equation 2
+  std::uint32_t feature = 0;  ///< the nearest feature, after equation 2
   MatchGate gate = MatchGate::kKept;
 };
 using GateLog = std::vector<GatedPair>;

@@ -63,6 +63,8 @@ class SearchLog {
 }  // namespace
 
 bool SemanticMatcher::accept(const Best& best, float max_distance, float ratio) {
+  counts_.compared += best.compared;
+  counts_.penalized += best.penalized;
   if (best.index == UINT32_MAX) return false;
   if (best.first.semantic > max_distance) {
     counts_.rejected_by_xi += best.first.plain <= max_distance;
@@ -89,15 +91,17 @@ std::vector<std::int32_t> match_by_projection(std::span<const ProjectionTarget> 
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const ProjectionTarget& target = targets[t];
     SemanticMatcher::Best best;
-    grid.for_each_near(target.u_px, target.v_px, target.radius_px, [&](std::uint32_t i) {
-      const Keypoint& k = features.keypoints[i];
-      if (taken[i] != 0 || k.octave < target.min_octave || k.octave > target.max_octave) return;
-      if (std::abs(k.u_px - target.u_px) > target.radius_px ||
-          std::abs(k.v_px - target.v_px) > target.radius_px)
-        return;
-      best.offer(i, matcher({*target.descriptor, target.label}, {features.descriptors[i], k.label}),
-                 k.octave);
-    });
+    grid.for_each_near(
+        target.u_px, target.v_px, target.radius_px, [&](const FeatureGrid::Entry& k) {
+          if (k.octave < target.min_octave || k.octave > target.max_octave ||
+              std::abs(k.u_px - target.u_px) > target.radius_px ||
+              std::abs(k.v_px - target.v_px) > target.radius_px || taken[k.index] != 0)
+            return;
+          best.offer(k.index,
+                     matcher({*target.descriptor, target.label},
+                             {features.descriptors[k.index], features.keypoints[k.index].label}),
+                     k.octave);
+        });
     const float ratio = best.first_octave == best.second_octave ? gate.ratio : 1.0F;
     const bool accepted = matcher.accept(best, gate.max_distance, ratio);
     log.add(static_cast<std::uint32_t>(t), best, accepted, gate.max_distance);

@@ -32,15 +32,14 @@ class SemanticMatcher {
         log_(log) {}
 
   struct Distance {
-    float plain = 0;     ///< Hamming distance, bits
-    float semantic = 0;  ///< after equation 2
+    float plain = 0;         ///< Hamming distance, bits
+    float semantic = 0;      ///< after equation 2
+    bool penalized = false;  ///< the labels disagree
   };
-  Distance operator()(LabeledDescriptor p, LabeledDescriptor q) {
+  Distance operator()(LabeledDescriptor p, LabeledDescriptor q) const {
     const auto plain = static_cast<float>(hamming(p.descriptor, q.descriptor));
     const bool disagree = labels_disagree(p.label, q.label, policy_);
-    ++counts_.compared;
-    counts_.penalized += disagree;
-    return {plain, semantic_distance(plain, disagree, xi_)};
+    return {plain, semantic_distance(plain, disagree, xi_), disagree};
   }
   /// Best candidate of a search: nearest by semantic distance, with the second nearest for the
   /// ratio test.
@@ -48,7 +47,10 @@ class SemanticMatcher {
     std::uint32_t index = UINT32_MAX;
     Distance first{1e9F, 1e9F}, second{1e9F, 1e9F};
     int first_octave = -1, second_octave = -2;
+    int compared = 0, penalized = 0;  ///< candidates
     void offer(std::uint32_t i, Distance d, int octave) {
+      ++compared;
+      penalized += d.penalized;
       if (d.semantic < first.semantic) {
         second = first;
         second_octave = first_octave;
@@ -61,8 +63,8 @@ class SemanticMatcher {
       }
     }
   };
-  /// Applies the distance limit and the ratio test (ratio >= 1: none) and counts where xi changed
-  /// the outcome.
+  /// Applies the distance limit and the ratio test (ratio >= 1: none). Counts the search's
+  /// candidates and where xi changed the outcome: to be called once for each search.
   bool accept(const Best& best, float max_distance, float ratio);
   GateLog* log() const { return log_; }
 

@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// Two views that a matcher took for the same point, as the matcher returned them: before any pose
-/// estimate rejected outliers.
+/// Two features that a matcher took for the same point, as the matcher returned them: before any
+/// pose estimate rejected outliers.
 struct MatchedPair {
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
@@ -19,12 +19,12 @@ struct MatchedPair {
   KeyframeId seen_in;         ///< owner of the feature; invalid = the current frame
   std::uint32_t feature = 0;  ///< of the current frame or of seen_in
   LandmarkId landmark;        ///< the landmark it was matched to; invalid = a keypoint without one
-  KeyframeId keyframe;        ///< owner of the feature that supplied the other descriptor (the
-                              ///< newest keyframe when triangulating); invalid = the landmark's
-                              ///< own, or in the motion model the last frame's
+  KeyframeId keyframe;  ///< owner of the feature that supplied the other descriptor (the newest
+                        ///< keyframe when triangulating); invalid = the landmark's own or, in the
+                        ///< motion model, the last frame's
   std::uint32_t other_feature = kNone;  ///< of that keyframe or of the last frame
   float distance_bits = 0;              ///< after equation 2
-  bool penalized = false;               ///< labels known and different
+  bool penalized = false;               ///< the labels are known and differ
   friend bool operator==(const MatchedPair&, const MatchedPair&) = default;
 };
 

@@ -173,7 +173,7 @@ DetectedObjects DetectionAssociation::objects(const VoxelMap& map) const {
     if (views.apart <= views.together) continue;
     const auto a = ids.find(pair.first), b = ids.find(pair.second);
     if (a != ids.end() && b != ids.end() && a->second != 0 && b->second != 0)
-      apart.emplace(a->second, b->second);  // ids are in the order of objects
+      apart.emplace(a->second, b->second);  // a has the smaller id: ids follow the order of objects
   }
   return {std::move(entries), std::move(apart)};
 }

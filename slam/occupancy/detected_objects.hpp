@@ -16,7 +16,7 @@ namespace mh {
 
 class VoxelMap;
 
-/// The index of a voxel as one number, unique within 2^20 voxels each way.
+/// The index of a voxel as one number, unique within 2^20 voxels in each direction.
 std::uint64_t key_of(const Eigen::Vector3i& voxel);
 
 /// Which detected object each voxel of a map belongs to, and which objects are known to be
@@ -44,7 +44,7 @@ class DetectedObjects {
  private:
   std::vector<Entry> entries_;
   std::set<std::pair<Id, Id>> apart_;
-  std::unordered_map<std::uint64_t, Id> at_;  // only looked up, never walked
+  std::unordered_map<std::uint64_t, Id> at_;  // only looked up, never iterated over
 };
 
 /// Associates detections across views: a detection belongs to an object that already had at least a
@@ -64,7 +64,7 @@ class DetectionAssociation {
     std::uint32_t views = 0;
   };
   struct Pair {
-    std::uint32_t together = 0, apart = 0;  ///< views
+    std::uint32_t together = 0, apart = 0;  ///< numbers of views
   };
   struct Detection;
 
@@ -73,12 +73,13 @@ class DetectionAssociation {
   /// Assigns each detection its object: largest overlaps first, and no object twice, since an
   /// object has one detection per view.
   void recognize(std::vector<Detection>& detections);
-  /// Counts which objects of one class the detections show as one and which as two.
+  /// Counts, for pairs of objects of one class, whether the detections show them as one or as two.
   void compare(const std::vector<Detection>& detections);
 
-  std::vector<ClassId> classes_;                                 ///< of each object
-  std::unordered_map<std::uint64_t, std::vector<Votes>> votes_;  // only looked up, never walked
-  std::map<std::pair<Object, Object>, Pair> pairs_;              ///< the smaller first
+  std::vector<ClassId> classes_;  ///< of each object
+  std::unordered_map<std::uint64_t, std::vector<Votes>>
+      votes_;                                        // only looked up, never iterated over
+  std::map<std::pair<Object, Object>, Pair> pairs_;  ///< keys have the smaller object first
 };
 
 }  // namespace mh

@@ -13,19 +13,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kOnPlane_m = 0.04;       // of points on a plane: the depth noise at 4 m
-constexpr double kSteepest = 0.7;         // cosine to the cameras' mean up: handheld ones look down
-constexpr double kLeastHeight_m = 0.15;   // of a camera over the floor
-constexpr double kMostBelow = 0.05;       // share of all points well below the floor
-constexpr double kBelow_m = 0.15;         // well below
-constexpr std::size_t kLeastPoints = 20;  // that make a floor
-// Share of a floor's points in a layer of twice the thickness: half where a plane only cuts walls.
+constexpr double kOnPlane_m =
+    0.04;  // farthest that points on a plane are from it: the depth noise at 4 m
+constexpr double kSteepest =
+    0.7;  // least cosine to the cameras' mean up axis, since handheld cameras look down
+constexpr double kLeastHeight_m = 0.15;  // least height of a camera above the floor
+constexpr double kMostBelow = 0.05;  // largest share of all points that may be well below the floor
+constexpr double kBelow_m = 0.15;    // what "well below" means
+constexpr std::size_t kLeastPoints = 20;  // needed for a floor
+// Least share of the points within twice kOnPlane_m that must be on a floor. It is about one half
+// where a plane only cuts through walls.
 constexpr double kLeastFlat = 0.65;
 constexpr ClassId kFloorClass = 2, kMatClass = 20;
 
 struct Plane {
   Vector3d up = Vector3d::UnitZ();
-  double offset_m = 0;  ///< up . point of its points
+  double offset_m = 0;  ///< up . p for its points p
   double height(const Vector3d& point) const { return up.dot(point) - offset_m; }
 };
 
@@ -48,7 +51,7 @@ bool is_surface(const Plane& plane, std::size_t on, const std::vector<Vector3d>&
          kLeastFlat * static_cast<double>(count_on(plane, points, 2 * kOnPlane_m));
 }
 
-/// Whether cameras can stand on a plane, and next to nothing is below it.
+/// Whether all cameras are above a plane and almost no points are below it.
 bool can_be_floor(const Plane& plane, const Surroundings& around) {
   if (plane.up.dot(around.up) < kSteepest) return false;
   for (const SE3& camera : around.cameras)
@@ -90,7 +93,7 @@ std::optional<Plane> best_plane(const std::vector<Vector3d>& points, const Surro
     const Vector3d& b = points[draws.below(3 * i + 1, points.size())];
     const Vector3d& c = points[draws.below(3 * i + 2, points.size())];
     const Vector3d normal = (b - a).cross(c - a);
-    if (normal.norm() < 1e-3) continue;  // nearly on a line
+    if (normal.norm() < 1e-3) continue;  // the points are nearly on a line
     Plane plane{.up = normal.normalized(), .offset_m = 0};
     if (plane.up.dot(around.up) < 0) plane.up = -plane.up;
     if (plane.up.dot(around.up) < kSteepest) continue;
@@ -109,7 +112,8 @@ std::optional<Plane> best_plane(const std::vector<Vector3d>& points, const Surro
 SE3 frame_of(const Plane& plane, const SE3& first) {
   Vector3d x = first.rotation().col(2);
   x -= plane.up.dot(x) * plane.up;
-  if (x.norm() < 0.1) {  // it looks straight down: its image's upper edge is ahead
+  if (x.norm() <
+      0.1) {  // the camera looks straight down: ahead is where the image's upper edge points
     x = -first.rotation().col(1);
     x -= plane.up.dot(x) * plane.up;
   }

@@ -27,8 +27,8 @@ struct FloorFrame {
 };
 
 /// Finds the floor: the plane of the points labeled floor, if it is where a floor can be: below the
-/// cameras and across their path, with next to nothing below it. Otherwise the largest plane for
-/// which this holds. Deterministic.
+/// cameras and roughly perpendicular to their mean up axis, with almost nothing below it.
+/// Otherwise, the largest plane for which this holds. Deterministic.
 /// @param cameras  poses along the path, in order; their y axis points down
 /// @returns nullopt if no plane supports a floor.
 std::optional<FloorFrame> find_floor_frame(std::span<const LabeledPoint> points,

@@ -17,7 +17,7 @@
 
 namespace mh {
 
-/// Gray levels of a map, row 0 the southernmost.
+/// Gray levels of a map; row 0 is the southernmost.
 struct MapImage {
   Grid2d<std::uint8_t> levels;
   double resolution_m = 0.05;
@@ -26,7 +26,7 @@ struct MapImage {
   std::vector<bool> clear;  ///< pixels that are not opaque, in the order of levels; empty: none
 };
 
-/// stem.pgm and stem.yaml.
+/// The paths stem.pgm and stem.yaml.
 std::array<std::filesystem::path, 2> map_image_files(const std::filesystem::path& stem);
 
 /// @throws InputError if one of the two exists but was not written by write_map_image(), or if the

@@ -31,9 +31,9 @@ constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 constexpr std::uint8_t kUnknownRaw = 255;
 
 constexpr std::string_view kOurs = "# Written by modelhouse";
-constexpr double kFurthest_m = 1e8;  // of an origin: UTM's coordinates are within
+constexpr double kFurthest_m = 1e8;  // farthest origin; UTM coordinates are nearer
 
-/// A word as YAML writes it: in quotes if it could be read as anything but itself.
+/// A word as YAML writes it: in quotes if it could be read as anything else.
 std::string yaml_word(const std::string& word) {
   YAML::Emitter yaml;
   yaml << word;
@@ -49,7 +49,7 @@ std::uint8_t gray(std::int8_t cell, GridMode mode) {
 constexpr std::array kKeys = {"image",           "mode",       "resolution", "origin", "negate",
                               "occupied_thresh", "free_thresh"};
 
-/// A PGM's numbers before its pixels, and where these begin.
+/// The numbers in a PGM's header, and where its pixels begin.
 struct PgmHeader {
   bool is_text = false;
   int width = 0, height = 0, brightest = 0;
@@ -66,7 +66,9 @@ PgmHeader read_pgm_header(const std::string& content, const std::string& file) {
     in >> *number;
   }
   if (!in || header.brightest < 1 || header.brightest > 65535)
-    throw InputError(file + ": is no PGM image: width, height and a maximum of 1 to 65535 lead it");
+    throw InputError(
+        file +
+        ": is not a PGM image: it must begin with width, height and a maximum of 1 to 65535");
   if (header.width < 1 || header.height < 1 || header.width > 65536 || header.height > 65536)
     throw InputError(
         fmt::format("{}: {} x {} pixels, not 1 to 65536 each", file, header.width, header.height));
@@ -109,18 +111,18 @@ std::vector<int> binary_pixels(const std::string& content, const PgmHeader& head
       static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   const std::size_t width = header.brightest > 255 ? 2 : 1;
   if (bytes.size() < width * size) throw InputError(file + ": is truncated");
-  // One blank separates header and pixels; a line that ends in CR LF has two.
+  // One whitespace character separates header and pixels; CR LF counts as two.
   if (bytes.size() == width * size + 1 && bytes[0] == '\n' && content[header.end - 1] == '\r')
     bytes.remove_prefix(1);
   const std::size_t left = bytes.size() - width * size;
   if (left > 0 && warnings != nullptr)
-    warnings->push_back(fmt::format("{}: {} behind its {} x {} pixels {} ignored", file,
+    warnings->push_back(fmt::format("{}: {} after its {} x {} pixels {} ignored", file,
                                     counted(left, "byte"), header.width, header.height,
                                     left == 1 ? "is" : "are"));
   std::vector<int> pixels(size);
   for (std::size_t i = 0; i < size; ++i) {
     const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
-    pixels[i] = width == 1 ? byte(i) : byte(2 * i) << 8 | byte(2 * i + 1);  // the high one first
+    pixels[i] = width == 1 ? byte(i) : byte(2 * i) << 8 | byte(2 * i + 1);  // high byte first
   }
   return pixels;
 }
@@ -150,7 +152,7 @@ GrayImage read_image_levels(const std::filesystem::path& file, std::vector<std::
   const std::string content = read_file(file);
   if (content.starts_with("P5") || content.starts_with("P2"))
     return read_pgm(content, file.string(), warnings);
-  if (!decode) throw InputError(file.string() + ": is no PGM image (P5 or P2)");
+  if (!decode) throw InputError(file.string() + ": is not a PGM image (P5 or P2)");
   try {
     return decode(content);
   } catch (const InputError& error) {
@@ -167,17 +169,17 @@ std::vector<double> read_origin(const YamlReader& node, const std::filesystem::p
   };
   const std::vector<YamlReader> items = node.items();
   if (items.size() == 3 && items[2].is_scalar() && items[2].as_string().ends_with("nan")) {
-    warn(fmt::format("its turn '{}' is taken for 0", items[2].as_string()));
+    warn(fmt::format("its yaw '{}' is taken as 0", items[2].as_string()));
     return {items[0].as_double(), items[1].as_double(), 0};
   }
   std::vector<double> origin = node.as_numbers(3);
   if (std::abs(origin[2]) > 2 * std::numbers::pi)
-    warn(fmt::format("its turn of {} is read in radians", origin[2]));
+    warn(fmt::format("its yaw of {} is read in radians", origin[2]));
   return origin;
 }
 
 std::filesystem::path image_named(YamlReader& yaml, const std::filesystem::path& yaml_file) {
-  return yaml_file.parent_path() / yaml.string("image");  // an absolute path stays one
+  return yaml_file.parent_path() / yaml.string("image");  // an absolute path stays absolute
 }
 
 }  // namespace
@@ -221,7 +223,7 @@ void require_replaceable_map_image(const std::filesystem::path& stem) {
   const auto [pgm, yaml] = map_image_files(stem);
   if (is_file(yaml) ? read_file(yaml).starts_with(kOurs) : !is_there(pgm) && !is_there(yaml))
     return;
-  throw InputError(fmt::format("{}: is there already, and not from modelhouse: name another",
+  throw InputError(fmt::format("{}: already exists and was not written by modelhouse: name another",
                                (is_there(yaml) ? yaml : pgm).string()));
 }
 
@@ -269,15 +271,15 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
   YamlReader yaml = YamlReader::load(yaml_file);
   for (const auto& [key, value] : yaml.entries())
     if (warnings != nullptr && std::ranges::find(kKeys, key) == kKeys.end())
-      warnings->push_back(fmt::format("{}:{}: key '{}' is none of map_server's and is ignored{}",
+      warnings->push_back(fmt::format("{}:{}: key '{}' is not one of map_server's and is ignored{}",
                                       yaml_file.string(), value.line(), key,
                                       did_you_mean(key, words_of(kKeys))));
-  const std::string mode = lower_case(yaml.string("mode", "trinary"));  // as nav2_map_server
+  const std::string mode = lower_case(yaml.string("mode", "trinary"));  // as in nav2_map_server
   if (mode != "trinary" && mode != "raw" && mode != "scale")
     yaml.at("mode").fail("'" + mode + "' is not supported, only trinary, scale and raw are");
   const MapImage map = read_map_image(yaml, yaml_file, warnings, decode);
   const std::string negated = lower_case(yaml.string("negate"));
-  const bool negate = negated == "1" || negated == "true";  // map_server takes both
+  const bool negate = negated == "1" || negated == "true";  // map_server accepts both
   if (!negate && negated != "0" && negated != "false")
     yaml.at("negate").fail("'" + negated + "' is not 0, 1, true or false");
   const double occupied = yaml.number("occupied_thresh", 0, 1);
@@ -292,7 +294,7 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
   for (int y = 0; y < grid.cells.height(); ++y)
     for (int x = 0; x < grid.cells.width(); ++x, ++pixel) {
       const std::uint8_t level = map.levels(x, y);
-      if (mode == "raw") {  // as nav2_map_server: what is not 0 to 100 is unknown
+      if (mode == "raw") {  // as in nav2_map_server: values outside 0 to 100 are unknown
         out_of_range += level > kOccupiedCell && level != kUnknownRaw ? 1 : 0;
         grid.cells(x, y) = level <= kOccupiedCell ? static_cast<std::int8_t>(level) : kUnknownCell;
         continue;
@@ -310,7 +312,7 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
     }
   if (out_of_range > 0 && warnings != nullptr)
     warnings->push_back(
-        fmt::format("{}: {} from 101 to 254, which mode raw takes for unknown (a cost map? "
+        fmt::format("{}: {} from 101 to 254, which mode raw reads as unknown (a cost map? "
                     "`map cost` writes what can be read as NAME_published)",
                     yaml_file.string(), counted(out_of_range, "cell is", "cells are")));
   return grid;

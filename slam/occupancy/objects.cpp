@@ -50,7 +50,8 @@ class Groups {
   std::vector<std::size_t> parent_;
 };
 
-/// Half of a voxel's 26 neighbors, the others being their opposites: so each pair is visited once.
+/// Half of a voxel's 26 neighbors, so that each pair is visited once: the other half are their
+/// opposites.
 const std::vector<Vector3i>& forward_neighbors() {
   static const std::vector<Vector3i> kAll = [] {
     std::vector<Vector3i> all;
@@ -81,7 +82,7 @@ bool are_apart(const Detected& a, const Detected& b, const DetectedObjects& dete
 /// objects touch and not all may merge, those with the longest border do.
 std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels,
                                  const DetectedObjects& detected) {
-  std::unordered_map<std::uint64_t, std::size_t> at;  // only looked up, never walked
+  std::unordered_map<std::uint64_t, std::size_t> at;  // only looked up, never iterated over
   at.reserve(voxels.size());
   for (std::size_t i = 0; i < voxels.size(); ++i) at.emplace(key_of(voxels[i].index), i);
   Groups groups(voxels.size());
@@ -152,8 +153,8 @@ bool is_fragment(const Cluster& small, const Cluster& large, const DetectedObjec
                  int gap, int stacked_gap) {
   if (4 * small.voxels.size() > large.voxels.size()) return false;
   if (are_apart(small.detected, large.detected, detected)) return false;
-  const Vector3i apart =
-      (small.low - large.high).cwiseMax(large.low - small.high).array() - 1;  // empty voxels
+  const Vector3i apart = (small.low - large.high).cwiseMax(large.low - small.high).array() -
+                         1;  // empty voxels between the two boxes
   if (apart.maxCoeff() <= gap) return true;
   return apart.z() <= stacked_gap && shared_above(small, large) >= 0.5;
 }
@@ -256,7 +257,7 @@ std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& co
 std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
                                        std::string_view name) {
   std::vector<std::size_t> meant;
-  std::string plain = lower_case(std::string(name));  // "Potted_Plant" is "potted plant"
+  std::string plain = lower_case(std::string(name));  // "Potted_Plant" means "potted plant"
   std::ranges::replace(plain, '_', ' ');
   const std::optional<ClassId> class_id = class_by_name(plain);
   for (std::size_t i = 0; i < objects.size(); ++i)
@@ -270,7 +271,7 @@ std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
     }
     const char* why = !class_id             ? "no class and no object has this name"
                       : is_thing(*class_id) ? "the map holds none"
-                                            : "is never an object of a map";
+                                            : "is never an object in a map";
     throw InputError(fmt::format("object '{}': {}{}", name, why, hint(plain, there)));
   }
   std::ranges::stable_sort(meant, std::ranges::greater(),

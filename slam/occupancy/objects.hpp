@@ -19,7 +19,8 @@ struct MapObject {
   std::string name;  ///< class and number, e.g. "chair 2"; unique in a map
   ClassId class_id = kVoid;
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  ///< of its box, map frame
-  Eigen::Vector3d min_m = Eigen::Vector3d::Zero(), max_m = Eigen::Vector3d::Zero();  ///< box
+  Eigen::Vector3d min_m = Eigen::Vector3d::Zero(),
+                  max_m = Eigen::Vector3d::Zero();  ///< corners of its box
   /// Share of the votes in its voxels that are for its class, times min(1, voxels / (4 x
   /// min_voxels)): 0 to 1.
   double score = 0;
@@ -34,7 +35,7 @@ struct ObjectsConfig {
   double gap_m = 0.10;
   /// or this where one is above the other: the legs below a seat, whose rim is thin.
   double stacked_gap_m = 0.25;
-  double min_label_share = 0.5;  ///< of a voxel's votes, for it to count as its class
+  double min_label_share = 0.5;  ///< of a voxel's votes that must be for its class
 };
 
 /// Whether a class is a kind of object, not structure (wall, floor, ceiling, ...), unknown or a
@@ -47,7 +48,7 @@ std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& co
 
 /// Indices of the objects meant by a name: of one object ("chair 2") or of a class ("refrigerator",
 /// synonyms too), best score first.
-/// @throws InputError with a suggestion if the name means nothing, or nothing in this map.
+/// @throws InputError with a suggestion if the name is unknown, or nothing in this map has it.
 std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
                                        std::string_view name);
 

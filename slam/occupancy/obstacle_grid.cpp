@@ -62,7 +62,8 @@ OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& confi
   const double r = map.resolution_m();
   const double low_m = config.lowest_m(r), high_m = config.floor_z_m + config.robot_height_m;
   if (!(low_m < high_m))
-    throw InputError(fmt::format("grid: nothing is between {} m and {} m", low_m, high_m));
+    throw InputError(
+        fmt::format("grid: the heights from {} m to {} m are an empty range", low_m, high_m));
   constexpr int kFar = std::numeric_limits<int>::max();
   /// What is known about the voxels above a cell.
   struct Column {

@@ -16,25 +16,25 @@ namespace mh {
 /// Which part of a map obstructs a robot. Heights above the map's z = 0.
 struct ObstacleGridConfig {
   double floor_z_m = 0.0;
-  /// Anything lower than this above the floor is floor. 0.10 m: two voxels; depth noise at 4 m
-  /// stays below it. For voxels larger than that: half of it plus half a voxel.
+  /// Anything lower than this above the floor counts as floor. 0.10 m: two voxels; depth noise at 4
+  /// m stays below it. If a voxel is larger than this, the limit is half of this plus half a voxel.
   double ground_m = 0.10;
   double robot_height_m = 1.21;  ///< what is higher does not touch the robot
   /// A cell is free only if its free voxels begin below this height above the floor: otherwise,
   /// something low may be hidden.
   double seen_below_m = 0.50;
 
-  /// Height (m) that the center of a voxel of that size must reach to be part of the band.
+  /// Height (m) that the center of a voxel of that size must reach to be above the ground.
   double lowest_m(double resolution_m) const {
-    // A large voxel that begins lower than half of ground_m holds the floor.
+    // A large voxel that begins lower than half of ground_m contains the floor.
     return floor_z_m + std::max(ground_m, 0.5 * (ground_m + resolution_m));
   }
 };
 
 /// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
 /// occupied if any voxel there is, so a table top is an obstacle and a lintel is not; free if none
-/// is, the lower part was seen free, and the free voxels have no gap (a table top without a return
-/// has free space below and above it); else unknown. Empty if nothing was seen there.
+/// is, the lower part was seen to be free, and the free voxels have no gap (a table top without a
+/// return has free space below and above it); else unknown. Empty if nothing was seen there.
 /// @throws InputError if the heights leave nothing between them.
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
 
@@ -50,16 +50,17 @@ struct RangeScan {
   std::vector<float> ranges_m;
 };
 
-/// What lasers saw of a floor, as counts per cell: a second source for a grid besides depth. Counts
+/// What lasers saw on a floor, as counts per cell: a second source for a grid besides depth. Counts
 /// depend on the set of scans alone, not on their order.
 class ScanGrid {
  public:
   explicit ScanGrid(double resolution_m = 0.05) : resolution_m_(resolution_m) {}
-  /// Adds a scan taken at a pose. @param map_from_sensor  a plane's: only x, y and heading count
+  /// Adds a scan taken at a pose. @param map_from_sensor  only x, y and heading are used
   void add_scan(const SE3& map_from_sensor, const RangeScan& scan);
-  /// Adds what the scans say to a grid, which grows as needed: occupied where the log-odds of hits
-  /// and misses (VoxelMap's increments) are not negative, free where they saw through and the grid
-  /// is unknown. Occupied cells of the grid stay: the laser's plane passes below a table top.
+  /// Adds the scans to a grid, which grows as needed: cells become occupied where the log-odds of
+  /// hits and misses (VoxelMap's increments) are not negative, and free where rays passed through
+  /// and the grid is unknown. Occupied cells of the grid stay: the laser's plane passes below a
+  /// table top.
   /// @pre the grid's origin is a multiple of its resolution, as in obstacle_grid()
   /// @throws InputError if the resolutions differ.
   void add_to(OccupancyGrid& grid) const;

@@ -21,7 +21,7 @@ inline constexpr std::int8_t kOccupiedCell = 100;
 inline constexpr std::int8_t kUnknownCell = -1;
 
 /// The floor seen from above. Cell (x, y) covers [x, x+1) x [y, y+1) times resolution_m from
-/// origin_m, along axes turned by yaw_rad; so without yaw row 0 is the southernmost and y grows
+/// origin_m, along axes turned by yaw_rad; so, without yaw, row 0 is the southernmost and y grows
 /// north (images are flipped on writing).
 struct OccupancyGrid {
   Grid2d<std::int8_t> cells;
@@ -59,7 +59,7 @@ struct GrayImage {
 /// it
 using ImageDecoder = std::function<GrayImage(const std::string& bytes)>;
 
-/// Reads a map by its YAML file as nav2_map_server does: in mode trinary, scale or raw (which it
+/// Reads a map from its YAML file as nav2_map_server does: in mode trinary, scale or raw (which it
 /// documents), rotated or not; pixels that are not opaque are unknown except in mode raw.
 /// @param decode for images other than PGM; null: they are refused
 /// @param warnings  receives what was ignored: keys that map_server does not define, bytes after

@@ -22,7 +22,7 @@ Camera thin(Camera camera, int stride) {
 
 constexpr std::size_t kNoPixel = SIZE_MAX;
 
-/// The pixel of a frame that shows what a thinned, undistorted pixel shows; kNoPixel outside.
+/// For each thinned, undistorted pixel, the pixel of a frame that shows the same; kNoPixel outside.
 std::vector<std::size_t> pixels_behind(const Camera& camera, const Camera& thin) {
   std::vector<std::size_t> pixels;
   for (int v = 0; v < thin.height_px; ++v)

@@ -17,8 +17,8 @@ struct OccupancyConfig {
   DepthModel depth;
   int stride_px = 4;  ///< every n-th pixel of every n-th row is kept: 3 cm apart at 4 m
   /// Poses are rounded to multiples of these before they are used, so that a keyframe is integrated
-  /// again only if it moved to another multiple, and the map is a function of the poses alone. 5 mm
-  /// and 1.25 mrad (5 mm at 4 m): a tenth of a voxel.
+  /// again only if it moved to a different multiple, and the map is a function of the poses alone.
+  /// 5 mm and 1.25 mrad (5 mm at 4 m): a tenth of a voxel.
   double pose_step_m = 0.005, pose_step_rad = 0.00125;
 };
 
@@ -28,7 +28,7 @@ struct OccupancyUpdate {
 };
 
 /// A voxel map that follows the poses of its keyframes: when a loop closure or an adjustment moves
-/// them, their contributions are removed and added again. After each update the map equals, to the
+/// them, their contributions are removed and added again. After each update, the map equals, to the
 /// bit, a map built at once from the same keyframes at the same poses.
 class OccupancyMapper {
  public:
@@ -43,14 +43,14 @@ class OccupancyMapper {
   /// @param map_from_world  the map's frame, z up
   OccupancyUpdate update(const Trajectory& world_from_camera, const SE3& map_from_world = {});
 
-  /// Records in the map which objects its voxels belong to, by the detections of all keyframes.
-  /// Call it after the last update(): the next update discards it.
+  /// Records in the map which objects its voxels belong to, according to the detections of all
+  /// keyframes. Call it after the last update(): the next update discards it.
   void associate_detections();
 
   const VoxelMap& map() const { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
-  /// Depth of a keyframe thinned to stride_px and smoothed, and the camera that fits it; nullptr if
-  /// unknown.
+  /// Depth of a keyframe, thinned to stride_px and smoothed; nullptr if unknown. thin_camera() fits
+  /// it.
   const Grid2d<float>* depth_of(Stamp stamp_ns) const;
   const PixelLabels* labels_of(Stamp stamp_ns) const;
   /// Stamps of all kept keyframes, in order.
@@ -61,15 +61,16 @@ class OccupancyMapper {
   struct Kept {
     Grid2d<float> depth_m;
     PixelLabels labels;
-    std::optional<SE3> pose;  ///< rounded; at which it was integrated
+    std::optional<SE3> pose;  ///< at which it was integrated, rounded
     VoxelView told;
   };
   SE3 rounded(const SE3& map_from_camera) const;
 
   OccupancyConfig config_;
-  int width_px_, height_px_;        ///< of frames
-  Camera camera_;                   ///< of thinned frames: a pinhole without distortion
-  std::vector<std::size_t> pixel_;  ///< of a frame, that a thinned pixel is taken from; kNoPixel
+  int width_px_, height_px_;  ///< of frames
+  Camera camera_;             ///< of thinned frames: a pinhole without distortion
+  std::vector<std::size_t>
+      pixel_;  ///< pixel of a frame from which each thinned pixel is taken, or kNoPixel
   VoxelMap map_;
   std::map<Stamp, Kept> kept_;
 };

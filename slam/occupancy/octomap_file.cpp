@@ -26,7 +26,8 @@ class NodeReader {
              const std::function<void(const OctomapLeaf&)>& visit)
       : in_(in), has_color_(header.type == "ColorOcTree"), visit_(visit) {}
 
-  /// A node of an .ot file and everything below it: log-odds, maybe color, which children follow.
+  /// A node of an .ot file and everything below it: log-odds, color in a ColorOcTree, one bit for
+  /// each child that follows.
   std::size_t full(OctomapLeaf cube) {
     const auto log_odds = in_.get<float>();
     if (has_color_) in_.take(3);
@@ -83,7 +84,7 @@ OctomapHeader read_octomap_header(std::istream& in, const std::string& name) {
     if (key == "id") in >> header.type;
     if (key == "size") in >> header.size;
     if (key == "res" && in >> word && (std::istringstream(word) >> header.resolution_m).fail())
-      throw InputError(fmt::format("{}: its resolution '{}' is no number", name, word));
+      throw InputError(fmt::format("{}: its resolution '{}' is not a number", name, word));
     if (key[0] == '#') std::getline(in, line);
   }
   in.get();  // the end of the line "data"

@@ -23,11 +23,11 @@ struct OctomapHeader {
 /// @throws InputError if it is not an OctoMap file.
 OctomapHeader read_octomap_header(std::istream& in, const std::string& name);
 
-/// A cube of voxels that are alike.
+/// A cube of voxels in the same state.
 struct OctomapLeaf {
   Eigen::Vector3i lowest = Eigen::Vector3i::Zero();  ///< voxel; 0 is at the world's origin
   int side = 1;                                      ///< in voxels
-  bool occupied = false;                             ///< log-odds from 0
+  bool occupied = false;                             ///< log-odds of at least 0
 };
 
 /// Reads the nodes after the header. @param visit  receives each leaf @returns how many nodes

@@ -19,7 +19,7 @@ namespace mh {
 
 enum class VoxelState : std::uint8_t { kUnknown, kFree, kOccupied };
 
-/// How many views said that a voxel shows a class.
+/// How many views show a voxel as a class.
 struct ClassVote {
   ClassId class_id = kVoid;
   std::uint16_t views = 0;
@@ -42,7 +42,7 @@ struct Voxel {
 };
 
 /// Log-odds that a view adds to a voxel, and their limits: the defaults of OctoMap, Hornung et al.,
-/// Autonomous Robots 2013. A voxel is occupied from log-odds 0, as in OctoMap.
+/// Autonomous Robots 2013. A voxel is occupied if its log-odds are at least 0, as in OctoMap.
 inline constexpr float kHitLogOdds = 0.85F, kMissLogOdds = -0.4F, kLeastLogOdds = -2.0F,
                        kMostLogOdds = 3.5F;
 
@@ -99,7 +99,7 @@ class VoxelMap {
   void save_bt(const std::filesystem::path& file) const;
   void save_ot(const std::filesystem::path& file) const;
   static VoxelMap load_ot(const std::filesystem::path& file);
-  /// Loads an octree of any program: OcTree or ColorOcTree, .ot or .bt. Without our counts, each
+  /// Loads an octree from any program: OcTree or ColorOcTree, .ot or .bt. Without our counts, each
   /// voxel counts as hit or seen through by a single view, without a class.
   /// @param notes receives a line in that case @throws InputError naming the file
   static VoxelMap load_octree(const std::filesystem::path& file, std::vector<std::string>& notes);

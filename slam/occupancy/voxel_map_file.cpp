@@ -1,12 +1,18 @@
-// SPDX-License-Identifier: Apache-2.0 The counts that follow the tree in an .ot file,
-// little-endian: the line "modelhouse voxel counts 3", or "... 4" if the map's frame has no floor
-// u64  size of the content content: f64 resolution (m) u32       voxels of detected objects; for
-// each, by place: 3 x i16 voxel, u16 object u32       pairs of objects that are apart; for each,
-// ascending: 2 x u16 (version 1 has neither of the two) for each block of 8 x 8 x 8 voxels with any
-// known voxel: 3 x i16   index of the block 8 x u64   known voxels, bit x + 8 y of word z for each
-// of them, by place: hits, misses, number of votes; then class and views of each vote (numbers in
-// groups of 7 bits, the lowest first; the top bit says that another group follows) u64  xxh3-64 of
-// all bytes before it, from the beginning of the file (versions 1 and 2: of the content alone)
+// SPDX-License-Identifier: Apache-2.0
+// The counts that follow the tree in an .ot file, little-endian:
+//   the line "modelhouse voxel counts 3", or "... 4" if the map's frame has no floor
+//   u64  size of the content
+//   content: f64 resolution (m)
+//     u32       voxels of detected objects; for each, by place: 3 x i16 voxel, u16 object
+//     u32       pairs of objects that are apart; for each, ascending: 2 x u16
+//     (version 1 has neither of the two)
+//   for each block of 8 x 8 x 8 voxels with any known voxel:
+//     3 x i16   index of the block
+//     8 x u64   known voxels, bit x + 8 y of word z
+//     for each of them, by place: hits, misses, number of votes; then class and views of each vote
+//     (numbers in groups of 7 bits, the lowest first; the top bit says that another group follows)
+//   u64  xxh3-64 of all bytes before it, from the beginning of the file (versions 1 and 2: of the
+//        content alone)
 #include <bit>
 #include <cmath>
 #include <iostream>
@@ -26,8 +32,8 @@
 namespace mh {
 namespace {
 
-/// While in scope, nothing is printed to std::cerr: OctoMap says " done." there, which a run's log
-/// would end with.
+/// While in scope, nothing is printed to std::cerr: OctoMap prints " done." there, which would
+/// become the last line of a run's log.
 class QuietErrors {
  public:
   QuietErrors() : printed_to_(std::cerr.rdbuf(nullptr)) {}
@@ -63,7 +69,7 @@ void put_number(std::string& bytes, unsigned number) {
   bytes.push_back(static_cast<char>(number));
 }
 
-/// The place of a voxel in its block, and the block.
+/// The block of a voxel, and the voxel's place in it.
 std::pair<Eigen::Vector3i, unsigned> block_and_place(const octomap::OcTreeKey& key) {
   Eigen::Vector3i block;
   unsigned place = 0;
@@ -75,7 +81,7 @@ std::pair<Eigen::Vector3i, unsigned> block_and_place(const octomap::OcTreeKey& k
   return {block, place};
 }
 
-/// Collects a block's voxels, which the octree visits in another order than that of places.
+/// Collects a block's voxels, which the octree does not visit in the order of their places.
 class BlockWriter {
  public:
   explicit BlockWriter(std::string& bytes) : bytes_(bytes) {}
@@ -179,7 +185,7 @@ void read_block(CountsReader& in, VoxelTree& tree) {
   for (unsigned place = 0; place < 512; ++place) {
     if ((known[place / 64] >> place % 64U & 1U) == 0) continue;
     VoxelNode& node = tree.voxel(block, place);
-    if (node.is_known()) in.fail("a block is there twice");
+    if (node.is_known()) in.fail("a block appears twice");
     node.hits = in.number();
     node.misses = in.number();
     if (!node.is_known()) in.fail("a voxel without views");
@@ -264,10 +270,11 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
   const std::string bytes = std::move(whole).str();
   CountsReader reader(std::string_view(bytes).substr(header_size), name);
   if (read_octomap_nodes(reader, header, [](const OctomapLeaf&) {}) != header.size)
-    reader.fail(fmt::format("its tree has not the {} nodes that it says", header.size));
+    reader.fail(fmt::format("its tree does not have the {} nodes that it declares", header.size));
   if (reader.at_end())
     throw InputError(fmt::format(
-        "{}: has no counts after its tree: it is from another program, or was edited", name));
+        "{}: has no counts after its tree: it was written by another program, or was edited",
+        name));
   const std::string_view magic = reader.take(kCountsMagic.size());
   const bool old = magic == kSecondCountsMagic || magic == kFirstCountsMagic;
   if (magic != kCountsMagic && magic != kFloorlessMagic && !old)
@@ -277,11 +284,11 @@ VoxelMap VoxelMap::read_ot(std::istream& in, const std::string& name) {
       old ? content : std::string_view(bytes.data(), content.data() + content.size());
   if (XXH3_64bits(summed.data(), summed.size()) != reader.get<std::uint64_t>())
     reader.fail("its checksum is wrong");
-  if (!reader.at_end()) reader.fail("it goes on after its end");
+  if (!reader.at_end()) reader.fail("it has data after its end");
   CountsReader counts(content, name);
   const auto resolution_m = counts.get<double>();  // the header's is rounded
   if (!(std::abs(resolution_m - header.resolution_m) <= 1e-4 * header.resolution_m))
-    counts.fail("its counts have another resolution");
+    counts.fail("its counts have a different resolution");
   VoxelMap map(resolution_m);
   map.set_on_floor(magic != kFloorlessMagic);
   if (magic != kFirstCountsMagic) map.set_detected(read_detected(counts));
@@ -328,10 +335,9 @@ VoxelMap VoxelMap::load_octree(const std::filesystem::path& file, std::vector<st
                                  header.resolution_m, kMostForeignVoxels));
   read_octomap_nodes(reader, header,
                      [&](const OctomapLeaf& leaf) { add_leaf(map.impl_->tree, leaf); });
-  notes.push_back(
-      fmt::format("{}: is of another program: it knows no classes, and its z is taken "
-                  "for up",
-                  name));
+  notes.push_back(fmt::format(
+      "{}: was written by another program: it has no classes, and its z axis is taken as up",
+      name));
   return map;
 }
 

@@ -108,7 +108,7 @@ bool VoxelTree::drop_path(VoxelNode& node, const octomap::OcTreeKey& key, unsign
 
 void VoxelTree::drop_untold(const Eigen::Vector3i& index) {
   if (root == nullptr || !drop_path(*root, key_of_block(index), 0)) return;
-  clear();  // nothing is left
+  clear();  // no counts are left
 }
 
 }  // namespace mh

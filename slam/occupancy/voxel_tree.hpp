@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The octree behind VoxelMap; private to slam/occupancy, so that OctoMap stays there.
+// The octree behind VoxelMap; private to slam/occupancy, so that no other code includes OctoMap.
 
 #include <memory>
 #include <span>
@@ -13,14 +13,15 @@
 
 namespace mh {
 
-/// The votes of one voxel, ordered by class. Empty costs a pointer: most voxels are free space.
+/// The votes of one voxel, ordered by class. An empty list costs only a pointer, since most voxels
+/// are free space.
 class VoteList {
  public:
   std::span<const ClassVote> all() const {
     return votes_ ? std::span<const ClassVote>(votes_.get() + 1, votes_[0].views)
                   : std::span<const ClassVote>();
   }
-  /// Adds (or takes back, change = -1) the vote of a view.
+  /// Adds the vote of a view (or, with change = -1, removes it).
   void change(ClassId class_id, int change);
   void assign(std::span<const ClassVote> votes);
   std::size_t memory_bytes() const { return votes_ ? (all().size() + 1) * sizeof(ClassVote) : 0; }
@@ -29,8 +30,8 @@ class VoteList {
   std::unique_ptr<ClassVote[]> votes_;  ///< element 0 holds their number as `views`
 };
 
-/// A node of the tree: OctoMap's log-odds, and the counts that they follow from. Only leaves have
-/// counts and votes.
+/// A node of the tree: OctoMap's log-odds, and the counts from which they are computed. Only leaves
+/// have counts and votes.
 class VoxelNode : public octomap::OcTreeNode {
  public:
   VoxelNode() = default;
@@ -46,7 +47,7 @@ class VoxelNode : public octomap::OcTreeNode {
     misses = from.misses;
     votes.assign(from.votes.all());
   }
-  /// Sets the log-odds to what the counts say.
+  /// Computes the log-odds from the counts.
   void follow_counts() {
     const float sum = kHitLogOdds * hits + kMissLogOdds * misses;
     value = std::min(std::max(sum, kLeastLogOdds), kMostLogOdds);
@@ -62,7 +63,7 @@ class VoxelNode : public octomap::OcTreeNode {
   VoteList votes;
 };
 
-/// An OctoMap occupancy tree of these nodes. Never pruned: equal log-odds may have different
+/// An OctoMap occupancy tree of these nodes. Never pruned: equal log-odds may come from different
 /// counts.
 class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
  public:
@@ -84,8 +85,7 @@ class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
   VoxelNode& block(const Eigen::Vector3i& index);
   /// The voxel at a place of a block (bit x + 8 y + 64 z), made if it does not exist.
   VoxelNode& voxel(VoxelNode& block, unsigned place);
-  /// Deletes the nodes of a block that no view has observed any more, and the block if none is
-  /// left.
+  /// Deletes the nodes of a block that no view observes any longer, and the block if none is left.
   void drop_untold(const Eigen::Vector3i& index);
 
  private:

@@ -31,8 +31,8 @@ struct PixelBox {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// An extreme of an image in any box, in a few lookups: the extremes of all squares whose side is a
-/// power of two (a sparse table).
+/// The minimum or maximum of an image in any box, in a few lookups: the extremes of all squares
+/// whose side is a power of two (a sparse table).
 template <class F>
 class Extremes {
  public:
@@ -87,7 +87,7 @@ Grid2d<float> with_none_as(const Grid2d<float>& depth_m, float none) {
   return image;
 }
 
-/// A camera's view of one map: points there and back.
+/// A camera in a map: transforms points from one to the other and back.
 class View {
  public:
   View(const Camera& camera, const SE3& map_from_camera)
@@ -109,7 +109,7 @@ class View {
 };
 
 struct Hit {
-  std::uint32_t block;  ///< its place in the box of blocks
+  std::uint32_t block;  ///< its index in the box of blocks
   VoxelVote vote;
 };
 
@@ -157,7 +157,8 @@ std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const PixelLabels& labels
       keys.push_back(std::uint64_t{box.place(block)} << 32U | place << 16U |
                      std::uint64_t{label} << 8U | detection);
     }
-  std::sort(keys.begin(), keys.end());  // one number each: half the time of comparing three
+  std::sort(keys.begin(),
+            keys.end());  // sorting single numbers takes half the time of comparing three
   std::vector<Hit> hits;
   hits.reserve(keys.size());
   for (const std::uint64_t key : keys)
@@ -168,8 +169,9 @@ std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const PixelLabels& labels
   return hits;
 }
 
-/// Sets the hit voxels of a block, each with the class of most of its returns and, of this class,
-/// the detection with most (ties to the smallest id). @returns the first hit of another block
+/// Sets the hit voxels of a block, each with the class of most of its returns and, within this
+/// class, the detection with the most (ties to the smallest id). @returns the first hit of another
+/// block
 std::vector<Hit>::const_iterator take_hits(std::vector<Hit>::const_iterator hit,
                                            std::vector<Hit>::const_iterator end,
                                            std::uint32_t place, VoxelBlock& block) {
@@ -241,7 +243,7 @@ class Clearing {
   }
 
  private:
-  /// Nearer than this to the camera's plane nothing is decided: projections there are unbounded.
+  /// Nearer than this to the camera's plane, nothing is decided: projections there are unbounded.
   static constexpr double kNearest_m = 0.1;
 
   enum class AtOnce { kNothing, kEverything, kUnclear };
@@ -264,7 +266,7 @@ class Clearing {
       high = high.cwiseMax(view_.camera().project(p));
     }
     if (farthest < kNearest_m) return AtOnce::kNothing;
-    if (nearest < kNearest_m) return AtOnce::kUnclear;  // its image is unbounded
+    if (nearest < kNearest_m) return AtOnce::kUnclear;  // the image of the block is unbounded
     const int w = depth_m_.width(), h = depth_m_.height();
     if (high.x() < -1 || high.y() < -1 || low.x() > w || low.y() > h) return AtOnce::kNothing;
     const PixelBox box{.x0 = std::max(0, static_cast<int>(std::floor(low.x()))),
@@ -293,7 +295,7 @@ class Clearing {
     if (!(u >= 0 && v >= 0 && u < depth_m_.width() && v < depth_m_.height())) return false;
     const int x = static_cast<int>(u), y = static_cast<int>(v);
     const double behind = p.z() + before_m_;
-    if (!(static_cast<double>(depth_m_(x, y)) > behind)) return false;  // or no return
+    if (!(static_cast<double>(depth_m_(x, y)) > behind)) return false;  // too near, or no return
     const int around = static_cast<int>(half_px_m_ * inverse_z + 0.5);
     if (around == 0) return true;
     const PixelBox box{.x0 = std::max(0, x - around),
@@ -335,7 +337,7 @@ Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m) {
           const int px = x + side * u, py = y + side * v;
           if (!depth_m.contains(px, py)) continue;
           const auto other = static_cast<double>(depth_m(px, py));
-          // Along a slant the two differ from the middle in opposite directions.
+          // Along a slant, the two differ from the middle in opposite directions.
           if (!(other > 0) || std::abs(other - z) > kMostSlant * most) continue;
           pair += other;
           ++on;

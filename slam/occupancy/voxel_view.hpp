@@ -37,16 +37,16 @@ struct VoxelBlock {
 using VoxelView = std::vector<VoxelBlock>;
 
 /// How depth becomes free and occupied space. A voxel is free if it lies in front of everything
-/// that the image shows around the pixel of its center, so that a voxel cut by a grazing surface or
-/// by an edge is not.
+/// that the image shows around the pixel of its center, so a voxel that is cut by a grazing surface
+/// or by an edge is not free.
 struct DepthModel {
   double resolution_m = 0.05;  ///< side of a voxel
-  double min_range_m = 0.4;    ///< nearer returns are ignored: below the range of an Xtion
+  double min_range_m = 0.4;    ///< nearer returns are ignored; they are below the range of an Xtion
   /// A farther return only clears the space up to this range. 4 m: depth noise there (3 cm, Nguyen
   /// et al., 3DIMPVT 2012) is about a voxel. At most 250 resolutions.
   double max_range_m = 4.0;
   /// How far around the pixel of a voxel's center the image must show nothing in the voxel or in
-  /// front of it: half the side of the seen square, in voxels.
+  /// front of it: half the side of the square that is checked, in voxels.
   double around_voxels = 0.5;
   /// How far behind a voxel's center all returns around it must be, in voxels along the optical
   /// axis.
@@ -55,15 +55,16 @@ struct DepthModel {
 
 /// Averages the depth of each pixel with those of its eight neighbors that lie on the same surface:
 /// within three standard deviations of the noise. A pixel with fewer than two such neighbors floats
-/// between two surfaces, as happens at edges, and becomes one without a return.
+/// between two surfaces, as happens at edges, and its depth is discarded.
 /// @param noise_per_m  the standard deviation is this times the squared depth. 0.0019: a Kinect's,
 /// Nguyen et al., 3DIMPVT 2012
 Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m = 0.0019);
 
-/// Labels of the pixels of a depth image: both of its size, or empty.
+/// Labels of the pixels of a depth image; both grids have its size or are empty.
 struct PixelLabels {
-  Grid2d<ClassId> classes;          ///< kVoid = none
-  Grid2d<std::uint8_t> detections;  ///< see VoxelVote; empty: all pixels of a class are one
+  Grid2d<ClassId> classes;  ///< kVoid = none
+  Grid2d<std::uint8_t>
+      detections;  ///< see VoxelVote; empty: all pixels of a class are one detection
 };
 
 /// What a depth image with its labels shows, in the frame of `map_from_camera`.

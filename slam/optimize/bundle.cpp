@@ -34,7 +34,7 @@ struct Workspace {
   std::vector<std::uint8_t> adjusted;            ///< points that are optimized
 
   std::vector<Matrix63d> pose_point;           ///< per observation: W = J_pose^T J_point
-  std::vector<std::uint8_t> coupled;           ///< per observation: W is in use
+  std::vector<std::uint8_t> coupled;           ///< per observation: whether W is in use
   std::vector<Eigen::Matrix3d> point_inverse;  ///< per point: V^-1, damped
   std::vector<Eigen::Vector3d> point_gradient;
   PoseSystem reduced;             ///< U - W V^-1 W^T
@@ -58,7 +58,7 @@ double chi2_of(const BundleObservation& o, const State& state, const Camera& cam
   return reprojection_residual(p, measurement(o), camera).squaredNorm();
 }
 
-/// Beyond this chi-square (6 degrees of freedom, 1 %) a motion counts less and less.
+/// Beyond this chi-square (6 degrees of freedom, 1 %), a motion counts less and less.
 constexpr double kMotionChi2 = 16.8;
 
 /// Whitened residual of a motion.
@@ -156,8 +156,9 @@ double cost_of(const Phase& phase, const Workspace& w, const State& state) {
   return cost;
 }
 
-/// Adds a motion to the blocks of its free poses. With left perturbations the residual changes by
-/// that of b minus the adjoint of b_from_a times that of a; the derivative of log is taken as 1.
+/// Adds a motion to the blocks of its free poses. With left perturbations, the residual changes by
+/// the perturbation of b minus the adjoint of b_from_a times that of a; the derivative of log is
+/// taken as 1.
 void linearize_motion(const BundleMotion& m, const BundleProblem& problem, Workspace& w,
                       const State& state) {
   const Vector6d r = motion_residual(m, state);

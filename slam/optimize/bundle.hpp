@@ -21,7 +21,7 @@ struct BundleObservation {
 };
 
 /// A motion between two poses that another sensor measured. Residual: log(b_from_a measured^-1),
-/// divided by its standard deviations; Huber's rho, since wheels slip.
+/// divided by its standard deviations; weighted by Huber's rho, since wheels slip.
 struct BundleMotion {
   std::uint32_t a = 0, b = 0;  ///< indices into BundleProblem::camera_from_world
   SE3 b_from_a;
@@ -42,12 +42,13 @@ struct BundleResult {
   std::vector<Eigen::Vector3d> points_in_world;
   std::vector<std::uint8_t> outlier;  ///< per observation: beyond its gate or behind the camera
   double initial_cost = 0;  ///< sum of Huber's rho over all observations; without the motions
-  double final_cost = 0;    ///< sum of squared whitened residuals over the inliers; the same
-  int iterations = 0;       ///< trial steps of both phases
+  double final_cost =
+      0;  ///< sum of squared whitened residuals over the inliers; also without the motions
+  int iterations = 0;  ///< trial steps of both phases
 };
 
 /// Bundle adjustment by Levenberg-Marquardt with the Schur complement over points, analytic
-/// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999); the residuals of
+/// Jacobians (Triggs et al., "Bundle adjustment: a modern synthesis", 1999); residuals as in
 /// PoseObservation. Single-threaded; sums in input order.
 ///
 /// Observations of points behind their camera are ignored (a step that moves a point there is

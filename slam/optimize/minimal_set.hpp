@@ -30,7 +30,7 @@ std::array<std::size_t, N> draw_different(RandomStream stream, int iteration, st
   return drawn;
 }
 
-/// Observations as OpenCV's solvers take them.
+/// Observations in the form that OpenCV's solvers take.
 struct Correspondences {
   cv::Mat points, pixels;
   cv::Matx33d intrinsics;
@@ -50,7 +50,7 @@ inline Correspondences correspondences(std::span<const PoseObservation> observat
   return c;
 }
 
-/// The pose of OpenCV's vectors; nullopt if they are not finite.
+/// The pose given by OpenCV's rotation and translation vectors; nullopt if they are not finite.
 inline std::optional<SE3> finite_pose(const cv::Mat& rotation, const cv::Mat& translation) {
   const Eigen::Vector3d r(rotation.ptr<double>());
   const Eigen::Vector3d t(translation.ptr<double>());
@@ -60,7 +60,7 @@ inline std::optional<SE3> finite_pose(const cv::Mat& rotation, const cv::Mat& tr
 
 /// Number of iterations after which three observations without an outlier were drawn with the given
 /// confidence (Fischler and Bolles 1981), capped at max_iterations.
-/// @param share  of true observations
+/// @param share  of observations that are inliers
 inline int iterations_needed(double share, const RansacConfig& config) {
   const double miss = 1.0 - share * share * share;
   if (miss <= 0.0) return 1;

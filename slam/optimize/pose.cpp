@@ -14,7 +14,7 @@ namespace {
 /// A step that lowers the cost by a smaller share than this moves the pose by far less than the
 /// noise.
 constexpr double kRelativeDecrease = 1e-6;
-/// Below this ratio of pivots the pose is undetermined: a regular view gives about 1e-5, a rank
+/// Below this ratio of pivots, the pose is undetermined: a regular view gives about 1e-5, a rank
 /// deficiency only rounding errors, about 1e-16.
 constexpr double kSingularPivotRatio = 1e-12;
 
@@ -70,7 +70,7 @@ bool is_singular(const Matrix6d& hessian) {
 }
 
 /// Levenberg-Marquardt over a fixed inlier set. @returns the matrix of the normal equations, or
-/// nothing if the pose is undetermined.
+/// nullopt if the pose is undetermined.
 std::optional<Matrix6d> minimize(std::span<const PoseObservation> observations,
                                  std::span<const std::uint8_t> inlier, const Camera& camera,
                                  const PoseConfig& config, bool robust, SE3& camera_from_world) {
@@ -85,7 +85,7 @@ std::optional<Matrix6d> minimize(std::span<const PoseObservation> observations,
     const Vector6d step = -damped.ldlt().solve(at_pose.gradient);
     if (!step.allFinite()) return std::nullopt;
     const SE3 trial = SE3::exp(step) * camera_from_world;
-    // To first order the step lowers the cost by -gradient . step: if that is negligible, take it
+    // To first order, the step lowers the cost by -gradient . step: if that is negligible, take it
     // without evaluating its result.
     if (-at_pose.gradient.dot(step) <= kRelativeDecrease * at_pose.cost) {
       camera_from_world = trial;
@@ -148,7 +148,7 @@ std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> obser
     if (count < 3) return std::nullopt;
     const bool unchanged = regrouped == inlier;
     inlier.swap(regrouped);
-    // Without Huber's loss the same set has the same minimum: further rounds change nothing.
+    // Without Huber's loss, the same set has the same minimum: further rounds change nothing.
     if (unchanged && !robust) break;
   }
   if (count < needed) return std::nullopt;

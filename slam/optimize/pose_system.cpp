@@ -10,8 +10,9 @@
 namespace mh {
 namespace {
 
-/// Eigen multiplies large matrices in blocks that it fits to the processor's caches, and sums in
-/// their order. The same sizes everywhere (those of a small server) mean the same bits everywhere.
+/// Eigen multiplies large matrices in blocks that it fits to the processor's caches, and the blocks
+/// determine the order of its sums. The same sizes everywhere (those of a small server) mean the
+/// same bits everywhere.
 [[maybe_unused]] const bool kBlocksAreTheSameEverywhere = [] {
   Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 16 << 20);
   return true;
@@ -112,7 +113,7 @@ bool PoseSystem::iterate(Eigen::VectorXd& x) const {
   double energy = residual.dot(z);
   const double enough = kTolerance * kTolerance * energy;
   // Exact after as many steps as unknowns; a system that needs a tenth of them is hopelessly
-  // conditioned, and the step found so far is still a descent direction.
+  // ill-conditioned, and the step found so far is still a descent direction.
   const int limit = 100 + static_cast<int>(poses_) / 2;
   for (int i = 0; i < limit && energy > enough; ++i) {
     const Eigen::VectorXd image = times(direction);

@@ -16,7 +16,7 @@ namespace mh {
 class PoseSystem {
  public:
   using Block = Eigen::Matrix<double, 6, 6>;
-  /// Up to this size a dense matrix is small (8 MB) and factoring it is fastest.
+  /// Up to this size, a dense matrix is small (8 MB) and factoring it is fastest.
   static constexpr std::uint32_t kDirectPoses = 160;
   /// Residual, relative to the right-hand side, at which conjugate gradients stop: far below the
   /// error of a Levenberg-Marquardt step.
@@ -29,7 +29,7 @@ class PoseSystem {
 
   std::uint32_t poses() const { return poses_; }
   void set_zero();
-  /// Block of the lower triangle; of diagonal blocks only the lower triangle is read.
+  /// Block of the lower triangle; only the lower triangle of a diagonal block is read.
   /// @pre row >= column; the same pose or a coupled pair
   Block& at(std::uint32_t row, std::uint32_t column) { return blocks_[index(row, column)]; }
   /// Solves in place. @returns false if the system is not positive definite.

@@ -98,7 +98,7 @@ inline CameraFrameTerm camera_frame_term(const Eigen::Vector3d& point_in_camera,
   return term;
 }
 
-/// hat(p) * m: each column of m crossed from the left.
+/// hat(p) * m: the cross product of p with each column of m.
 // Forced inline, since GCC does not inline it in unity builds, which costs 1 % of SLAM.
 [[gnu::always_inline]] inline Eigen::Matrix3d cross_columns(const Eigen::Vector3d& p,
                                                             const Eigen::Matrix3d& m) {

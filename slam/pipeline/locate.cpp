@@ -16,7 +16,7 @@ int inliers_needed(const Features& features, const TrackConfig& config) {
 /// Localizes a frame from the last tracked one: by the motion model or the reference keyframe,
 /// whichever is confirmed in the local map first. A frame that comes after lost frames needs as
 /// many inliers as relocalization.
-/// @param reckoned  predicts the motion in the place of the last step
+/// @param reckoned  if present, predicts the motion in place of the last step
 std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
                               const std::optional<Reckoned>& reckoned, PreparedFrame& frame,
                               const SlamContext& context, const StepObservers& observers,
@@ -34,7 +34,7 @@ std::optional<Located> follow(const SlamState& state, const Tracker& tracker,
   };
   const int min_inliers = tracker.coasting ? state.config.relocalize.min_inliers
                                            : inliers_needed(frame.features, state.config.track);
-  // If the motion is not known yet, appearance needs no guess.
+  // If the motion is not known yet, appearance comes first, since it needs no guess.
   const bool moving = tracker.velocity_per_s.has_value() || reckoned;
   const KeyframeId origin = state.map.at(tracker.reference).origin;
   for (const bool use_motion : {moving, !moving}) {
@@ -65,8 +65,8 @@ std::optional<Located> find_near(const MapPose& guess, double radius_px, const P
                               observers);
 }
 
-/// Localizes a frame where another sensor has it: in the map around, or, if the image cannot
-/// contradict, by that sensor alone.
+/// Localizes a frame where another sensor places it: in the map around that pose or, if the image
+/// cannot contradict it, by that sensor alone.
 std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tracker,
                                        const Reckoned& reckoned, PreparedFrame& frame,
                                        const SlamContext& context, const StepObservers& observers) {
@@ -76,8 +76,8 @@ std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tr
   const MapPose guess{state.map.at(tracker.reference).origin, reckoned.camera_from_world};
   if (auto located = find_near(guess, radius_px, frame, context, observers))
     if (reckoned.allows(located->tracked, config)) return located;
-  // Where the place is well known, what the last frame showed should be seen, and enough is seen,
-  // but not that: the wheels slipped, or the robot was carried away.
+  // If the pose is well known and the last frame's points should be in view, but the frame shows
+  // many features and not those points, the wheels slipped or the robot was carried away.
   constexpr double kKnown_m = 0.05, kKnown_rad = 0.03;
   if (sigma.position_m <= kKnown_m && sigma.angle_rad <= kKnown_rad &&
       static_cast<int>(frame.features.size()) >= 3 * config.min_inliers &&
@@ -156,7 +156,8 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
   if (!located) {
     located =
         search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);
-    // As long as another sensor knows the place, a far one only looks like it.
+    // As long as another sensor knows the place, a match far from it is a place that only looks the
+    // same.
     if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
     if (!located) {
       report.relocalization = std::min(report.relocalization, RelocalizationStage::kInliers);

@@ -12,14 +12,14 @@ namespace mh {
 /// The context for one frame's step; matches are counted in its report.
 SlamContext context_of(const SlamState& state, const StepObservers& observers, StepReport& report);
 
-/// What mapping knows of a frame before it is located.
+/// What mapping knows about a frame before it is located.
 struct KnownBefore {
-  IsPossible is_possible = {};            ///< of a pose that an image tells
+  IsPossible is_possible = {};            ///< whether a pose from the image is possible
   std::optional<MapPose> earlier_pose{};  ///< where the frame was before a rewind
 };
 
 /// Localizes a frame in the map: by tracking from previous frames; if that fails, by
-/// relocalization. Reads the map, never writes it; of the tracker, only stale_scores changes.
+/// relocalization. Reads the map, never writes it; only the tracker's stale_scores changes.
 std::optional<Located> locate(const SlamState& state, Tracker& tracker, PreparedFrame& frame,
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report, const KnownBefore& known = {});

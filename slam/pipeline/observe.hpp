@@ -28,7 +28,7 @@ enum class StageEvent { kBegin, kEnd };
 struct StepObservers {
   std::function<void(Stage, StageEvent)> stage;  ///< e.g. a timer; stages nest
   MatchTrace* matches = nullptr;                 ///< receives every pair that a matcher accepts
-  DecisionTrace* decisions = nullptr;  ///< receives the outcome of every pair of relocalization
+  DecisionTrace* decisions = nullptr;  ///< receives the outcome of every pair: see DecisionTrace
 };
 
 }  // namespace mh

@@ -32,9 +32,9 @@ SE3 moved_on(const SlamState& state, TrackedFrames::const_iterator frame, Stamp 
   return SE3::exp((now * then.inverse()).log() * longer) * now;
 }
 
-/// While the camera saw nothing.
+/// An interval in which the camera saw nothing.
 struct Gap {
-  Eigen::Vector3d place_m;  ///< of the camera after it, in the world of the first piece
+  Eigen::Vector3d place_m;  ///< of the camera at its end, in the world of the first piece
   double elapsed_s;
 };
 
@@ -54,12 +54,12 @@ std::optional<SE3> place_of_new_piece(const SlamState& state, Stamp stamp_ns) {
 bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& other) {
   const double max_speed_m_s = state.config.track.max_speed_m_s;
   if (max_speed_m_s == 0) return true;
-  // One standard deviation, at once and per second.
+  // One standard deviation: a constant, and a part that grows per second.
   constexpr double kLeast_m = 0.15, kLeast_rad = 0.15, kTurn_rad_s = 0.25;
   constexpr double kMostSigmas = 2, kMost_rad = 1.2;
   const SE3& other_from_own = other.camera_from_world;
   SE3 other_from_piece;   // of the piece that the camera is in, as far as it is known
-  std::vector<Gap> gaps;  // since it was in the other piece
+  std::vector<Gap> gaps;  // since the camera was in the other piece
   bool was_there = false;
   const auto& frames = state.tracked_frames;
   for (auto frame = frames.begin(); frame != frames.end() && std::next(frame) != frames.end();
@@ -72,7 +72,8 @@ bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& othe
       gaps.clear();
     }
     if (left == entered || !was_there) continue;
-    const SE3 expected = moved_on(state, frame, next->first);  // camera from the world left
+    const SE3 expected =
+        moved_on(state, frame, next->first);  // camera from the world of the piece that was left
     const SE3 there = map_pose(state, next->second).camera_from_world;
     other_from_piece = other_from_piece * expected.inverse() * there;
     const Eigen::Vector3d place_m = other_from_piece * there.inverse().translation();

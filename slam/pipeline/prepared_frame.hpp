@@ -40,7 +40,7 @@ struct PreparedFrame {
 Features observed_features(const RgbdFrame& frame, const SlamState& state,
                            const StepObservers& observers);
 
-/// @param tracker  state after the previous frames; knows how the camera moves during a rolling
+/// @param tracker  state after the previous frames; gives the camera's motion during a rolling
 ///                 shutter
 PreparedFrame prepare(Stamp stamp_ns, Features features, const SlamState& state,
                       const Tracker& tracker);

@@ -15,10 +15,10 @@ struct Probe {
 };
 
 /// Tries one keyframe for a lost frame, and refines its pose in the local map.
-/// @param frame   has its words
-/// @param stream  of localize(): the same draws, so that the winner among localize()'s candidates
-///                answers bit-identically alone
-/// @param givens affect the trial, not the refinement
+/// @param frame  its words must have been computed
+/// @param stream  that of localize(): with the same draws, the winner among localize()'s candidates
+///                gives a bit-identical answer when tried alone
+/// @param givens affects the trial, not the refinement
 Probe probe(KeyframeId candidate, const SlamState& frozen, const PreparedFrame& frame,
             RandomStream stream, const TrialGivens& givens = {});
 

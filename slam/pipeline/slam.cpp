@@ -14,7 +14,7 @@ namespace mh {
 
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns) {
   if (last_ns && stamp_ns <= *last_ns)
-    throw InputError(fmt::format("frame at {:.6f} s: stamps must grow, the last was {:.6f} s",
+    throw InputError(fmt::format("frame at {:.6f} s: stamps must increase, the last was {:.6f} s",
                                  static_cast<double>(stamp_ns) * 1e-9,
                                  static_cast<double>(*last_ns) * 1e-9));
 }
@@ -27,14 +27,14 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
   SlamState state;
   state.camera = camera;
   state.config = config;
-  state.config.semantics.label_mass = 0;  // of queries; a map is made with gamma
+  state.config.semantics.label_mass = 0;  // applies to queries only; a map is made with gamma
   state.vocabulary = std::move(vocabulary);
   return state;
 }
 
 void rewind(SlamState& state) {
   Tracker& tracker = state.tracker;
-  if (tracker.last && tracker.last->odom_from_camera) {  // which tells earlier frames' places, too
+  if (tracker.last && tracker.last->odom_from_camera) {  // gives earlier frames' poses, too
     tracker.velocity_per_s.reset();
     tracker.motion.reset();
     tracker.coasting = true;

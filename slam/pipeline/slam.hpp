@@ -28,8 +28,8 @@ struct TrackedFrame {
 
 /// The complete state of one SLAM run. It has value semantics: copying it copies the map.
 struct SlamState {
-  Camera camera;         // with what is learned of its depth
-  int depth_frames = 0;  ///< that have taught it
+  Camera camera;         // including what was learned about its depth
+  int depth_frames = 0;  ///< number of frames from which this was learned
   SlamConfig config;
   std::shared_ptr<const Vocabulary> vocabulary;  // shared: large, immutable
   Map map;
@@ -65,7 +65,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 void require_increasing_stamp(Stamp stamp_ns, std::optional<Stamp> last_ns);
 
 /// Prepares for input that jumps back in time: tracking is lost, earlier stamps are accepted, and
-/// the map is kept. Odometry still tells where the camera is.
+/// the map is kept. Odometry, if available, still gives the camera's pose.
 void rewind(SlamState& state);
 
 /// Localizes a frame in a frozen map. The caller owns the tracker, so that many queries can start

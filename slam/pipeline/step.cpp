@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMinInitialPoints = 100;  // with depth, for a frame to define the origin
 
-/// Begins a piece of the map with a frame of enough depth, which defines the piece's world.
+/// Begins a piece of the map with a frame that has enough depth, which defines the piece's world.
 /// @param place  camera_from_world; absent: it is the origin
 StepReport begin_piece(SlamState& state, PreparedFrame frame, const std::optional<SE3>& place,
                        const StepObservers& observers, StepReport report) {
@@ -51,8 +51,8 @@ bool is_keyframe(const Map& map, Stamp stamp_ns) {
                      [&](const Keyframe& k) { return !k.erased && k.stamp_ns == stamp_ns; });
 }
 
-/// Learns from a tracked frame how far its depth can be trusted, by landmarks of three keyframes or
-/// more: others are where a single depth says.
+/// Learns from a tracked frame how far its depth can be trusted. Only landmarks seen by three or
+/// more keyframes are used: the position of others may come from a single depth reading.
 void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Features& features) {
   if (state.camera.disparity_sigma_is_given) return;
   std::vector<LandmarkId> certain = tracked.landmarks;
@@ -67,8 +67,8 @@ void learn_depth_trust(SlamState& state, const TrackedPose& tracked, const Featu
                                                                state.depth_frames++, *disagreement);
 }
 
-/// Whether a camera can have come from one pose to the other, at TrackConfig::max_speed_m_s and as
-/// fast as a hand turns. @param elapsed_ns  of either sign
+/// Whether a camera can have moved from one pose to the other, at TrackConfig::max_speed_m_s at
+/// most and turning no faster than a hand does. @param elapsed_ns  of either sign
 bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_world,
                   Stamp elapsed_ns, double max_speed_m_s) {
   if (max_speed_m_s == 0) return true;
@@ -83,8 +83,9 @@ bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_wor
              kLeast_rad + kMaxTurn_rad_s * elapsed_s;
 }
 
-/// Whether a frame can have a pose: in the piece of the map of the frame before it, or of the one
-/// after it (which is known after a rewind), and within reach of those that are in its piece.
+/// Whether a frame can have a pose: it must be in the same piece of the map as the frame before or
+/// after it (the latter is known after a rewind), and within reach of those of the two that are in
+/// this piece.
 bool is_possible(const SlamState& state, Stamp stamp_ns, const MapPose& pose) {
   const auto& frames = state.tracked_frames;
   if (frames.empty()) return true;
@@ -100,7 +101,7 @@ bool is_possible(const SlamState& state, Stamp stamp_ns, const MapPose& pose) {
          (after == frames.begin() || allows(std::prev(after))) && is_beside;
 }
 
-/// Where a frame was when it was shown before, if that is to be used.
+/// Where a frame was when it was shown before, if TrackConfig::earlier_poses asks for it.
 std::optional<MapPose> earlier_pose(const SlamState& state, Stamp stamp_ns) {
   if (!state.config.track.earlier_poses) return std::nullopt;
   const auto frame = state.tracked_frames.find(stamp_ns);
@@ -166,7 +167,7 @@ StepReport step(SlamState& state, Stamp stamp_ns, Features features, RandomStrea
 
   KeyframeId reference = located->reference;
   ++state.tracker.frames_since_keyframe;
-  // Where another sensor alone tells the pose, the image may show nothing.
+  // If the pose comes from another sensor alone, the image may show nothing.
   const bool shows_enough = located->reckoning.is_zero() ||
                             points_with_depth(frame.features) >= state.config.track.min_inliers;
   if (shows_enough &&

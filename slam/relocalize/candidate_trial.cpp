@@ -139,7 +139,7 @@ class CandidateTrial {
     refine(attempt);
     if (attempt.inliers < context_.config.relocalize.ransac.min_inliers) return false;
     struct Search {
-      int above;  ///< inliers
+      int above;  ///< number of inliers that must be exceeded
       float radius_px, max_distance;
     };
     for (const Search& search : {Search{0, 10, 100}, Search{30, 3, 64}}) {

@@ -36,7 +36,7 @@ struct CandidateAttempt {
   MatchCounts counts{};  ///< of this attempt alone
 };
 
-/// Ground truth by which an audit finds what limits a trial. Empty in normal runs.
+/// Ground truth with which an audit finds what limits a trial. Empty in normal runs.
 struct TrialGivens {
   /// Which matches to keep; others are dropped as soon as they are found. Empty: all.
   std::function<bool(std::uint32_t feature, LandmarkId landmark)> allows = {};
@@ -46,17 +46,18 @@ struct TrialGivens {
 
 /// Tries one candidate keyframe as RelocalizeConfig::acceptance says.
 ///
-/// `ours`: matches by words, PnP in RANSAC with depth, refinement; below min_inliers two searches
+/// `ours`: matches by words, PnP in RANSAC with depth, refinement; below min_inliers, two searches
 /// guided by the pose, however few inliers it has.
 ///
-/// `orb_slam2`, as R. Mur-Artal and J. D. Tardos, ORB-SLAM2 (IEEE T-RO 33(5), 2017) and its
+/// `orb_slam2`, as in R. Mur-Artal and J. D. Tardos, ORB-SLAM2 (IEEE T-RO 33(5), 2017), and its
 /// released program: EPnP on four matches at a time, gated at chi2_mono without depth; a consensus
-/// has half of the matches and at least ransac.min_inliers; as many tries as ransac.confidence
-/// demands for that share (35 for a half; the program counts with three points). Each consensus is
-/// refined. Below min_inliers, a guided search follows (10 px, 100 bits), which counts only if
-/// inliers and new matches together reach min_inliers; if between 30 and min_inliers remain, it is
-/// repeated (3 px, 64 bits). One departure: each candidate is tried to the end before the next, not
-/// five iterations each in rotation. Which candidate wins may differ, but not whether one does.
+/// has at least half of the matches, and at least ransac.min_inliers of them; as many tries as
+/// ransac.confidence demands for that share (35 for a half; the program counts with three points).
+/// Each consensus is refined. Below min_inliers, a guided search follows (10 px, 100 bits), which
+/// counts only if inliers and new matches together reach min_inliers; if between 30 and min_inliers
+/// remain, it is repeated (3 px, 64 bits). One departure: each candidate is tried to the end before
+/// the next, instead of five iterations of each in turn. Which candidate wins may differ, but not
+/// whether one does.
 CandidateAttempt try_candidate(KeyframeId candidate, const Query& query, const SlamContext& context,
                                RandomStream stream, PlaceMatchers matchers,
                                const TrialGivens& givens = {});

@@ -131,7 +131,7 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 
 namespace {
 
-/// The camera with the weight of depth that candidates are tried with.
+/// The camera with the weight of depth with which candidates are tried.
 Camera lenient(const Camera& camera, const RelocalizeConfig& config) {
   Camera camera_of_trials = camera;
   if (config.acceptance == Acceptance::kOurs)
@@ -156,7 +156,7 @@ bool is_elsewhere(const SE3& a, const SE3& b) {
 }
 
 /// Tries all candidates, and keeps the pose with the most inliers unless one elsewhere has at least
-/// RelocalizeConfig::rival_share of them: then the place cannot be told.
+/// RelocalizeConfig::rival_share of them: then the place is ambiguous.
 RelocalizationResult try_rivals(const Query& query, std::span<const KeyframeId> candidates,
                                 const SlamContext& context, RandomStream stream, AttemptMemo* memo,
                                 const IsPossible& is_possible) {

@@ -48,7 +48,7 @@ KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
 /// that differ only in which candidates they choose can reuse them.
 using AttemptMemo = std::map<KeyframeId, CandidateAttempt>;
 
-/// What is known of the camera's place: whether a pose is possible. Empty: any is.
+/// Whether a pose is possible, given what is known about the camera's place. Empty: any pose is.
 using IsPossible = std::function<bool(const MapPose& pose)>;
 
 /// Tries candidate keyframes in order: matching by words, PnP with RANSAC, refinement, guided

@@ -6,15 +6,15 @@
 
 namespace mh {
 
-/// What relocalizations left with the keyframes of a map: ORB-SLAM2's mRelocScore
+/// Scores that earlier relocalizations stored with the keyframes of a map: ORB-SLAM2's mRelocScore
 /// (NeighborScores::kAsReleased).
 struct StaleScores {
   struct Score {
     double similarity = 0;   ///< to the last query for which the keyframe passed equation 4
     std::int32_t query = 0;  ///< the number of that query, from 1; 0: there was none
   };
-  std::vector<Score> of;     ///< by keyframe id
-  std::int32_t queries = 0;  ///< made so far
+  std::vector<Score> of;     ///< of each keyframe, by id
+  std::int32_t queries = 0;  ///< number of queries so far
 };
 
 }  // namespace mh

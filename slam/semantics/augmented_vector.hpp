@@ -99,7 +99,7 @@ AugmentedVector augmented_vector(std::span<const Label> labels,
 /// average. With m the share at gamma = 1, it is gamma m / (gamma m + 1 - m): it grows with gamma,
 /// so that bisection finds it.
 /// @param shares_at_one  AugmentedVector::label_mass() of each vector at gamma = 1
-/// @param wished         in [0, 1)
+/// @param wished         requested share, in [0, 1)
 /// @param most           returned where no smaller gamma is enough: some vectors have no labels
 /// @returns 0 if no vector has labels
 inline double gamma_for_label_mass(std::span<const double> shares_at_one, double wished,

@@ -14,7 +14,7 @@ namespace mh {
 template <class Key>
 struct Candidate {
   Key keyframe{};
-  double score = 0;  ///< a of equation 5: summed similarity of the keyframe's neighborhood
+  double score = 0;  ///< `a` of equation 5: summed similarity of the keyframe's neighborhood
 };
 
 /// Result of Algorithm 1, with the number of keyframes left after each step.
@@ -30,8 +30,9 @@ struct CandidateSelection {
 /// @param keyframes   all keyframes of the map; those that share nothing may be left out.
 /// @param overlap     overlap(k) -> n of equation 3, 0 = nothing shared.
 /// @param neighbors   neighbors(k) -> range of keyframes: k itself and its neighbors.
-/// @param similarity  similarity(k) -> of the view and keyframe k, at least 0; a larger value means
-///                    more similar. The paper's ||L_f, L_k||_1, see augmented_vector.hpp.
+/// @param similarity  similarity(k) -> similarity of the view and keyframe k, at least 0; a larger
+///                    value means more similar. The paper's ||L_f, L_k||_1, see
+///                    augmented_vector.hpp.
 /// @param alpha, beta thresholds of equations 4 and 6, in [0, 1).
 template <class Key, class Overlap, class Neighbors, class Similarity>
 CandidateSelection<Key> select_candidates(std::span<const Key> keyframes, Overlap overlap,

@@ -125,7 +125,7 @@ void follow_inertially(Located& located, const std::optional<Reckoned>& reckoned
   const Matrix6d measured = with_map(located.tracked.information.inverse());
   if (reckoned && reckoned->inertial) {
     located.inertial = reckoned->inertial;
-    if (located.tracked.unsure)  // it holds the prediction already
+    if (located.tracked.unsure)  // the pose already includes the prediction
       located.inertial->own_from_tracked = reckoned->camera_from_world * pose.inverse();
     else
       located.inertial->correct((pose * reckoned->camera_from_world.inverse()).log(), measured);

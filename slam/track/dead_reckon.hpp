@@ -13,40 +13,40 @@ namespace mh {
 /// A frame's place in the map.
 struct Located {
   TrackedPose tracked;
-  KeyframeId reference;                         ///< keyframe that shares most landmarks
+  KeyframeId reference;                         ///< keyframe that shares the most landmarks
   std::vector<LandmarkId> expected;             ///< landmarks that should have been visible
   std::optional<Motion> motion = {};            ///< updated with this frame
-  Reckoning reckoning = {};                     ///< 0 where the image tells the pose
+  Reckoning reckoning = {};                     ///< 0 if the image determines the pose
   std::optional<InertialMotion> inertial = {};  ///< at this frame
 };
 
-/// A frame's place by another sensor alone: what the wheels did or the inertial sensor felt since
-/// the last frame, added to its pose.
+/// A frame's place by another sensor alone: the last frame's pose, moved by what the wheels or the
+/// inertial sensor measured since.
 struct Reckoned {
   SE3 camera_from_world;
   Reckoning reckoning;
-  Matrix6d covariance;                          ///< grown since an image last told the pose
-  std::optional<InertialMotion> inertial = {};  ///< at this frame, if it is by that sensor
+  Matrix6d covariance;                          ///< grown since an image last determined the pose
+  std::optional<InertialMotion> inertial = {};  ///< at this frame, if that sensor was used
 
-  /// Whether a pose by an image may be that of this frame. One by many landmarks overrules the
-  /// sensor, since wheels may slip, but not far within a frame.
+  /// Whether a pose from an image may be that of this frame. One based on many landmarks overrules
+  /// the sensor, since wheels may slip, but only by as much as they can slip within a frame.
   bool allows(const TrackedPose& tracked, const TrackConfig& config) const;
 };
-/// @returns nothing without such a sensor, or if the drift exceeds TrackConfig::reckon_position_m
-/// or reckon_angle_rad. Of wheels and an inertial sensor, the wheels count.
+/// @returns nullopt without such a sensor, or if the drift exceeds TrackConfig::reckon_position_m
+/// or reckon_angle_rad. If there are both wheels and an inertial sensor, the wheels are used.
 std::optional<Reckoned> reckon(const Tracker& tracker, Stamp stamp_ns,
                                const std::optional<SE3>& odom_from_camera,
                                std::span<const ImuReading> imu, const TrackConfig& config);
 
-/// Updates what the inertial sensor's filter knows with a frame that was located; begins it if it
-/// has not begun. @pre the pose is final
+/// Updates the inertial sensor's filter with a frame that was located; starts it if it has not
+/// started. @pre the pose is final
 void follow_inertially(Located& located, const std::optional<Reckoned>& reckoned,
                        std::span<const ImuReading> imu, const Tracker& tracker);
 
 /// Updates the motion filter with a frame that follows the last one. If the image alone leaves the
-/// pose uncertain (few points in a narrow strip: rotation and translation look alike), the pose is
-/// fused with the predicted one, each weighted by its covariance.
-/// @param reckoned  predicts in the filter's place
+/// pose uncertain (few points in a narrow strip, where rotation and translation look the same), the
+/// pose is fused with the predicted one, each weighted by its covariance.
+/// @param reckoned  if present, its prediction replaces the filter's
 void fuse_with_prediction(Located& located, const Tracker& tracker, Stamp stamp_ns,
                           const std::optional<Reckoned>& reckoned, const TrackConfig& config);
 

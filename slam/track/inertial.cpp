@@ -13,14 +13,14 @@ using Eigen::Vector3d;
 
 constexpr int kPlace = 0, kTurn = 3, kVelocity = 6, kGravity = 9, kTurnBias = 12, kForceBias = 15;
 
-// Twice to ten times what data sheets of cheap sensors state, as is usual: neither the sensor nor
-// the poses err as white noise does.
+// Two to ten times the values in data sheets of cheap sensors, as is usual: neither the sensor's
+// errors nor those of the poses are white noise.
 constexpr double kGyroNoise = 1e-3, kGyroWalk = 1e-4;    // rad/s/sqrt(Hz), rad/s^2/sqrt(Hz)
 constexpr double kAccelNoise = 1e-2, kAccelWalk = 3e-3;  // m/s^2/sqrt(Hz), m/s^3/sqrt(Hz)
 
 constexpr double kAnySpeed_m_per_s = 2;
 constexpr double kGyroOffset_rad_per_s = 0.03, kAccelOffset_m_per_s2 = 0.2;
-constexpr double kShaken_m_per_s2 = 1;  // how far a hand's accelerometer is from gravity
+constexpr double kShaken_m_per_s2 = 1;  // how far a handheld accelerometer is from gravity
 constexpr double kGravity_m_per_s2 = 9.81;
 
 constexpr double kNanosecond_s = 1e-9, kLongestGap_s = 0.1;
@@ -105,7 +105,7 @@ InertialMotion InertialMotion::begin(const ImuReading& reading, const Matrix6d& 
 
 std::optional<SE3> InertialMotion::advance(std::span<const ImuReading> readings, Stamp from_ns,
                                            Stamp to_ns) {
-  SE3 before_from_now;  // of the filter's own poses
+  SE3 before_from_now;  // between the filter's own poses
   Stamp at_ns = from_ns;
   const auto go_to = [&](Stamp stamp_ns, const Vector3d& turn, const Vector3d& force) {
     const double t = static_cast<double>(stamp_ns - at_ns) * kNanosecond_s;
@@ -129,7 +129,7 @@ std::optional<SE3> InertialMotion::advance(std::span<const ImuReading> readings,
 void InertialMotion::correct(const Vector6d& seen_off, const Matrix6d& measured) {
   const Matrix6d sum = pose_covariance() + measured;
   const Eigen::Matrix<double, 18, 6> gain = sum.ldlt().solve(covariance.topRows<6>()).transpose();
-  // world_from_camera errs by the inverse of camera_from_world's twist.
+  // The error of world_from_camera is the inverse of camera_from_world's twist.
   const Eigen::Matrix<double, 18, 1> off = gain * -seen_off;
   velocity_m_per_s += off.segment<3>(kVelocity);
   gravity_m_per_s2 += off.segment<3>(kGravity);

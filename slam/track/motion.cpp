@@ -11,8 +11,8 @@ namespace mh {
 namespace {
 
 // Spectral densities of the accelerations: in 1/30 s the velocity changes by 0.03 m/s and 0.1 rad/s
-// (1 m/s^2 and 3 rad/s^2, held for one frame): more than for a robot's base or head, about that of
-// a hand.
+// (1 m/s^2 and 3 rad/s^2, held for one frame): more than that of a robot's base or head, about that
+// of a hand.
 constexpr double kShiftNoise = 1.0 / 30;  // m^2/s^3
 constexpr double kTurnNoise = 9.0 / 30;   // rad^2/s^3
 

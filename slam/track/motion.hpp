@@ -12,13 +12,14 @@ struct PoseSigma {
 /// Extracts it from a pose covariance (translation, rotation; of the camera, in its own frame).
 PoseSigma worst_sigma(const Matrix6d& covariance);
 
-/// Drift of wheel odometry over a way and a turn, one standard deviation of a wheeled base.
+/// Drift of a wheeled base's odometry over a path length and a turn, one standard deviation.
 PoseSigma odometry_drift(double way_m, double turn_rad);
 
 /// Kalman filter of the camera's motion: constant velocity with white-noise acceleration; each
 /// tracked pose is a measurement with the covariance computed from its image. Twists and
-/// covariances are those of the camera in its own frame (translation, rotation), so that the map
-/// may move underneath. The rotation between frames is so small that covariances are not rotated.
+/// covariances are those of the camera in its own frame (translation, rotation), so a change of the
+/// map does not invalidate them. The rotation between frames is so small that covariances are not
+/// rotated.
 struct Motion {
   Vector6d velocity_per_s;
   Matrix6d pose_covariance;           ///< m and rad
@@ -27,7 +28,7 @@ struct Motion {
 
   /// State after the first pose: velocity unknown.
   static Motion at_rest(const Matrix6d& pose_covariance);
-  /// Prediction without a measurement, after that time.
+  /// Prediction without a measurement, after this time.
   Motion after(double elapsed_s) const;
   SE3 predict(const SE3& camera_from_world, double elapsed_s) const {
     return SE3::exp(velocity_per_s * elapsed_s) * camera_from_world;

@@ -28,7 +28,7 @@ ProjectionTarget target_of(const Eigen::Vector3d& point_in_camera, const Keypoin
           .angle_rad = from.angle_rad};
 }
 
-/// A point that the last frame knows: a landmark, or the point behind another keypoint with depth.
+/// A point of the last frame: a landmark, or the point behind another keypoint with depth.
 struct LastPoint {
   Eigen::Vector3d position_in_world;
   LandmarkId landmark;    // invalid = none
@@ -121,8 +121,8 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
   const ProjectionGate gate{
       .max_distance = static_cast<float>(context.config.match.max_distance_loose),
       .check_angle = true};
-  // A guess that is far off finds little, or inconsistent matches: search again with twice the
-  // radius, then with four times.
+  // A guess that is far off finds few or inconsistent matches: search again with twice the radius,
+  // then with four times.
   std::vector<std::int32_t> found;
   std::vector<std::size_t> point_of;
   std::optional<PoseEstimate> estimate;
@@ -262,7 +262,7 @@ Expected expect_in_view(const LocalMap& local, const IdSet<LandmarkId>& except,
   return expected;
 }
 
-/// Matches what is expected with the keypoints that have no landmark yet.
+/// Matches the expected landmarks with the keypoints that have no landmark yet.
 /// @param landmarks  per keypoint; receives those that were found
 void find_expected(const Expected& expected, const Query& query, double max_distance,
                    const SlamContext& context, std::vector<LandmarkId>& landmarks) {

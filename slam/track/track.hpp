@@ -40,7 +40,7 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
 int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& map,
                             const Camera& camera);
 
-/// Estimates a frame's pose near one that is roughly known, from the landmarks around it.
+/// Estimates a frame's pose from the landmarks around a rough guess.
 /// @param radius_px  of the search at octave 0
 /// @returns nullopt below TrackConfig::min_inliers_frame.
 std::optional<TrackedPose> track_near(const Query& query, const MapPose& guess, double radius_px,
@@ -85,7 +85,7 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, Keyfra
 /// step of all tracking stages.
 /// @param passing  additional observations for features without a landmark: they constrain the pose
 ///                 but are not counted in `inliers`. In a young map, landmarks alone may cover a
-///                 narrow part of the image, in which rotation and translation look alike.
+///                 narrow part of the image, in which rotation and translation look the same.
 std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,

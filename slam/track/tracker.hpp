@@ -23,7 +23,7 @@ struct LastFrame {
   std::optional<SE3> odom_from_camera = {};
 };
 
-/// How the camera has moved since an image last told the pose.
+/// How the camera has moved since an image last determined the pose.
 struct Reckoning {
   double distance_m = 0, turn_rad = 0;
   bool is_zero() const { return distance_m == 0 && turn_rad == 0; }
@@ -41,10 +41,10 @@ struct Tracker {
   int frames_since_keyframe = 0;
   bool coasting = false;                   ///< lost since `last`, but still within coast_s
   Reckoning reckoning;                     ///< up to `last`
-  std::optional<InertialMotion> inertial;  ///< at `last`; absent where no sensor is
-  /// What it has learned; outlives losses.
+  std::optional<InertialMotion> inertial;  ///< at `last`; absent without a sensor
+  /// What the inertial filter has learned; kept when tracking is lost.
   std::optional<InertialMotion::Known> inertial_known;
-  StaleScores stale_scores;  ///< outlive losses
+  StaleScores stale_scores;  ///< kept when tracking is lost
 
   bool tracking() const { return last.has_value() && !coasting; }
 };
@@ -57,8 +57,8 @@ double seconds_since_last(const Tracker& tracker, Stamp stamp_ns);
 /// @pre tracker.last
 SE3 predict(const Tracker& tracker, Stamp stamp_ns);
 
-/// The camera's motion since the last frame by odometry, camera_now_from_camera_last; absent
-/// without odometry of both. @pre tracker.last
+/// The camera's motion since the last frame from odometry, camera_now_from_camera_last; nullopt
+/// unless both frames have odometry. @pre tracker.last
 std::optional<SE3> odometry_step(const Tracker& tracker,
                                  const std::optional<SE3>& odom_from_camera);
 

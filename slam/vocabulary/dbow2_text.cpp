@@ -36,13 +36,13 @@ class LineReader {
   template <class Number>
   Number take(std::string_view what) {
     skip_blanks();
-    if (line_.empty()) throw fault(fmt::format("line ends where {} should stand", what));
+    if (line_.empty()) throw fault(fmt::format("line ends where {} is expected", what));
     Number value{};
     const char* const end = line_.data() + line_.size();
     const auto result = std::from_chars(line_.data(), end, value);
     const bool ends_here = result.ptr == end || *result.ptr == ' ' || *result.ptr == '\t';
     if (result.ec != std::errc() || !ends_here)
-      throw fault(fmt::format("{}: '{}' is not a number of this kind", what, word()));
+      throw fault(fmt::format("{}: '{}' is not a valid number here", what, word()));
     line_.remove_prefix(static_cast<std::size_t>(result.ptr - line_.data()));
     return value;
   }
@@ -56,7 +56,8 @@ class LineReader {
 
   void end_line() {
     skip_blanks();
-    if (!line_.empty()) throw fault(fmt::format("line goes on where it should end: '{}'", word()));
+    if (!line_.empty())
+      throw fault(fmt::format("line continues where it should end: '{}'", word()));
   }
 
   InputError fault(std::string_view what) const { return fault(number_, what); }
@@ -150,7 +151,7 @@ std::vector<std::uint32_t> breadth_first(const Nodes& nodes) {
 VocabularyTree read_dbow2_text(std::string_view text, const std::string& name) {
   LineReader reader(text, name);
   VocabularyTree tree;
-  if (!reader.next_line()) throw InputError(fmt::format("{}: holds nothing", name));
+  if (!reader.next_line()) throw InputError(fmt::format("{}: is empty", name));
   tree.branching = reader.take("k", 2, kMaxBranching);
   tree.depth = reader.take("L", 1, kMaxDepth);
   reader.take("scoring", 0, kMaxScoring);

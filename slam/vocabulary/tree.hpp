@@ -15,8 +15,8 @@ namespace mh {
 struct VocabularyTree {
   std::uint32_t branching = 0;             ///< maximum children of a node, 2 to 255
   std::uint32_t depth = 0;                 ///< levels below the root
-  std::uint32_t images = 0;                ///< trained on; 0 = unknown
-  std::uint64_t descriptors = 0;           ///< in these images; 0 = unknown
+  std::uint32_t images = 0;                ///< number of training images; 0 = unknown
+  std::uint64_t descriptors = 0;           ///< number in these images; 0 = unknown
   std::vector<Descriptor> centers;         ///< of each node; the root's is zero
   std::vector<std::uint8_t> child_counts;  ///< of each node; 0 = a word
   std::vector<float> idf;                  ///< of each word, in the order of their nodes
@@ -25,18 +25,18 @@ struct VocabularyTree {
 /// The bytes of a vocabulary file.
 std::string encode(const VocabularyTree& tree);
 
-/// Reads DBoW2's text format (ORB-SLAM's ORBvoc.txt): a line "k L scoring weighting", then for each
-/// node but the root, whose ids count from 1 in the order of lines, a line "parent is_leaf byte*32
-/// weight". Words are renumbered breadth first; scoring and weighting are checked and not used,
+/// Reads DBoW2's text format (ORB-SLAM's ORBvoc.txt): a line "k L scoring weighting", then a line
+/// "parent is_leaf byte*32 weight" for each node except the root; ids count from 1 in the order of
+/// these lines. Words are renumbered breadth first; scoring and weighting are checked and not used,
 /// since word weights come from the lines and views are compared by L1.
 /// @param name  of the file, for messages.
 /// @throws InputError "name:line: ..." if the text is not such a tree.
 VocabularyTree read_dbow2_text(std::string_view text, const std::string& name);
 
 /// Writes the same format, for programs that read it: nodes breadth first, weights with all digits,
-/// scoring L1 (0), weighting TF-IDF (0). No line end at the end: ORB-SLAM's reader would take an
-/// empty line for a node. Training counts have no place in it. @throws InputError if the tree has
-/// more than the 20 children per node that ORB-SLAM's reader takes.
+/// scoring L1 (0), weighting TF-IDF (0). The last line has no line end: ORB-SLAM's reader would
+/// take an empty line for a node. Training counts are not written. @throws InputError if the tree
+/// has more than the 20 children per node that ORB-SLAM's reader takes.
 std::string dbow2_text(const VocabularyTree& tree);
 
 }  // namespace mh

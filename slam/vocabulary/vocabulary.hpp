@@ -17,7 +17,7 @@ struct VocabularyTree;
 using WordId = std::uint32_t;
 
 /// A tree of visual words: hierarchical k-medians over binary descriptors (Galvez-Lopez and Tardos,
-/// T-RO 2012, after Nister and Stewenius, CVPR 2006). Default-constructed it is empty and can only
+/// T-RO 2012, after Nister and Stewenius, CVPR 2006). Default-constructed, it is empty and can only
 /// be assigned to. Immutable; copies share one tree, which may be in a mapped file.
 class Vocabulary {
  public:
@@ -34,7 +34,7 @@ class Vocabulary {
     std::uint32_t node = 0;
   };
 
-  /// branching^2 nodes, typically 100: with 1,000 features in an image some 10 share a node.
+  /// branching^2 nodes, typically 100: with 1,000 features in an image, about 10 share a node.
   static constexpr int kDirectIndexLevel = 2;
   static constexpr std::uint32_t kFileVersion = 2;
 

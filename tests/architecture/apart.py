@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""apart.py TARGETS ROOT: what drives a robot cannot reach the truth.
+"""apart.py TARGETS ROOT: code that drives a robot cannot reach the truth.
 
-By the link lines: `robots` links, directly or through others, nothing but the core: no scene, no
-simulator, no bench. By its files: none includes a header of those.
+Links: `robots` links, directly or through others, nothing but the core: no scene, no simulator, no
+bench. Files: none of its files includes a header of those.
 """
 import os
 import re
@@ -16,7 +16,7 @@ TRUTH = ("scenes/", "sim/", "bench/")
 
 
 def linked(targets, name, found):
-    """Every target that a link to `name` brings along."""
+    """All targets that are linked, directly or indirectly, by linking `name`."""
     if name not in found:
         found.add(name)
         _, public, private = targets[name]
@@ -26,7 +26,7 @@ def linked(targets, name, found):
 
 
 def faults(targets, root):
-    """A line for each way from the navigation to the truth."""
+    """One line for each path from the navigation to the truth."""
     found = [f"robots links {name}" for name in sorted(linked(targets, "robots", set()) - MAY)]
     folder = os.path.join(root, "robots/navigation")
     for file in sorted(os.listdir(folder)):

@@ -2,22 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """draw.py TARGETS [FILE PAGE]: the targets and their links as SVG, on standard output.
 
-With FILE: compares instead, and fails where that holds another image or where PAGE leaves a target
-out. TARGETS is as for links.py.
-A link that follows from others is left out. A target stands above all that it links, in the column
-of its folder.
+With FILE: compares instead, and fails if FILE contains a different image or if PAGE does not mention
+a target. TARGETS is as for links.py.
+A link that follows from others is left out. A target is above all targets that it links, in the
+column of its folder.
 """
 import sys
 
 from links import read_targets
 
 COLUMNS = [("slam", 3, "#dbe9f6"), ("scenes", 2, "#e3f1dc"), ("robots", 1, "#fbeed2"),
-           ("sim", 2, "#f9e0d6"), ("bench", 5, "#e8e2f2"), ("python", 1, "#eceff1")]  # width in boxes
+           ("sim", 2, "#f9e0d6"), ("bench", 5, "#e8e2f2"), ("python", 1, "#eceff1")]  # width, in boxes
 BOX_W, BOX_H, STEP_X, STEP_Y, MARGIN = 104, 30, 122, 58, 24
 
 
 def needed_links(targets):
-    """{target: links without those that others bring along}"""
+    """{target: links without those that follow from other links}"""
     links = {name: set(public + private) for name, (_, public, private) in targets.items()}
 
     def below(name):
@@ -50,7 +50,7 @@ def places(targets, links):
     edges = [(a, b) for a in sorted(links) for b in links[a]]
 
     def hidden(a, b, box):
-        """Whether a line runs behind a box that is neither of its ends."""
+        """Whether a line passes behind a box other than those at its ends."""
         (ax, ay), (bx, by), (x, y) = place[a], place[b], place[box]
         ends = [ax + (bx - ax) * (ay - edge) / (ay - by) for edge in (y - 0.3, y + 0.3)]
         return by < y < ay and min(ends) < x + 0.45 and max(ends) > x - 0.45
@@ -61,7 +61,7 @@ def places(targets, links):
         return lines + 9 * (sum(hidden(*e, box) for e in mine for box in targets) +
                             sum(hidden(*e, name) for e in edges if name not in e))
 
-    for _ in range(6):  # each box to where it costs least; the first of equals
+    for _ in range(6):  # moves each box to the place of least cost; the first one among equals
         for name in sorted(targets):
             best = None
             for x in slots[folder(targets, name)]:

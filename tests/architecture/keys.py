@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""keys.py DECIDES ROOT: the laws of the keys of results (cmake/code_version.cmake).
+"""keys.py DECIDES ROOT: checks the rules for keys of results (cmake/code_version.cmake).
 
-What a deciding file includes decides, too. A changed byte in a deciding file changes the key; one in a
-test, a page, a report, the command line or CMake's own files changes none.
+Files included by a deciding file decide, too. A changed byte in a deciding file changes the key; one in
+a test, a page, a report, the command line or CMake's own files changes no key.
 """
 import fnmatch
 import os
@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-CHANGES = {  # a file, and the keys that it changes
+CHANGES = {  # file: the keys that a change in it affects
     "slam/io/yaml.cpp": {"LIGHT", "DETECT", "RUN"},
     "slam/core/digest.hpp": {"LIGHT", "DETECT", "RUN"},
     "slam/semantics/candidate_selection.hpp": {"RUN"},
@@ -53,8 +53,8 @@ def read(decides):
 
 
 def not_held(patterns, root):
-    """A line for each header of ours that a deciding file of runs includes and no key holds. What only
-    names or prints a key may be outside."""
+    """One line for each of our headers that a deciding file of runs includes but no key covers. Files that only
+    name or print a key need not be covered."""
     run = [pattern for key, pattern in patterns if key == "RUN"]
     held = lambda file: any(fnmatch.fnmatch(os.path.join(root, file), pattern) for pattern in run)
     for top in ("slam", "scenes", "robots", "sim", "bench"):

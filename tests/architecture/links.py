@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""links.py check TARGETS ROOT: files include only what their target links; no circle of targets, nor of
-the folders that share one (those of scenes/ apart: a scene is loaded by its formats, which make scenes).
+"""links.py check TARGETS ROOT: files include only what their target links; there is no circle of targets, nor
+of folders that share a target (except in scenes/: a scene is loaded by its formats, which make scenes).
 
 TARGETS is made/targets.txt of the build folder, which CMake writes: NAME|SOURCES|PUBLIC|PRIVATE.
 """
@@ -21,7 +21,7 @@ def read_targets(text):
 
 
 def circle(targets, name, path=()):
-    """The first circle of links that begins on the way from a target; empty if there is none."""
+    """The first circle of links found on paths from a target; empty if there is none."""
     if name in path:
         return [*path[path.index(name):], name]
     _, public, private = targets[name]
@@ -45,7 +45,7 @@ def violations(targets, root):
     may = {name: {name}.union(*(reach(targets, link) for link in public + private))
            for name, (_, public, private) in targets.items()}
 
-    def owners(file):  # a header's is that of the source of its name, else any of its folder's
+    def owners(file):  # for a header: the target of the source with its name, otherwise all targets of its folder
         source = os.path.splitext(file)[0] + ".cpp"
         return {owner[source]} if source in owner else folders.get(os.path.dirname(file), set())
 

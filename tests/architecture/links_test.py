@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What links.py finds in made-up trees."""
+"""Tests of links.py on made-up trees."""
 import os
 import tempfile
 import unittest

@@ -13,7 +13,7 @@ namespace mh::testing_support {
 
 using FrameChange = std::function<void(std::size_t index, RgbdFrame&)>;
 
-/// A sequence whose frames are changed as they are made.
+/// A sequence that applies a change to each frame as it is made.
 class ChangedFrames : public SequenceView {
  public:
   ChangedFrames(std::shared_ptr<const Sequence> inner, FrameChange change)
@@ -29,7 +29,7 @@ class ChangedFrames : public SequenceView {
   FrameChange change_;
 };
 
-/// The world with all its frames changed; without a change, as it is.
+/// The world with `change` applied to all its frames; without a change, the world as it is.
 inline World with_changed_frames(World world, const FrameChange& change) {
   if (!change) return world;
   for (auto* sequence : {&world.mapping, &world.query_tour})

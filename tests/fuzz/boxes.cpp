@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The bytes as a file, which is read as boxes or as class names.
+/// A folder for the bytes as a file that is read as boxes or as class names.
 struct Files {
   fs::path folder = fs::temp_directory_path() / ("mh_fuzz_boxes_" + std::to_string(getpid()));
   Files() { fs::create_directories(folder / "yolo"); }

@@ -9,12 +9,12 @@
 
 namespace mh {
 
-/// The bytes that libFuzzer made up.
+/// The bytes that libFuzzer generated.
 inline std::string_view bytes_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Bad input must end in InputError, and in nothing else.
+/// Bad input must end in InputError and nothing else.
 template <class Function>
 void try_input(Function&& function) {
   try {

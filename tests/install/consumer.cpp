@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's equations used by a program that has its own descriptors, ids and map.
+// The paper's equations in a program that has its own descriptors, ids and map.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -37,10 +37,10 @@ int main() {
   const mh::AugmentedVector f = describe({3, 3, mh::kNoLabel}, {7, 7, 9});
   require(std::abs(f.label_mass() - 2.0 / 3.5) < 1e-12, "equation 1: labels hold 2 of 3.5");
 
-  // Equation 2, over floats this time.
+  // Equation 2, here with float distances.
   require(mh::semantic_distance(4.0F, mh::labels_disagree(3, 5), 1.5F) == 6.0F, "equation 2");
 
-  // Equations 3 to 6: of three places, the equal one is found.
+  // Equations 3 to 6: the equal one of three places is found.
   const std::array<Place, 3> places{Place{"kitchen", f}, Place{"hall", describe({5, 5}, {1, 2, 3})},
                                     Place{"bath", describe({3, 5}, {7, 1, 2})}};
   const std::vector<int> keys{0, 1, 2};

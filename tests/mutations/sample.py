@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws small mistakes from the sources by a seed, puts them one at a time into a copy, and writes
-down which test notices. tests/mutations/README.md tells how to read the result; sample.sh runs it."""
+"""Draws small mistakes in the sources from a seed, makes them one at a time in a copy, and records
+which test notices. tests/mutations/README.md explains how to read the result; sample.sh runs it."""
 import argparse
 import filecmp
 import hashlib
@@ -23,12 +23,12 @@ from sites import Site, sites_of
 HERE = Path(__file__).resolve().parent
 SOURCES = ('slam', 'bench', 'sim/sensors')
 PASSED_OVER = ('bench/lab/micro/',)
-# The kinds that are drawn in turn; logic counts among the relations.
+# The kinds are drawn in turn; logic counts as a relation.
 KINDS = ('relation', 'arithmetic', 'constant', 'arguments', 'statement')
 KIND_OF = {'logic': 'relation'}
 LONGEST_TEST_S, LEAST_LIMIT_S, TIMES_SLOWER = 600, 60, 3
 MOST_COMPARED = 12  # object files
-MOST_MEMORY = 8 << 30  # bytes, of a test
+MOST_MEMORY = 8 << 30  # bytes, for a test
 EQUAL, CAUGHT, SURVIVED, NO_MUTANT = 'equal', 'caught', 'survived', 'does not compile'
 
 
@@ -37,7 +37,7 @@ class Mutant(NamedTuple):
     kind: str
     file: str
     line: int
-    text: str  # of the line
+    text: str  # the line
     site: Site
 
     def change(self):
@@ -51,8 +51,8 @@ def rank(*parts):
 
 
 def mutants_of(tree, name):
-    """By kind, then by line: (key of the line, its mutants). The keys know no line numbers, so that
-    a change elsewhere moves nothing."""
+    """By kind, then by line: (key of the line, its mutants). The keys contain no line numbers, so that
+    a change elsewhere has no effect on them."""
     content = (tree / name).read_text()
     seen, lines = Counter(), {}
     for number, text in enumerate(content.split('\n'), 1):
@@ -71,8 +71,8 @@ def mutants_of(tree, name):
 
 
 def draw(tree, seed, folders):
-    """All mutants in the order in which the seed tries them: the kinds in turn, of each kind the
-    lines in the order of the seed, of each line one mutant; the others after all lines."""
+    """All mutants in the order in which the seed tries them: the kinds in turn, the lines of a kind
+    in an order given by the seed, first one mutant per line; the other mutants after all lines."""
     names = subprocess.run(['git', '-C', tree, 'ls-files', *folders], check=True, text=True,
                            capture_output=True).stdout.split()
     by_kind = {kind: [] for kind in KINDS}
@@ -90,7 +90,7 @@ def draw(tree, seed, folders):
 
 
 class Results:
-    """Verdict of each mutant, one line each; a later line counts in the place of an earlier one."""
+    """Verdicts, one line per mutant; a later line replaces an earlier one."""
     COLUMNS = ('verdict', 'kind', 'id', 'place', 'change', 'by', 'commit')
 
     def __init__(self, file):
@@ -122,7 +122,7 @@ class Results:
 
 
 class Copy:
-    """A worktree of its own, built like the project."""
+    """A separate worktree, built like the project."""
 
     def __init__(self, root, work, jobs, commit, folders):
         self.tree, self.build, self.jobs = work / 'tree', work / 'tree/build/release', jobs
@@ -134,8 +134,8 @@ class Copy:
             subprocess.run(['git', '-C', root, 'worktree', 'prune'], check=True)
             self.run('git', '-C', root, 'worktree', 'add', '--quiet', '--detach', self.tree, self.head)
         self.run('git', '-C', self.tree, 'checkout', '--quiet', '--force', '--detach', self.head)
-        # What is changed is compiled alone: an object file then tells its source, and is soon made.
-        # A source's properties hold in one folder of the build, which must be known by then.
+        # Changed files are compiled separately: an object file then belongs to one source and is built quickly.
+        # Properties of a source apply in one folder of the build, which must already be known.
         alone = work / 'alone.cmake'
         globs = ' '.join(f'{self.tree / folder}/*.cpp' for folder in (*folders, 'tests'))
         alone.write_text(f'file(GLOB_RECURSE ALONE {globs})\n'
@@ -150,7 +150,7 @@ class Copy:
                          'cmake_language(DEFER DIRECTORY ${CMAKE_SOURCE_DIR} CALL compile_alone\n'
                          '               ${CMAKE_SOURCE_DIR})\n')
         if not (self.build / 'build.ninja').exists():
-            # Of the library's containers: an index past the end ends the program.
+            # With assertions in the library's containers, an index past the end ends the program.
             self.run('cmake', '--preset', 'release', '-DCMAKE_CXX_FLAGS=-D_GLIBCXX_ASSERTIONS',
                      f'-DCMAKE_PROJECT_INCLUDE={alone}', cwd=self.tree)
         self.ninja('build.ninja')
@@ -187,7 +187,7 @@ class Copy:
                                   stdout=out, stderr=subprocess.STDOUT).returncode == 0
 
     def objects_of(self, name):
-        """Object files that a source decides: its own, or of a header all that include it."""
+        """Object files that depend on a source: its own, or for a header, those of all that include it."""
         if name.endswith('.cpp'):
             return self.objects.get(name, [])
         deps = subprocess.run(['ninja', '-C', self.build, '-t', 'deps'], check=True, text=True,
@@ -201,13 +201,13 @@ class Copy:
         return found
 
     def tests_of(self, name, objects):
-        """The executables that hold one of the objects; all where none is known to."""
+        """The executables that contain one of the objects; all executables if none is known to."""
         sources = {s for s, os_ in self.objects.items() if set(os_) & set(objects)} | {name}
         return [t for t, inputs in self.tests.items() if inputs & sources] or list(self.tests)
 
 
 class Experience:
-    """What former mutants taught of the tests: how long they take, and where they catch."""
+    """What earlier mutants showed about the tests: how long they take, and where they catch mistakes."""
 
     def __init__(self, file):
         self.file = file
@@ -223,8 +223,8 @@ class Experience:
         return min(LONGEST_TEST_S, max(LEAST_LIMIT_S, TIMES_SLOWER * self.passed_s[test]))
 
     def likeliest_first(self, copy, tests, name):
-        """Tests that stand in the same folder, include the file's header or one beside it, or caught
-        something there; the quicker first."""
+        """Tests in the same folder, tests that include the file's header or one next to it, and tests that
+        caught something there; the quicker ones first."""
         folder, header = os.path.dirname(name), str(Path(name).with_suffix('.hpp'))
 
         def nearness(source):
@@ -243,15 +243,15 @@ class Experience:
 
 
 def bound(limit_s):
-    """A mistake may ask for all memory, write without end, or compute without end."""
+    """Sets limits: a mistake may request all memory, write forever, or compute forever."""
     for what, most in ((resource.RLIMIT_DATA, MOST_MEMORY), (resource.RLIMIT_FSIZE, MOST_MEMORY),
                        (resource.RLIMIT_CORE, 0), (resource.RLIMIT_CPU, int(limit_s) + 1)):
         resource.setrlimit(what, (most, most))
 
 
 def outcome(copy, test, limit_s):
-    """'' if the test passes, else what failed; and the processor seconds that it took, which a busy
-    machine leaves as they are. The clock ends what waits without end."""
+    """'' if the test passes, otherwise what failed; and the processor seconds that it took, which do not
+    depend on other load. A wall-clock limit ends tests that wait forever."""
     with copy.log.open('wb') as out:
         process = subprocess.Popen(
             [copy.build / test, '--gtest_brief=1', '--gtest_fail_fast'], cwd=copy.tree, stdout=out,
@@ -270,11 +270,11 @@ def outcome(copy, test, limit_s):
 
 
 def judge(copy, mutant, experience, most_tests):
-    """Verdict and what noticed. The copy's sources are as they were afterwards."""
+    """The verdict and the test that noticed. The copy's sources are restored."""
     file = copy.tree / mutant.file
     content = file.read_text()
     objects = copy.objects_of(mutant.file)
-    # Of a header that half the project includes, the tests build what they need.
+    # For a header that half of the project includes, the tests build what they need.
     compared = objects if len(objects) <= MOST_COMPARED else []
     if compared and not copy.ninja(*compared):
         sys.exit(f'{mutant.file}: does not build as it is:\n{copy.log.read_text()[-2000:]}')
@@ -300,7 +300,7 @@ def judge(copy, mutant, experience, most_tests):
                 sys.exit(f'{test} does not link:\n{copy.log.read_text()[-2000:]}')
             failure, took = outcome(copy, test, experience.limit_s(test))
             if failure and test not in experience.passed_s:
-                file.write_text(content)  # does it pass at all?
+                file.write_text(content)  # does the test pass without the mistake?
                 copy.ninja(test)
                 itself, took = outcome(copy, test, LONGEST_TEST_S)
                 if itself:
@@ -381,7 +381,7 @@ def main():
             if mutant.id in survivors and not out_of_time():
                 try_out(mutant)
     else:
-        # The kinds in turn; each gets its share of the count.
+        # The kinds take turns; each gets its share of the count.
         for share in range(1, (args.count + len(KINDS) - 1) // len(KINDS) + 1):
             for kind in KINDS:
                 while (len([r for r in results.of(CAUGHT, SURVIVED) if r['kind'] == kind]) < share

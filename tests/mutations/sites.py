@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a C++ file can be changed a little: relational, logical and arithmetic operators, constants,
+"""Finds places where a C++ file can be changed slightly: relational, logical and arithmetic operators, constants,
 neighboring arguments, whole statements.
 
-It reads tokens, no grammar. Comments, strings, preprocessor lines and assertions are passed over.
-clang-format tells the rest: binary operators stand between blanks, template brackets and
-references do not."""
+It reads tokens, not grammar. Comments, strings, preprocessor lines and assertions are skipped.
+The formatting by clang-format shows the rest: binary operators have spaces around them, template
+brackets and references do not."""
 import re
 from typing import NamedTuple
 
@@ -24,13 +24,13 @@ KIND = {**{o: 'relation' for o in ('<', '<=', '>', '>=', '==', '!=')},
         **{o: 'logic' for o in ('&&', '||')}}
 NO_CALL = {'if', 'for', 'while', 'switch', 'return', 'sizeof', 'catch', 'alignof', 'decltype',
            'static_assert', 'assert', 'noexcept', 'requires', 'operator', 'constexpr',
-           # the same in either order
+           # the order of arguments does not matter
            'min', 'max', 'minmax', 'hypot', 'angle_between_rad'}
 NO_STATEMENT = {'return', 'using', 'namespace', 'case', 'default', 'static_assert', 'template',
                 'typedef', 'const', 'constexpr', 'auto', 'friend', 'public', 'private', 'struct',
                 'class', 'enum', 'static', 'if', 'for', 'while', 'do', 'switch', 'else', 'try',
                 'catch', 'explicit', 'inline', 'virtual', 'goto', 'extern', 'mutable', 'assert'}
-# `int tries = 3;` as a member or a parameter: what a caller leaves out, no computation.
+# `int tries = 3;` as a member or a parameter: a default for callers, not a computation.
 DEFAULT = re.compile(r'^\s*(?!.*(?:constexpr|return))[\w:<>,&* ]+ \w+ = [^;(]*[;,]')
 
 
@@ -89,7 +89,7 @@ def other_numbers(number):
 
 
 def looks_declared(part):
-    """Whether two words stand side by side, as in `int x`."""
+    """Whether two words are next to each other, as in `int x`."""
     return any(a.kind == 'word' and b.kind == 'word' for a, b in zip(part, part[1:])) or any(
         a.kind == 'word' and b.text in ('&', '*') and c.kind == 'word' and b.at == a.end
         for a, b, c in zip(part, part[1:], part[2:]))
@@ -108,7 +108,7 @@ def asserted(tokens):
 
 
 def arguments(text, tokens, call):
-    """Neighboring arguments of the call whose name is tokens[call], swapped."""
+    """Swaps of neighboring arguments in the call whose name is tokens[call]."""
     end = closing(tokens, call + 1)
     if end is None or looks_declared(tokens[call + 2:end]):
         return

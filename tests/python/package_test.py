@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the package says of itself, and the scripts of docs/python.md."""
+"""The metadata of the package, and the scripts in docs/python.md."""
 import inspect
 import pathlib
 import re

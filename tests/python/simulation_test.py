@@ -12,7 +12,7 @@ import numpy as np
 import modelhouse as mh
 from tests.python.tools import CACHE, PROGRAM, ROOM
 
-# For so many seconds: m/s ahead and to the left, deg/s.
+# Duration in s; velocity ahead and to the left in m/s; turn rate in deg/s.
 COMMANDS = [(3.0, 0.3, 0.0, 0.0), (2.0, 0.1, 0.1, 30.0), (2.0, 0.0, 0.0, -35.0)]
 
 
@@ -21,7 +21,7 @@ class SimulationTest(unittest.TestCase):
         self.sim = mh.Simulation(ROOM, level="ideal", seed=7, cache=CACHE)
 
     def drive(self):
-        """Each observation and true camera pose along COMMANDS, a step a tick."""
+        """Each observation and true camera pose along COMMANDS, one step per tick."""
         self.sim.reset(pose=(2.0, 2.0, 0.0))
         seen = []
         for duration, vx, vy, turn in COMMANDS:
@@ -60,7 +60,7 @@ class SimulationTest(unittest.TestCase):
     def test_a_frame_is_what_is_rendered_at_its_pose(self):
         seen = self.drive()
         k = next(i for i, (o, _) in enumerate(seen) if i > 30 and o.frame is not None)
-        pose = seen[k - 1][1]["world_from_camera"]  # a tick before it arrived
+        pose = seen[k - 1][1]["world_from_camera"]  # one tick before the frame arrived
         np.testing.assert_array_equal(seen[k][1]["frame_pose"], pose)
         exact = self.sim.render(pose)
         np.testing.assert_array_equal(exact["color"], seen[k][0].color)
@@ -177,7 +177,7 @@ class SearchTest(unittest.TestCase):
         env.reset(seed=3)
         cut = [env.step((0.1, 0, 0.1, 0))[3] for _ in range(30)]
         self.assertTrue(cut[-1] and not any(cut[:-2]))
-        # Put beside it, it has arrived without a way.
+        # A robot placed next to the goal has arrived without a path.
         env.reset(seed=3)
         places = [(x, y) for x in np.arange(0, 5, 0.1) for y in np.arange(0, 4.2, 0.1)
                   if env.start.is_arrival(x, y)]

@@ -17,7 +17,7 @@ ROBOT = ROOT + "/bench/scenarios/robot.yaml"
 
 
 class RecordingTest(unittest.TestCase):
-    """A rendered recording, mapped here and by the program."""
+    """A rendered recording, mapped from Python and by the program."""
 
     @classmethod
     def setUpClass(cls):
@@ -110,7 +110,7 @@ class RecordingTest(unittest.TestCase):
                 (frame.color, (5000 * frame.depth).astype(np.uint16), None, "depth: expected meters"),
                 (frame.color, -frame.depth, None, "negative"),
                 (frame.color, frame.depth, frame.labels + 0.5, "labels: expected integers"),
-                (frame.color, frame.depth, np.full(frame.labels.shape, 300), "300 is no class")):
+                (frame.color, frame.depth, np.full(frame.labels.shape, 300), "300 is not a class")):
             with self.assertRaisesRegex(ValueError, part):
                 mh.Frame(color, depth, labels=labels)
 
@@ -131,7 +131,7 @@ class RecordingTest(unittest.TestCase):
 
 class SemanticsTest(unittest.TestCase):
     def test_equation_1(self):
-        # Labels 5, 5, 7 and words 1, 2, 2: twice as heavy labels give 4, 2 and 1, 2 of 9.
+        # Labels 5, 5, 7 and words 1, 2, 2: with labels of double weight, 4, 2 and 1, 2 of 9.
         v = mh.semantics.augmented_vector([5, 5, 7, 0], [1, 2, 2], gamma=2)
         self.assertEqual(v.labels, {5: 4 / 9, 7: 2 / 9})
         self.assertEqual(v.words, {1: 1 / 9, 2: 2 / 9})
@@ -140,7 +140,7 @@ class SemanticsTest(unittest.TestCase):
         self.assertEqual(weighed.words, {0: 0.75, 1: 0.25})
         with self.assertRaisesRegex(ValueError, "gamma"):
             mh.semantics.augmented_vector([1], [1], gamma=-1)
-        for arguments, part in ((([], [2], 1, [3, 1]), "no word 2"), (([-1], [1], 1), "-1 is no id"),
+        for arguments, part in ((([], [2], 1, [3, 1]), "no word 2"), (([-1], [1], 1), "-1 is not an id"),
                                 (([1.5], [1], 1), "expected integers"), (([1], [1], np.inf), "gamma"),
                                 (([1], [1], 1, [1, np.nan]), "eta")):
             with self.assertRaisesRegex(ValueError, part):
@@ -154,7 +154,7 @@ class SemanticsTest(unittest.TestCase):
             mh.semantics.distance([10, 10], [5, 0], [0, 5], xi=2, void_is_a_label=True), [20, 20])
 
     def test_equations_3_to_6(self):
-        # Of overlaps 4, 3, 1, 0 the last two fall to alpha 0.5; the sums are those of neighborhoods.
+        # alpha 0.5 removes the last two of the overlaps 4, 3, 1, 0; scores are sums over neighborhoods.
         found, left = mh.semantics.select_candidates(
             overlap=[4, 3, 1, 0], neighbors=[[0, 1], [1, 3], [2], [3]],
             similarity=[0.5, 0.25, 0.9, 0.125], alpha=0.5, beta=0.4)
@@ -222,7 +222,7 @@ serve(Mine())
         with tempfile.TemporaryDirectory(suffix="?a#b%41") as folder:
             file = pathlib.Path(folder) / "results.sqlite"
             file.write_text("this is text")
-            with self.assertRaisesRegex(ValueError, "no results file"):
+            with self.assertRaisesRegex(ValueError, "not a results file"):
                 mh.Results(folder)
             self.assertEqual(file.read_text(), "this is text")
 
@@ -235,7 +235,7 @@ class SystemTest(unittest.TestCase):
         row[3, 3] = 2
         for pose in (np.zeros((4, 4)), 5 * np.eye(4), mirrored, row, np.zeros(7), np.eye(3),
                      np.full((4, 4), np.nan)):
-            with self.assertRaisesRegex(ValueError, "no pose"):
+            with self.assertRaisesRegex(ValueError, "not a pose"):
                 numbers(pose)
 
     def test_what_it_says_is_passed_on_or_refused(self):
@@ -257,7 +257,7 @@ class SystemTest(unittest.TestCase):
                          {"id": 2, "pose": [0, 0, 0, 0, 0, 0, 1], "keypoints": 3, "keyframe": True})
         self.assertEqual(said("return None"), {"id": 2, "pose": None})
         for reply, part in (("return Reply(None, keypoints=2.5)", "TypeError"),
-                            ("return np.zeros((4, 4))", "ValueError: no pose"),
+                            ("return np.zeros((4, 4))", "ValueError: not a pose"),
                             ("raise SystemExit('enough')", "SystemExit: enough"),
                             ("raise ValueError('two\\nlines')", "ValueError: two lines")):
             self.assertIn(part, said(reply)["error"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the tests find what is built and shipped."""
+"""Where the tests find built and shipped files."""
 import os
 import pathlib
 

@@ -33,7 +33,8 @@ Scene two_rooms(float door_m) {
   return scene;
 }
 
-// "x": free. By sides alone, not by corners, up to the grid's own edges.
+// "x" is free. Cells are connected by their sides, not by their corners, up to the edges of the
+// grid.
 TEST(LargestRegion, IsConnectedBySides) {
   const std::vector<std::string> rows{"xx.x", "x..x", ".xx."};
   FloorGrid grid;
@@ -53,7 +54,7 @@ TEST(LargestRegion, IsConnectedBySides) {
             "x..."
             "....");
   EXPECT_EQ(marked(1.5), std::string(12, '.'));
-  // A single cell is a region, in the first row and column, too.
+  // A single cell is a region, even in the first row or column.
   for (const auto& [x, y] : {std::pair(0, 0), std::pair(3, 0), std::pair(0, 2)}) {
     grid.clearance_m = Grid2d<float>(4, 3);
     grid.clearance_m(x, y) = 1;
@@ -73,8 +74,9 @@ TEST(FloorGrid, ClearanceIsTheDistanceToTheNearestObstacleOrLess) {
       const double wall_m = std::min(p.minCoeff(), (Vector2d(10, 10) - p).minCoeff());
       const Vector2d outside = (Vector2d(4, 4) - p).cwiseMax(p - Vector2d(4.5, 4.5)).cwiseMax(0.0);
       const double truth_m = std::min(wall_m, outside.norm());
-      // A cell is blocked as soon as it is touched, and a place takes its cell's middle: at most
-      // two cells too little, never more than half a diagonal too much.
+      // A cell is blocked as soon as anything touches it, and a place gets the clearance of its
+      // cell's center: the clearance is at most two cells too small, and never too large by more
+      // than half a diagonal.
       EXPECT_LE(grid.clearance_at(p), truth_m + 0.72 * grid.resolution_m) << p.transpose();
       EXPECT_GE(grid.clearance_at(p), truth_m - 2.2 * grid.resolution_m) << p.transpose();
     }
@@ -110,7 +112,7 @@ TEST(PlanWay, GoesThroughTheDoorAndKeepsItsDistance) {
   EXPECT_EQ(way->back(), Vector2d(8, 2));
   for (std::size_t i = 1; i < way->size(); ++i)
     EXPECT_TRUE(grid.clear_line((*way)[i - 1], (*way)[i], 0.29)) << i;
-  // As the crow flies by way of the door's middle, and a little more.
+  // The straight path through the middle of the door, and a little more.
   const double straight_m = 2 * std::hypot(3, 5.45);
   EXPECT_GT(length_m(*way), straight_m - 0.5);
   EXPECT_LT(length_m(*way), straight_m * 1.1);
@@ -130,12 +132,12 @@ TEST(PlanWay, APointDoesNotGoThroughWallsEither) {
   EXPECT_FALSE(plan_way(grid, {2, 2}, {5, 2}, 0).has_value());
   const auto way = plan_way(grid, {2, 2}, {8, 2}, 0);
   ASSERT_TRUE(way.has_value());
-  EXPECT_GT(length_m(*way), 11.0);  // by the door
+  EXPECT_GT(length_m(*way), 11.0);  // through the door
 }
 
 TEST(PlanWay, RoundTripsAreNoLongerThanTheOrderGiven) {
   const FloorGrid grid = make_floor_grid(empty_room());
-  // Twelve places on a circle, in a scrambled order: the round is the circle's polygon.
+  // Twelve places on a circle, in a scrambled order: the tour is the polygon on the circle.
   std::vector<Vector2d> places;
   for (int i = 0; i < 12; ++i) {
     const double a = 2 * M_PI * ((i * 5) % 12) / 12;
@@ -147,7 +149,7 @@ TEST(PlanWay, RoundTripsAreNoLongerThanTheOrderGiven) {
   for (std::size_t i = 0; i < order.size(); ++i)
     sum += (places[order[i]] - places[order[(i + 1) % order.size()]]).norm();
   EXPECT_NEAR(sum, 12 * 2 * 3 * std::sin(M_PI / 12), 1e-6);
-  EXPECT_NEAR(length_m / sum, 1.05, 0.06);  // steps of 45 deg make ways up to 8 % longer
+  EXPECT_NEAR(length_m / sum, 1.05, 0.06);  // steps of 45 deg make paths up to 8 % longer
   EXPECT_EQ(order.front(), 0U);
 }
 

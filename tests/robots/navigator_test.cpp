@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A floor of 6 x 4 m with a wall across it that has a gap, as a map and as the world it is of.
+/// A floor of 6 x 4 m with a wall across it that has a gap, both as the world and as its map.
 struct Flat {
   double resolution_m = 0.05;
   Grid2d<std::uint8_t> solid{120, 80};
@@ -47,17 +47,17 @@ NavigatorGoal box_at(double x, double y) {
   return goal;
 }
 
-/// A robot that does what it is told, with lasers in the flat world. Its odometry's frame is not
-/// the map's.
+/// A robot that carries out commands, with lasers in the flat world. The frame of its odometry is
+/// not the frame of the map.
 class Driven {
  public:
   Driven(const Flat& world, const Robot& robot, Pose2 start)
       : world_(world), robot_(robot), at_(std::move(start)) {}
-  bool answers = true;                        ///< the SLAM system tells its pose
-  std::function<bool(double)> bumper = {};    ///< by time, of the first bumper
-  std::function<void(Twist2d&)> wheels = {};  ///< what the wheels make of a command
+  bool answers = true;                        ///< the SLAM system reports its pose
+  std::function<bool(double)> bumper = {};    ///< state of the first bumper at a time
+  std::function<void(Twist2d&)> wheels = {};  ///< changes a command as the wheels carry it out
 
-  /// Until the navigator ends, or so many seconds.
+  /// Runs until the navigator ends, or for `limit_s` seconds.
   void run(Navigator& navigator, double limit_s) {
     Twist2d command = Twist2d::Zero();
     for (time_s = 0; time_s < limit_s && !is_end(navigator.state()); time_s += 0.1) {
@@ -134,14 +134,16 @@ TEST(Navigator, DrivesThroughTheGapAndSaysThatItHasArrived) {
 
 TEST(Navigator, TakesANarrowDoorInPlaceOfALongWay) {
   Flat flat;
-  for (int x = 59; x < 62; ++x)  // 0.65 m: enough for the least margin, not for the wanted one
+  for (int x = 59; x < 62;
+       ++x)  // 0.65 m: enough for the smallest margin, not for the preferred one
     for (int y = 9; y < 22; ++y) flat.solid(x, y) = 0;
   const Robot robot = test::pepper();
   const KnownMap map = flat.map();
   Navigator navigator(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 0.6}, 0.0});
   driven.run(navigator, 3);
-  EXPECT_LT(length_m(navigator.path()), 5.0) << driven.said;  // 8 m through the wide gap
+  EXPECT_LT(length_m(navigator.path()), 5.0)
+      << driven.said;  // the path through the wide gap is 8 m
   driven.run(navigator, 60);
   EXPECT_EQ(navigator.state(), NavigatorState::kArrived) << driven.said;
   EXPECT_GT(driven.nearest_m, 0.27);
@@ -193,7 +195,7 @@ TEST(Navigator, ATwoWheeledRobotBacksStraightOff) {
   const Flat flat;
   Robot robot = test::turtlebot();
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
-  equipment->bumpers = {"camera_depth_optical_frame"};  // ahead, to the right
+  equipment->bumpers = {"camera_depth_optical_frame"};  // it faces ahead and to the right
   robot.equipment = equipment;
   const KnownMap map = flat.map();
   Navigator navigator(map, robot, {box_at(5.0, 0.6)});
@@ -235,7 +237,9 @@ TEST(Navigator, StuckItSaysSoAndStops) {
   const KnownMap map = flat.map();
   Navigator navigator(map, robot, {box_at(5.0, 0.6)});
   Driven driven(flat, robot, {{1, 1}, 2.0});
-  driven.wheels = [](Twist2d& command) { command.head<2>().setZero(); };  // they only turn it
+  driven.wheels = [](Twist2d& command) {
+    command.head<2>().setZero();
+  };  // the wheels only turn the robot
   driven.run(navigator, 400);
   EXPECT_EQ(navigator.state(), NavigatorState::kStuck) << driven.said;
   EXPECT_NE(driven.said.find("it is stuck and stops"), std::string::npos);
@@ -290,7 +294,7 @@ TEST(Navigator, WhatItCannotGetToComesLast) {
   near.name = "box 2";
   Navigator navigator(map, robot, {box_at(5.0, 0.6), near});
   Driven driven(flat, robot, {{1, 1}, 2.0});
-  driven.wheels = [&](Twist2d& command) {  // something that no sensor shows holds it
+  driven.wheels = [&](Twist2d& command) {  // an obstacle that no sensor sees holds the robot
     if ((driven.at() * Vector2d(0.1 * command.head<2>())).x() > 1.5) command.head<2>().setZero();
   };
   driven.run(navigator, 200);

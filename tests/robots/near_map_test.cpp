@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// One laser that looks ahead, at most 3 m.
+/// One laser that looks ahead, with a range of 3 m.
 Equipment one_laser() {
   Equipment equipment;
   equipment.lasers = {
@@ -49,7 +49,7 @@ TEST(NearMap, WhatALaserSeesThroughIsGone) {
 TEST(NearMap, ATableTopStaysThoughLasersPassBelowIt) {
   const Robot robot = test::pepper();
   NearMap map;
-  // A camera that looks ahead sees a top edge 2 m away, 0.4 m below itself.
+  // A camera that looks ahead sees a top edge 2 m away and 0.4 m below the camera.
   Grid2d<float> depth(robot.camera.width_px, robot.camera.height_px, 3.4F);
   const int row = static_cast<int>(robot.camera.cy_px + robot.camera.fy_px * 0.4 / 2.0);
   for (int y = row - 8; y <= row + 8; ++y)
@@ -77,7 +77,7 @@ TEST(Follow, BrakesInTimeAndPassesBy) {
   EXPECT_NEAR(speed_before(ahead, {0, 0}, x, 0.3, 0.2), std::sqrt(2 * 0.2 * 0.7), 1e-9);
   EXPECT_TRUE(std::isinf(speed_before(aside, {0, 0}, x, 0.3, 0.2)));
   EXPECT_TRUE(std::isinf(speed_before(beside, {0, 0}, x, 0.3, 0.2)));    // it may pass by
-  EXPECT_EQ(speed_before(beside, {0, 0}, Vector2d(0, 1), 0.3, 0.2), 0);  // and not go there
+  EXPECT_EQ(speed_before(beside, {0, 0}, Vector2d(0, 1), 0.3, 0.2), 0);  // but not drive there
 }
 
 TEST(Follow, SteersAlongThePathAndSaysWhenItIsThere) {
@@ -89,7 +89,7 @@ TEST(Follow, SteersAlongThePathAndSaysWhenItIsThere) {
   EXPECT_LT(along.command.y(), 0);  // back to the path
   EXPECT_NEAR(along.left_m, 2.05, 0.01);
   const Steering turned = follow(path, {{0, 0}, 2.0}, {}, robot);
-  EXPECT_EQ(turned.command.head<2>().norm(), 0);  // first it faces its way
+  EXPECT_EQ(turned.command.head<2>().norm(), 0);  // it first turns to face the path
   EXPECT_LT(turned.command.z(), 0);
   EXPECT_TRUE(follow(path, {{1.97, 0}, 0}, {}, robot).arrived);
   const std::vector<Vector2d> box{{0.5, 0.1}};
@@ -135,7 +135,7 @@ TEST(PlaceBelief, OneAnswerIsNotBelievedFiveThatAgreeAre) {
   const auto at = [](double x) { return Pose2{{x, 0}, 0}; };
   for (int i = 0; i < 4; ++i) belief.see(at(5 + 0.1 * i), at(0.1 * i));
   EXPECT_FALSE(belief.known());
-  belief.see(at(9), at(0.4));  // another place: it starts again
+  belief.see(at(9), at(0.4));  // at a different place: it starts over
   for (int i = 0; i < 4; ++i) {
     EXPECT_FALSE(belief.known());
     belief.see(at(5.5 + 0.1 * i), at(0.5 + 0.1 * i));
@@ -143,10 +143,10 @@ TEST(PlaceBelief, OneAnswerIsNotBelievedFiveThatAgreeAre) {
   belief.see(at(5.9), at(0.9));
   ASSERT_TRUE(belief.known());
   EXPECT_NEAR((belief.map_from_odom() * at(1.0)).place_m.x(), 6.0, 1e-9);
-  belief.see(at(20), at(1.0));  // one that does not agree changes nothing
+  belief.see(at(20), at(1.0));  // a single pose that disagrees changes nothing
   EXPECT_NEAR((belief.map_from_odom() * at(1.0)).place_m.x(), 6.0, 1e-9);
   for (int i = 0; i < 50; ++i) belief.see(std::nullopt, at(1.0 + 0.1 * i));
-  EXPECT_FALSE(belief.known());  // 5 m without any answer
+  EXPECT_FALSE(belief.known());  // after 5 m without any answer
 }
 
 }  // namespace

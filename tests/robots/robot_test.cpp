@@ -25,9 +25,9 @@ namespace {
 
 const std::string kPepper = MH_SOURCE_DIR "/robots/pepper/pepper.yaml";
 
-/// What load_robot() says of a file in the place of Pepper's; "no error" if it is taken.
+/// The error of load_robot() for this text in place of Pepper's file; "no error" if it is accepted.
 std::string verdict_on(const std::string& text) {
-  const TemporaryFolder folder(testing::TempDir());  // tests run side by side
+  const TemporaryFolder folder(testing::TempDir());  // tests run in parallel
   const std::filesystem::path file = folder.path() / "robot.yaml";
   write_atomically(folder.path() / "pepper.urdf",
                    read_file(MH_SOURCE_DIR "/robots/pepper/pepper.urdf"));
@@ -62,7 +62,7 @@ TEST(LoadRobot, PepperHasItsPublishedFigures) {
 
 TEST(LoadRobot, FieldOfViewSpansTheImage) {
   const Camera camera = load_robot(kPepper).camera;
-  // Image borders lie half a pixel outside the outermost pixel centers.
+  // Image borders are half a pixel outside the centers of the outermost pixels.
   const double left = std::atan((-0.5 - camera.cx_px) / camera.fx_px);
   const double right = std::atan((camera.width_px - 0.5 - camera.cx_px) / camera.fx_px);
   EXPECT_NEAR((right - left) * 180 / std::numbers::pi, 58.0, 1e-9);
@@ -74,7 +74,7 @@ TEST(LoadRobot, FieldOfViewSpansTheImage) {
 TEST(LoadRobot, OpticalAxesFollowRep103) {
   const SE3 base_from_camera = load_robot(kPepper).base_from_camera;
   EXPECT_TRUE(base_from_camera.translation().isApprox(Eigen::Vector3d(0.0134, 0.0390, 1.1093)));
-  // What lies ahead of the base lies along z of the camera; its left is the camera's -x.
+  // The base's forward direction is the camera's z; the base's left is the camera's -x.
   const Eigen::Matrix3d camera_from_base = base_from_camera.rotation().transpose();
   EXPECT_TRUE((camera_from_base * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitZ()));
   EXPECT_TRUE((camera_from_base * Eigen::Vector3d::UnitY()).isApprox(-Eigen::Vector3d::UnitX()));
@@ -118,7 +118,7 @@ TEST(LoadRobot, TurtleBotIsADifferentialDriveAsPublished) {
   ASSERT_NE(wheels, nullptr);
   EXPECT_NEAR(wheels->wheels[0].place_m.y() - wheels->wheels[1].place_m.y(), 0.288, 1e-12);
   EXPECT_EQ(wheels->radius_m, 0.033);
-  // What the data sheet calls its greatest speeds is what its wheels reach: 0.26 m/s, and 1.82
+  // The maximum speeds in the data sheet are those that its wheels can reach: 0.26 m/s, and 1.82
   // rad/s times half the track.
   EXPECT_NEAR(wheels->max_rim_m_per_s, robot.limits.max_velocity_m_per_s, 1e-3);
   EXPECT_NEAR(wheels->max_rim_m_per_s, robot.limits.max_turn_rad_per_s * 0.144, 3e-3);
@@ -127,8 +127,8 @@ TEST(LoadRobot, TurtleBotIsADifferentialDriveAsPublished) {
   EXPECT_LT(angle_between_rad(camera, robot.base_from_camera), 1e-6);
 }
 
-/// What load_robot() says of a base on wheels of 3 cm radius at (0, 0.1) and (0, -0.1); warnings
-/// count.
+/// The error or warning of load_robot() for a base on wheels of 3 cm radius at (0, 0.1) and (0,
+/// -0.1).
 std::string verdict_on_wheels(const std::string& joint_edit, const std::string& by,
                               const std::string& wheels = "[l, r]", const std::string& more = "") {
   const TemporaryFolder folder(testing::TempDir());
@@ -165,19 +165,19 @@ TEST(LoadRobot, WheelsThatDoNotRollOnTheFloorAreNamed) {
   EXPECT_EQ(verdict_on_wheels("", "", "[l, r]", ground), "no error");
   expect_in("warning: ", verdict_on_wheels("", ""));
   expect_in("would stand 0.100 m below the floor", verdict_on_wheels("", ""));
-  expect_in("'l' stands here twice", verdict_on_wheels("", "", "[l, l]", ground));
+  expect_in("'l' is listed twice", verdict_on_wheels("", "", "[l, l]", ground));
   expect_in("has no joint 'x'", verdict_on_wheels("", "", "[l, x]", ground));
   expect_in("has no link 'x'", verdict_on_wheels("", "", "[l, r]", "base_link: x\n  "));
-  expect_in("joint 'g' is no wheel's: it does not turn",
+  expect_in("joint 'g' is not a wheel joint: it does not turn",
             verdict_on_wheels("", "", "[l, g]", ground));
-  expect_in("joint 'l' is no wheel's: it turns about an upright axis",
+  expect_in("joint 'l' is not a wheel joint: it turns about an upright axis",
             verdict_on_wheels("0 1 0", "0 0 1", "[l, r]", ground));
   const std::string on_body = "<joint name=\"l\" type=\"continuous\"><parent link=\"body\"/>",
                     on_knuckle =
                         "<link name=\"knuckle\"/><joint name=\"s\" type=\"continuous\"><parent "
                         "link=\"body\"/><child link=\"knuckle\"/><axis xyz=\"0 0 1\"/></joint>"
                         "<joint name=\"l\" type=\"continuous\"><parent link=\"knuckle\"/>";
-  expect_in("joint 'l' hangs on joint 's', which steers it",
+  expect_in("joint 'l' is steered by joint 's'",
             verdict_on_wheels(on_body, on_knuckle, "[l, r]", ground));
   expect_in("warning: ",
             verdict_on_wheels(on_body, on_knuckle, "[l, r]", "base_link: knuckle\n  "));
@@ -187,7 +187,7 @@ TEST(LoadRobot, WheelsThatDoNotRollOnTheFloorAreNamed) {
                               "[l, r]", ground));
 }
 
-/// The node that "equipment.lasers.NAME" stands for in Pepper's file.
+/// The node in Pepper's file for a path such as "equipment.lasers.NAME".
 YAML::Node node_at(YAML::Node node, const std::string& mapping) {
   std::istringstream parts(mapping);
   for (std::string part; std::getline(parts, part, '.');)

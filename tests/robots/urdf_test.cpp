@@ -39,7 +39,7 @@ std::string urdf_refusal(const std::string& from, const std::string& to) {
   return refusal_of(text.replace(at, from.size(), to));
 }
 
-/// The line of Pepper's URDF on which a text stands.
+/// The number of the line of Pepper's URDF that contains a text.
 std::string line_of(const std::string& what) {
   const std::string text = read_file(kFolder + "pepper.urdf");
   const std::size_t at = text.find(what);
@@ -101,7 +101,7 @@ TEST(LoadUrdf, RefusesWhatIsNoRobot) {
       urdf_refusal("<mass value=\"11.6015\"/>", "<mass value=\"-11.6\"/>"));
   expect_in(":" + line_of("<joint name=\"HeadPitch\"") + ": joint 'HeadPitch': its lower limit",
             urdf_refusal("lower=\"-0.706858\"", "lower=\"0.9\""));
-  // What urdfdom finds has a place, too.
+  // Errors found by urdfdom are reported with a line, too.
   const std::string tibia = ":" + line_of("<link name=\"Tibia\"") + ": link 'Tibia': ";
   expect_in(tibia + "Inertial: mass [nan]",
             urdf_refusal("<mass value=\"11.6015\"/>", "<mass value=\"nan\"/>"));
@@ -135,7 +135,7 @@ TEST(LoadUrdf, AnInertiaThatNoBodyHasIsAWarningSinceNothingUsesIt) {
     EXPECT_EQ(load_urdf(file, &warnings).mass_kg(), 2);
     return warnings;
   };
-  // As released for TIAGo: 0.00191 + 0.00846 < 0.01059.
+  // As released for TIAGo: 0.00191 + 0.00846 < 0.01059, so no body can have these moments.
   const auto warned = warnings_on("ixx=\"0.00191\" iyy=\"0.00846\" izz=\"0.01059\"");
   ASSERT_EQ(warned.size(), 1U);
   expect_in(
@@ -183,16 +183,16 @@ TEST(LoadUrdf, RefusesJointsInACircle) {
     return refusal_of("<robot name=\"r\">\n" + links + joints + "</robot>");
   };
   EXPECT_EQ(robot(joint("1", "a", "b") + joint("2", "b", "c")), "no error");
-  // All in one circle: there is no root.
-  expect_in("urdf_test.urdf:3: joint '1': link 'b' hangs in a circle",
+  // All joints form one circle: there is no root.
+  expect_in("urdf_test.urdf:3: joint '1': link 'b' is part of a cycle",
             robot(joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a")));
-  // Beside a root.
-  expect_in("urdf_test.urdf:3: joint '2': link 'c' hangs in a circle",
+  // A circle next to a root.
+  expect_in("urdf_test.urdf:3: joint '2': link 'c' is part of a cycle",
             robot(joint("2", "b", "c") + joint("3", "c", "b")));
-  // On itself.
-  expect_in("urdf_test.urdf:4: joint '2': link 'c' hangs in a circle",
+  // A link attached to itself.
+  expect_in("urdf_test.urdf:4: joint '2': link 'c' is part of a cycle",
             robot(joint("1", "a", "b") + joint("2", "c", "c")));
-  expect_in("urdf_test.urdf:5: joint '3': link 'c' hangs on two joints, '2' and '3'",
+  expect_in("urdf_test.urdf:5: joint '3': link 'c' is the child of two joints, '2' and '3'",
             robot(joint("1", "a", "b") + joint("2", "a", "c") + joint("3", "b", "c")));
 }
 
@@ -212,7 +212,8 @@ std::string robot_of(const std::vector<std::pair<std::string, std::string>>& joi
 
 TEST(LoadUrdf, JointsComeInTheOrderInWhichTheirParentsBecomeKnown) {
   const std::string file = testing::TempDir() + "order_urdf_test.urdf";
-  // In the first turn a-b, a-c and b-f; in the second f-g, whose parent came after it, and d-h.
+  // The first pass adds a-b, a-d, b-f and d-h; the second adds f-g and h-i, which come before their
+  // parents.
   write_atomically(
       file, robot_of({{"f", "g"}, {"h", "i"}, {"a", "b"}, {"a", "d"}, {"b", "f"}, {"d", "h"}}));
   std::string children;
@@ -222,13 +223,14 @@ TEST(LoadUrdf, JointsComeInTheOrderInWhichTheirParentsBecomeKnown) {
 
 TEST(LoadUrdf, AChainOfManyLinksIsReadAtOnce) {
   const std::string file = testing::TempDir() + "chain_urdf_test.urdf";
-  std::vector<std::pair<std::string, std::string>> joints;  // the last first: the worst order
+  std::vector<std::pair<std::string, std::string>> joints;  // the last one first: the worst order
   const auto link = [](int i) { return std::string("l").append(std::to_string(i)); };
   for (int i = 5000; i > 0; --i) joints.emplace_back(link(i - 1), link(i));
   write_atomically(file, robot_of(joints));
   const std::clock_t begin = std::clock();
   const KinematicTree tree = load_urdf(file);
-  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5.0);  // was minutes
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC,
+            5.0);  // quadratic time would be minutes
   ASSERT_EQ(tree.joints.size(), 5000U);
   EXPECT_EQ(tree.joints.front().child, "l1");
   EXPECT_EQ(tree.joints.back().child, "l5000");

@@ -27,10 +27,11 @@ TEST(WheelBase, AheadTheFrontWheelsDriveAndTheRearOneRolls) {
   EXPECT_NEAR(rims[0], -std::sin(1.07517), 1e-9);  // front left
   EXPECT_NEAR(rims[1], std::sin(1.07517), 1e-9);   // front right
   EXPECT_NEAR(rims[2], 0.0, 1e-9);                 // rear
-  // Turning about the middle: each rim goes as fast as its wheel's place moves along its drive.
+  // Turning about the center: each rim moves as fast as its wheel's place moves in its drive
+  // direction.
   const PerWheel turning = rim_speeds_m_per_s(wheels(), {0, 0, 1});
   EXPECT_NEAR(turning[2], 0.170, 1e-9);
-  EXPECT_NEAR(turning[0], 0.1792, 3e-4);  // its axle misses the middle by 1.7 deg
+  EXPECT_NEAR(turning[0], 0.1792, 3e-4);  // its axle misses the center by 1.7 deg
   const Twist2d twist(0.2, -0.1, 0.4);
   EXPECT_TRUE(twist_of_rims(wheels(), rim_speeds_m_per_s(wheels(), twist)).isApprox(twist, 1e-12));
 }
@@ -63,7 +64,7 @@ TEST(WheelBase, WheelSpeedsAndMotionsAreARoundTripForThreeWheelsAndForTwo) {
       EXPECT_NEAR(ahead_of(*base, possible), any.x(), 1e-15);
       const PerWheel rims = rim_speeds_m_per_s(*base, possible);
       EXPECT_LT((twist_of_rims(*base, rims) - possible).norm(), 1e-12);
-      // The wheels' middle never moves sideways, whatever the rims do.
+      // The point midway between the wheels never moves sideways, whatever the rims do.
       const Twist2d read = twist_of_rims(*base, any.x() * rims);
       EXPECT_NEAR(read.y() + read.z() * base->middle_m.x(), 0, 1e-15);
     }
@@ -79,10 +80,10 @@ TEST(WheelBase, TwoWheelsDriveAtTheirMeanAndTurnByTheirDifferenceOverTheTrack) {
   EXPECT_NEAR(read.x(), (right + left) / 2, 1e-15);
   EXPECT_EQ(read.y(), 0);
   EXPECT_NEAR(read.z(), (right - left) / track, 1e-15);
-  // An axle behind the base's origin: turning left, the origin swings to the left.
+  // The axle is behind the base's origin: when the base turns left, the origin swings to the left.
   const WheelBase behind = differential({wheel_at(-0.1, 0.2), wheel_at(-0.1, -0.2)});
   EXPECT_LT((twist_of(behind, 0.3, 0.5) - Twist2d(0.3, 0.05, 0.5)).norm(), 1e-15);
-  // Of a skid-steered base each side counts as the mean of its wheels.
+  // On a skid-steered base each side counts as the mean of its wheels.
   const WheelBase four = differential(
       {wheel_at(0.2, 0.3), wheel_at(0.2, -0.3), wheel_at(-0.2, 0.3), wheel_at(-0.2, -0.3)});
   EXPECT_LT((twist_of_rims(four, Eigen::Vector4d(0.1, 0.4, 0.3, 0.8)) -
@@ -106,10 +107,11 @@ TEST(WheelBase, WheelsThatDriveNoBaseAreNamed) {
   expect_in("has 2 joints: an omnidirectional base has three",
             wrong({wheel_at(0, 0.2), wheel_at(0, -0.2, 1.0)}));
   expect_in("not to the base's y", wrong({wheel_at(0.2, 0, 0), wheel_at(-0.2, 0, 0)}));
-  // All three point at the middle: nothing turns the base about it.
+  // All three wheels point at the center: no rim moves when the base turns about it.
   expect_in("a direction in which no rim moves",
             wrong({wheel_at(0, 0.2, 0), wheel_at(0, -0.2, 0), wheel_at(0.3, 0, M_PI_2)}));
-  EXPECT_EQ(wrong({wheel_at(0, 0.08, -1.5708), wheel_at(0, -0.08, 1.57)}), "");  // rounded
+  EXPECT_EQ(wrong({wheel_at(0, 0.08, -1.5708), wheel_at(0, -0.08, 1.57)}),
+            "");  // the angles are rounded
   WheelBase again = wheels();
   EXPECT_EQ(find_kind(again), "");
   EXPECT_EQ(again.kind, WheelBase::Kind::kOmnidirectional);
@@ -142,7 +144,8 @@ TEST(JerkLimiter, NoRimGoesFasterThanItCan) {
   }
   EXPECT_GT(top, 0.9 * wheels().max_rim_m_per_s);
   for (int i = 0; i < 2400; ++i) limiter.step({.m_per_s = {0.42, 0}});
-  EXPECT_NEAR(limiter.step({.m_per_s = {0.42, 0}}).m_per_s.x(), 0.42, 1e-3);  // it is reached
+  EXPECT_NEAR(limiter.step({.m_per_s = {0.42, 0}}).m_per_s.x(), 0.42,
+              1e-3);  // the speed is reached
   for (int i = 0; i < 2400; ++i) limiter.step({.turn_rad_per_s = 1.0});
   EXPECT_NEAR(limiter.step({.turn_rad_per_s = 1.0}).turn_rad_per_s, 1.0, 1e-3);
 }
@@ -175,7 +178,7 @@ TEST(JerkLimiter, NeverExceedsALimitUnderCommandsThatJump) {
     const JerkLimiter::Velocity now = limiter.step(command);
     const Eigen::Vector2d a = (now.m_per_s - before.m_per_s) / h;
     const double turn_a = (now.turn_rad_per_s - before.turn_rad_per_s) / h;
-    // Rounding of differences over h and h^2.
+    // The factors allow for rounding of differences divided by h and h^2.
     ASSERT_LE(now.m_per_s.norm(), limits.max_velocity_m_per_s * (1 + 1e-4)) << i;
     ASSERT_LE(a.norm(), limits.max_acceleration_m_per_s2 * (1 + 1e-9)) << i;
     ASSERT_LE((a - a_before).norm() / h, *limits.max_jerk_m_per_s3 * (1 + 1e-6)) << i;
@@ -190,7 +193,7 @@ TEST(JerkLimiter, NeverExceedsALimitUnderCommandsThatJump) {
     a_before = a;
     turn_a_before = turn_a;
   }
-  EXPECT_GT(top, 0.98 * limits.max_velocity_m_per_s);  // the limits were tried
+  EXPECT_GT(top, 0.98 * limits.max_velocity_m_per_s);  // the limits were put to the test
   EXPECT_GT(top_a, 0.98 * limits.max_acceleration_m_per_s2);
   EXPECT_GT(top_turn, 0.98 * limits.max_turn_rad_per_s);
 }
@@ -218,7 +221,8 @@ TEST(JerkLimiter, ReachesACommandInTheTimeOfTheProfile) {
   const BaseLimits& limits = pepper().limits;
   constexpr double h = 1.0 / 240;
   JerkLimiter limiter(limits, h);
-  // v / a + a / j: up with the jerk, on with the acceleration, down with the jerk.
+  // v / a + a / j: the acceleration rises at the jerk limit, stays at its own limit, and falls at
+  // the jerk limit.
   const double a = limits.max_acceleration_m_per_s2, j = *limits.max_jerk_m_per_s3;
   const double expected_s = 0.5 / a + a / j;
   double reached_s = 0;
@@ -277,7 +281,7 @@ TEST(WheelOdometry, OfTwoWheelsItIsTheTruthWithoutErrorsAndBendsIfOneWheelIsLarg
     const SE3 error = truth[i].world_from_camera.inverse() * odometry[i].world_from_camera;
     EXPECT_LT(error.log().norm(), 1e-9);
   }
-  // Straight ahead, with wheels that read by scales l and r: an arc of (r - l) / track per meter.
+  // Straight ahead, with wheels that read with scales l and r: an arc of (r - l) / track per meter.
   const SE3 end =
       wheel_odometry(drive(0), base, {.scale_spread = 0.01}, 5).back().world_from_camera;
   const double turned = Eigen::Rotation2Dd(end.rotation().topLeftCorner<2, 2>()).angle();
@@ -291,25 +295,26 @@ TEST(WheelOdometry, DriftsAsConfigured) {
         .back()
         .world_from_camera.translation();
   };
-  // The scale alone: in proportion to the way.
+  // Scale only: the error is proportional to the path.
   EXPECT_NEAR(end(10, {.scale = 0.01}, 0).x(), 10.1, 1e-9);
   EXPECT_NEAR(end(20, {.scale = 0.01}, 0).x(), 20.2, 1e-9);
-  // Slip alone: along the way the two front wheels share it. A straight way of length L asks
-  // L sin(61.6 deg) of each rim, so each reads an error of variance slip^2 L sin, and the way is
-  // half their difference over that sine: sigma = slip sqrt(L / (2 sin)).
+  // Slip only: the two front wheels share the motion along the path. A straight path of length L
+  // needs L sin(61.6 deg) from each rim, so each reading has an error variance of slip^2 L sin, and
+  // the measured path is half the difference of the readings divided by the sine: sigma = slip
+  // sqrt(L / (2 sin)).
   const OdometryErrors slip{.slip_per_sqrt_m = 0.001};
   for (const double length_m : {5.0, 20.0}) {
     double sum = 0, square = 0;
     constexpr int kDrives = 200;
     for (std::uint64_t seed = 0; seed < kDrives; ++seed) {
-      // Turning bends the way: with so little slip a second-order effect on x.
+      // Turning bends the path: a second-order effect on x with so little slip.
       const double error_m = end(length_m, slip, seed).x() - length_m;
       sum += error_m;
       square += error_m * error_m;
     }
     const double sigma = slip.slip_per_sqrt_m * std::sqrt(length_m / (2 * std::sin(1.07517)));
     const double measured = std::sqrt(square / kDrives - std::pow(sum / kDrives, 2));
-    EXPECT_NEAR(measured / sigma, 1.0, 0.25) << length_m;  // 200 draws: 5 %
+    EXPECT_NEAR(measured / sigma, 1.0, 0.25) << length_m;  // with 200 samples: 5 %
     EXPECT_LT(std::abs(sum / kDrives), 0.02 * length_m);
   }
   EXPECT_EQ(end(5, slip, 3), end(5, slip, 3));

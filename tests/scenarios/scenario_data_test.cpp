@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scenarios as data: what their names promise holds, without a system being run.
+// The scenarios as data: what their names promise holds, checked without running a system.
 #include <algorithm>
 #include <map>
 
@@ -78,7 +78,8 @@ TEST(ScenarioData, TheRobotDoesNotRunIntoThePersonWhoWalksByInFrontOfIt) {
     seen += chest.z() > 0 && std::abs(chest.x()) < 0.5 * chest.z() ? 1 : 0;
   }
   EXPECT_GT(nearest_m, robot.footprint_radius_m + kPedestrianRadius_m);
-  // The physics knows him: the way is the same bits because he touches nobody.
+  // The physics includes the pedestrian: the path is the same to the bit since the two do not
+  // touch.
   const DrivenPath with_him =
       travel(room, robot, kFolder + "tours/room.yaml", {as_obstacle(room, pedestrian)});
   ASSERT_EQ(with_him.base.size(), path.base.size());
@@ -87,7 +88,7 @@ TEST(ScenarioData, TheRobotDoesNotRunIntoThePersonWhoWalksByInFrontOfIt) {
     ASSERT_EQ(a.translation(), b.translation()) << i;
     ASSERT_EQ(a.rotation(), b.rotation()) << i;
   }
-  EXPECT_GT(seen, static_cast<int>(path.base.size()) / 10);  // he is there to be seen
+  EXPECT_GT(seen, static_cast<int>(path.base.size()) / 10);  // the pedestrian must be in view
 }
 
 TEST(JoinedPaths, GoOnAtTheCamerasRateFromAnotherPlace) {
@@ -107,7 +108,7 @@ TEST(JoinedPaths, GoOnAtTheCamerasRateFromAnotherPlace) {
     EXPECT_EQ(path.camera[i].stamp_ns, std::llround(static_cast<double>(i) * 1e9 / 15));
   EXPECT_EQ(path.camera[9].world_from_camera.translation().x(), 0);
   EXPECT_EQ(path.camera[10].world_from_camera.translation().x(), 7);
-  EXPECT_NEAR(path.length_m, 0.9 + 0.4, 1e-12);  // the jump is no way driven
+  EXPECT_NEAR(path.length_m, 0.9 + 0.4, 1e-12);  // the jump is not part of the distance driven
 }
 
 }  // namespace

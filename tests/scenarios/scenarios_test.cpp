@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each scenario of the gate is there to catch a fault. Here the fault is made, and the gate must
-// fail on the measures that the suite judges, in the scenario that is named for it, while the same
+// Each scenario of the gate exists to catch a fault. Here the fault is introduced, and the gate
+// must fail on the measures that the suite judges, in the scenario named after it, while the same
 // run without the fault passes.
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ struct Fault {
 
 RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
   RunTools tools;
-  tools.occupancy = false;  // no measure of the gate looks at it
+  tools.occupancy = false;  // no measure of the gate uses it
   tools.system = [&](const RunSpec&, const World&) {
     SlamConfig config;
     config = spec.slam;
@@ -48,11 +48,12 @@ RunFigures run(const RunSpec& spec, const World& world, const Fault& fault) {
   return figures(run_one(spec, testing_support::with_changed_frames(world, fault.frame), tools));
 }
 
-/// The gate's judgment of a fault: one seed without it against the same seed with it.
+/// The gate's judgment of a fault: a run with one seed without the fault against the same run with
+/// it.
 GateResult judge(const std::string& scenario, const Fault& fault,
                  SystemKind system = SystemKind::kPlain) {
   const RunSpec spec = first_run(scenario, system);
-  // Baked light is shared by all tests; its key holds scene and code.
+  // Baked light is shared by all tests; its key covers scene and code.
   const World world = build_world(spec, 1, Cache(MH_TEST_CACHE), [](std::string_view) {});
   const std::vector before = {run(spec, world, {})};
   const std::vector after = {run(spec, world, fault)};
@@ -69,13 +70,13 @@ bool worse(const GateResult& result, std::string_view measure) {
   return false;
 }
 
-// Neither a second match as good as the best nor what lies off the pose speaks against a match.
+// Accepts a match even if the second best is just as good, and even if it does not fit the pose.
 void accept_everything(SlamConfig& c) {
   c.match.ratio = c.match.ratio_projection = 1.0;
   c.pose.chi2_mono = c.pose.chi2_stereo = 1e6;
 }
 
-// Where everything looks alike, the second best match is as good as the best.
+// Where all things look the same, the second best match is as good as the best.
 TEST(Scenario, WoodenRepetitionCatchesThatLookAlikesAreNotToldApart) {
   const GateResult result = judge("wooden_repetition", {.settings = accept_everything});
   EXPECT_FALSE(result.passed());
@@ -135,7 +136,7 @@ TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
   EXPECT_TRUE(worse(result, "penalized"));
 }
 
-// Too little to be seen in a room; once round 14 m it is some centimeters.
+// Too small to show up in a room; over a loop of 14 m it adds up to some centimeters.
 TEST(Scenario, LongLoopCatchesADepthThatReadsThreePercentTooLong) {
   Fault fault;
   fault.frame = [](std::size_t, RgbdFrame& frame) {

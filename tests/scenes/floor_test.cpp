@@ -48,7 +48,7 @@ TEST_P(Labeled, SlopeOfOneAndAHalfDegreesIsFollowed) {
   EXPECT_NEAR(std::acos(found->floor.up.z()), 1.5 * kDegree, 0.02 * kDegree);
   for (const auto& [x, y] : {std::pair(-2.5, -2.0), {0.0, 0.0}, {2.5, 2.0}})
     EXPECT_NEAR(height_at(found->floor, x, y), 0.4 + slope.dot(Eigen::Vector2d(x, y)), 0.003);
-  // In the floor's frame all of it lies about z = 0, at nearly the same x and y.
+  // In the floor's frame, the whole floor is close to z = 0, with nearly the same x and y.
   Scene with_floor = scene;
   with_floor.floor = found->floor;
   const LevelScene level(with_floor);
@@ -74,13 +74,14 @@ TEST_P(Labeled, HolesTakeAreaAwayAndNothingElse) {
   const auto found = find_floor(room.build());
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->floor.middle_m.z(), 0.055, 0.002);
-  EXPECT_NEAR(*found->floor.area_m2, 4.0 * 5 - 3.0 * 1, 0.4);  // not the box's 20
+  EXPECT_NEAR(*found->floor.area_m2, 4.0 * 5 - 3.0 * 1, 0.4);  // not the 20 m2 of the bounding box
 }
 
 TEST(FindFloor, LargeTableIsNoFloorThoughNothingIsLabeled) {
   const ScannedRoom room{.labeled = false};
   Scene scene = room.build();
-  room.add_table(scene, 4.5, 3.5);  // more than half of the floor: less of it is seen below
+  room.add_table(scene, 4.5,
+                 3.5);  // covers more than half of the floor, so that less of the floor is found
   const auto found = find_floor(scene);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->floor.middle_m.z(), 0.055, 0.002);
@@ -106,7 +107,7 @@ TEST_P(Labeled, SlabIsTheFloorAndNotThePlaneBelowIt) {
   const auto found = find_floor(scene);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->floor.middle_m.z(), 0.2, 1e-6);
-  // Labeled, all of the ground is floor; else what lies where things stand.
+  // With labels, all of the ground is floor; without them, only the part where things stand.
   EXPECT_NEAR(*found->floor.area_m2, GetParam() ? 1e4 : 30, GetParam() ? 50 : 0.6);
 }
 
@@ -159,7 +160,7 @@ TEST(FindFloor, FloorAtZeroIsZeroToTheBit) {
 
 class LoadedFloor : public TemporaryFolder {};
 
-/// Writes an OBJ with that way up; faces of the floor are a group of that name.
+/// Writes an OBJ with y or z up; the floor's faces are in a group of that name.
 void write_obj(const Scene& scene, const std::filesystem::path& file, bool y_up) {
   std::ofstream out(file);
   for (const Eigen::Vector3f& p : scene.positions_m)
@@ -177,7 +178,7 @@ TEST_F(LoadedFloor, FileWithYUpIsToldAndTheOptionTurnsIt) {
     Scene room = ScannedRoom{.floor_z_m = 0.3, .noise_m = 0.002}.build();
     room.instances[0].name = floor_name;
     room.instances[1].name = "wall";
-    // With a ceiling, or without a label a wall would be as good a floor.
+    // The ceiling is needed: otherwise, without a label, a wall would make an equally good floor.
     ScannedRoom::add_sheet(room, {-3, -2.5F, 2.8F}, {6, 0, 0}, {0, 5, 0}, 2);
     write_obj(room, folder_ / "room.obj", true);
     std::vector<std::string> warnings;

@@ -29,12 +29,13 @@ TEST_P(EveryKind, FitsItsSizeAndOverridesItsMaterials) {
   kind.build(piece);
   const Scene scene = mesh.finish();
   EXPECT_GT(scene.triangles.size(), 50u);
-  // 1.5 cm: cloth and leaves may hang over a little; a pan's handle is not a collision.
+  // 1.5 cm of tolerance: cloth and leaves may hang over a little; a pan's handle is not a
+  // collision.
   for (const Eigen::Vector3f& p : scene.positions_m) {
     EXPECT_LT(std::abs(p.x()), kind.size_m.x() / 2 + 0.015F);
     EXPECT_LT(std::abs(p.y()), kind.size_m.y() / 2 + 0.015F);
     EXPECT_GT(p.z(), -0.015F);
-    // What sticks out above: a tap, pan supports, a hat on its shelf.
+    // Kinds with parts that stick out at the top: a tap, pan supports, a hat on its shelf.
     const bool open_above = kind.name == "kitchen_counter" || kind.name == "oven" ||
                             kind.name == "coat_rack" || kind.name == "bathtub" ||
                             kind.name == "washbasin";

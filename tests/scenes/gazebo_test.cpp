@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gazebo worlds as people release them: with faults that do not matter to an image.
+// Gazebo worlds as they are published: with faults that do not matter for an image.
 #include "scenes/gazebo.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ class GazeboWorld : public TemporaryFolder {
           "<?xml version='1.0'?><model><name>m</name><sdf version='1.6'>model.sdf</sdf></model>");
     write(folder + "/model.sdf", "<?xml version='1.0'?><sdf version='1.6'>" + inside + "</sdf>");
   }
-  /// One side of a quarter square meter with an image on it.
+  /// A triangle of half a square meter with an image on it, visible from one side.
   void write_textured_mesh(const std::string& folder, const std::string& texture) const {
     write(folder + "/m.obj",
           "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\n"
@@ -64,7 +64,7 @@ class GazeboWorld : public TemporaryFolder {
   std::vector<std::string> warnings_;
 };
 
-/// Two by one texels, red and green.
+/// An image of two by one texels, red and green.
 std::string image() {
   return std::string("P6\n2 1\n255\n") + std::string("\xff\x00\x00\x00\xff\x00", 6);
 }
@@ -79,8 +79,8 @@ TEST_F(GazeboWorld, LoadsWithWarningsWhatDoesNotMatterToAImage) {
       model("box",
             link(bad_mass + box(1) + "<sensor name='s' type='none'/>") +
                 "<joint name='j' type='what'><parent>no</parent><child>one</child></joint>") +
-      model("box", link(box(1) + gone + gone)) +  // of the same name
-      model("a::b", link(box(1) + box(1))) +      // a name that SDF forbids, visuals alike
+      model("box", link(box(1) + gone + gone)) +  // the same name again
+      model("a::b", link(box(1) + box(1))) +      // a name that SDF forbids; two equal visuals
       model("empty", "") + "<include><uri>model://absent</uri></include>" +
       "\n<include><uri>model://absent</uri></include>" +
       "<include><uri>https://fuel.gazebosim.org/1.0/someone/models/absent</uri></include>" +
@@ -102,7 +102,8 @@ TEST_F(GazeboWorld, DeclarationMayStandBelowAComment) {
                            "<!-- made\nby hand -->\n<?xml version='1.0'?>\n<sdf version='1.5'>"
                            "<world name='w'>" +
                                model("box", link(box(1))) + "<what></world></sdf>");
-  EXPECT_TRUE(names(error_of([&] { load(world); }), {"w.world:4: "}));  // lines count as before
+  EXPECT_TRUE(names(error_of([&] { load(world); }),
+                    {"w.world:4: "}));  // line numbers are those of the original file
   EXPECT_EQ(load(write("v.world", "<!-- -->\n<?xml version='1.0'?>\n<sdf version='1.5'>" +
                                       model("box", link(box(1))) + "</sdf>"))
                 .instances.size(),
@@ -124,7 +125,7 @@ TEST_F(GazeboWorld, AnElementThatIsRefusedTakesNoOtherWithIt) {
 }
 
 TEST_F(GazeboWorld, ThousandsOfOneNameAreNamedAtOnce) {
-  std::string lamps;  // one by one, 4.5 million names would be tried
+  std::string lamps;  // trying names one at a time would take 4.5 million attempts
   for (int i = 0; i < 3000; ++i) lamps += "<light name='l' type='point'/>";
   const Scene scene = load(write_world(model("box", link(box(1))) + lamps));
   EXPECT_EQ(std::ranges::count(scene.lights, Light::Kind::kSphere, &Light::kind), 3000);
@@ -148,13 +149,13 @@ TEST_F(GazeboWorld, SunAndGroundPlaneAreBuiltInWhereTheyAreNotThere) {
   EXPECT_NEAR(instance(scene, "ground_plane").max_m.x(), 50, 1e-3);
   ASSERT_EQ(std::ranges::count(scene.lights, Light::Kind::kSun, &Light::kind), 2);
   EXPECT_NEAR(scene.lights[0].direction.z(), -0.87, 0.01);
-  // Where they are there, they are what they are.
+  // Models of these names that exist in the world's folder take precedence.
   write_model("models/ground_plane", model("ground_plane", link(box(2))));
   EXPECT_NEAR(instance(load(world), "ground_plane").max_m.x(), 1, 1e-6);
 }
 
 TEST_F(GazeboWorld, IncludesAreSeenFromTheFileThatIncludesThem) {
-  // Two models that include "part" beside them, each its own.
+  // Two models, each of which includes the "part" next to it.
   for (const auto& [name, size] : {std::pair{"small", 1.0}, std::pair{"large", 4.0}}) {
     const std::string folder = std::string("kinds/") + name;
     write_model(folder, model(name, "<include><uri>part</uri></include>"));
@@ -167,7 +168,7 @@ TEST_F(GazeboWorld, IncludesAreSeenFromTheFileThatIncludesThem) {
   EXPECT_TRUE(warnings_.empty()) << warnings_[0];
   EXPECT_NEAR(instance(scene, "small").max_m.x(), 0.5, 1e-6);
   EXPECT_NEAR(instance(scene, "big").max_m.x(), 12, 1e-6);
-  // The same from anywhere, also from where another "part" lies.
+  // The result is the same from any working folder, even from one that has a different "part".
   const fs::path before = fs::current_path();
   for (const char* place : {"", "kinds/small", "kinds/large"}) {
     fs::current_path(folder_ / place);
@@ -190,7 +191,7 @@ TEST_F(GazeboWorld, ModelsWithinModelsAreShownInTheirPlace) {
   EXPECT_TRUE(tree.min_m.isApprox(Eigen::Vector3f(0.5F, 1.5F, -0.5F))) << tree.min_m.transpose();
 }
 
-// As pal_gazebo_worlds' green_ball: a single model whose file is damaged.
+// Like green_ball in pal_gazebo_worlds: a single model whose file is damaged.
 TEST_F(GazeboWorld, AModelThatCannotBeReadIsLeftOut) {
   write_model("models/ball", model("ball", "<link name='l'>"));
   const Scene scene = load(
@@ -207,7 +208,8 @@ TEST_F(GazeboWorld, PosesCountFromTheFramesThatTheyName) {
   const Scene scene = load(write_world(model("m", inside)));
   EXPECT_TRUE(warnings_.empty()) << warnings_[0];
   EXPECT_NEAR(instance(scene, "m").max_m.z(), 4, 1e-6);
-  // Before 1.7 the attribute meant nothing; what is not there counts from the parent.
+  // Before version 1.7 the attribute had no meaning; a frame that does not exist is replaced by the
+  // parent.
   const std::string odd = "<pose frame='what'>0 0 7 0 0 0</pose>";
   EXPECT_NEAR(instance(load(write_world("<model name='m'>" + odd + link(box(2)) + "</model>",
                                         "old.world", "1.5")),
@@ -279,7 +281,7 @@ TEST_F(GazeboWorld, OgreScriptsAndAlbedoMapsDressShapesAndMeshes) {
   ASSERT_EQ(scene.materials.size(), 3U);
   EXPECT_EQ(scene.materials[0].texture(1, 0), (Rgb8{0, 255, 0}));
   EXPECT_EQ(scene.materials[0].base_color, (Rgb8{128, 128, 128}));
-  // One image, decoded once.
+  // A single image that is decoded only once.
   EXPECT_EQ(scene.materials[0].texture.identity(), scene.materials[1].texture.identity());
   EXPECT_EQ(scene.materials[2].base_color, (Rgb8{255, 0, 0}));
   // Each side of the box shows the image once.
@@ -341,13 +343,13 @@ TEST_F(GazeboWorld, LightsOfWorldsAndLinksAreTaken) {
   const auto of = [&](Light::Kind kind) {
     return *std::ranges::find(scene.lights, kind, &Light::kind);
   };
-  EXPECT_NEAR(of(Light::Kind::kSun).direction.z(), -1, 1e-5);  // its own z, turned over
+  EXPECT_NEAR(of(Light::Kind::kSun).direction.z(), -1, 1e-5);  // its own z axis, reversed
   const Light point = of(Light::Kind::kSphere);
   EXPECT_TRUE(point.position_m.isApprox(Eigen::Vector3f(5, 0, 2)));
-  EXPECT_NEAR(point.color.x(), 3.14159, 1e-4);  // 1 / d^2, as the file says
+  EXPECT_NEAR(point.color.x(), 3.14159, 1e-4);  // 1 / d^2 attenuation, as in the file
   EXPECT_NEAR(point.color.y(), 0.5 * 3.14159, 1e-4);
   EXPECT_NEAR(of(Light::Kind::kAmbient).color.x(), 0.25, 1e-6);
-  // Without a light there is no ambient one either: the scene is shown at its full colors.
+  // Without any light there is no ambient light either: the scene is shown in its full colors.
   EXPECT_TRUE(load(write_world(model("m", link(box(1))))).lights.empty());
 }
 
@@ -357,7 +359,7 @@ TEST_F(GazeboWorld, WhatCannotBeMeantIsRefusedInOneLine) {
   std::string deep = link(box(1));
   for (int i = 0; i < 80; ++i) deep = model("m", deep);
   EXPECT_TRUE(names(error_of([&] { load(write_world(deep)); }), {"w.world", "nested"}));
-  // A chain of includes that grows tenfold at each step.
+  // A chain of includes that grows by a factor of ten at each step.
   for (int i = 0; i < 9; ++i) {
     std::string includes;
     for (int k = 0; k < 10; ++k)

@@ -20,7 +20,7 @@
 namespace mh {
 namespace {
 
-/// The first of each category, and one of each sort of room where there are several.
+/// The first environment of each category, or one for each type of room if there are several types.
 std::vector<GeneratedReference> sample() {
   std::vector<GeneratedReference> list;
   for (const Category& category : categories())
@@ -38,7 +38,7 @@ TEST(Generate, HasAsManyEnvironmentsAsThePapersTable1) {
   EXPECT_EQ(found, wanted);
 }
 
-/// Of all environments, made once for the suite's process.
+/// The plans of all environments, made once for the process.
 const std::vector<GeneratedPlan>& all_plans() {
   static const std::vector<GeneratedPlan> plans = [] {
     std::vector<GeneratedPlan> made;
@@ -75,7 +75,7 @@ TEST(Generate, SameSeedSameBytes) {
   EXPECT_NE(generate_plan({"bathroom", 5}).yaml(), generate_plan({"bathroom", 6}).yaml());
 }
 
-/// How far a point is from a turned box's footprint, m.
+/// Distance of a point from the footprint of a rotated box, m.
 double distance_m(const Eigen::Vector2d& p, const ItemPlan& item) {
   const Eigen::Vector2d d = p - item.position_m.head<2>();
   const double c = std::cos(item.turn_rad), s = std::sin(item.turn_rad);
@@ -84,7 +84,8 @@ double distance_m(const Eigen::Vector2d& p, const ItemPlan& item) {
   return std::hypot(std::max(u, 0.0), std::max(v, 0.0));
 }
 
-/// Areas of the parts of the floor where the middle of something round can be, by exact boxes.
+/// Areas of the connected parts of the floor where the center of a disk fits, computed from exact
+/// boxes.
 std::vector<double> parts_m2(const HousePlan& house, double radius_m) {
   constexpr double kCell = 0.02;
   const RoomPlan& room = house.rooms[0];
@@ -113,7 +114,7 @@ std::vector<double> parts_m2(const HousePlan& house, double radius_m) {
   return areas;
 }
 
-// Bedroom 5 once had 0.14 m2 behind its bed where the robot fitted and could not come.
+// Bedroom 5 once had 0.14 m2 behind its bed where the robot fitted but which it could not reach.
 TEST(Generate, WhereverTheRobotFitsItCanCome) {
   for (const GeneratedPlan& plan : all_plans()) {
     const HousePlan house = read_house_plan(YamlReader::parse(plan.yaml(), plan.name));
@@ -122,7 +123,7 @@ TEST(Generate, WhereverTheRobotFitsItCanCome) {
   }
 }
 
-/// How far it is from a point of the floor to the nearest ceiling lamp that shines on it, m.
+/// Distance from a point of the floor to the nearest ceiling lamp that shines on it, m.
 double lamp_m(const HousePlan& house, const Eigen::Vector2d& p) {
   const std::optional<FloorRect>& cut = house.rooms[0].cut;
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -136,8 +137,8 @@ double lamp_m(const HousePlan& house, const Eigen::Vector2d& p) {
   return nearest_m;
 }
 
-// Hallway 1 once had an arm of five meters without a lamp: in the grid, half of it was in a wall.
-// Hallway 45 is too small for a second place in the grid.
+// Hallway 1 once had a 5 m long arm without a lamp: half of the arm's lamp grid was in a wall.
+// Hallway 45 is too small for a second grid position.
 TEST(Generate, LampsLightBothArmsOfLShapedRooms) {
   std::vector<GeneratedPlan> plans = all_plans();
   plans.push_back(generate_plan({"hallway", 45}));
@@ -173,8 +174,8 @@ TEST(Generate, PicturesOfOneRuleDiffer) {
   EXPECT_EQ(images.size(), pictures);
 }
 
-// Where the robot's middle can be, found from the triangles alone: cells from whose middle nothing
-// between rugs and its head is nearer than its radius.
+// Where the robot's center can be, found from the triangles alone: cells where nothing at heights
+// between rugs and the robot's head is closer to the center than the robot's radius.
 cv::Mat free_floor(const Scene& scene, double radius_m, double cell_m) {
   Eigen::Vector2d high(0, 0);
   for (const Eigen::Vector2d& p : scene.rooms[0].polygon_m) high = high.cwiseMax(p);
@@ -220,14 +221,15 @@ TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
   EXPECT_LE(scene.triangles.size(), 600'000U);
   EXPECT_NEAR(scene.floor_area_m2(), plan.floor_area_m2, 1e-6);
 
-  // Exact boxes: reading the plan refuses overlaps of more than 1 cm; here there is no overlap.
+  // Exact boxes: reading a plan rejects overlaps of more than 1 cm; here there must be no overlap
+  // at all.
   const HousePlan house = read_house_plan(YamlReader::parse(text, plan.name));
   EXPECT_EQ(static_cast<int>(house.items.size() + house.doorways.size() + house.windows.size()),
             plan.objects + plan.fittings);
   for (std::size_t i = 0; i < house.items.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
       const ItemPlan &a = house.items[i], &b = house.items[k];
-      // Something and what carries it may meet, and a chair's box and what is on its table.
+      // An object may touch what carries it, and a chair's box may overlap things on its table.
       const auto carries = [&](std::size_t below, std::size_t above) {
         for (auto on = house.items[above].on; on; on = house.items[*on].on)
           if (*on == below) return true;
@@ -244,13 +246,13 @@ TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
       EXPECT_LE(overlap_m(a.footprint(), b.footprint()), 0.0) << a.name << ", " << b.name;
     }
 
-  // The largest free part of the floor holds next to all of what is free, and each door.
+  // The largest free part of the floor covers nearly all of the free area and includes each door.
   constexpr double kCell = 0.025;
   const cv::Mat free = free_floor(scene, 0.26, kCell);
   cv::Mat labels, facts, centers;
   const int parts = cv::connectedComponentsWithStats(free, labels, facts, centers, 4);
-  // Closed furniture is free inside: no floor. Under a table, and beside the legs of what has some,
-  // there is: most of a part has to lie within footprints.
+  // Closed furniture is free inside, but that is not floor. The area under a table or beside legs
+  // is floor: a part is skipped only if most of it is within footprints.
   std::vector<int> inside(static_cast<std::size_t>(parts), 0);
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
@@ -274,7 +276,7 @@ TEST_P(GeneratedScene, IsWholeAndCanBeWalked) {
     if (area > largest) largest = area, best = k;
   }
   EXPECT_GT(largest, 0.05 * plan.floor_area_m2);
-  // A place where the robot fits by less than the 3 cm of play that were planned may be cut off.
+  // A place where the robot fits with less than the planned 3 cm of play may be cut off.
   EXPECT_LT(all - largest, 0.03);
   for (const OpeningPlan& door : house.doorways) {
     const double middle = 0.5 * (door.from_m + door.to_m), in = 0.5;
@@ -295,7 +297,7 @@ INSTANTIATE_TEST_SUITE_P(EveryCategory, GeneratedScene, testing::ValuesIn(sample
                          });
 
 TEST(Generate, DrawsFromManyMaterialsOfWhichNoneTrainedTheVocabulary) {
-  // The kinds of scenes/vocabulary_rooms are not among those that a plan can name at all.
+  // A plan cannot name the material kinds of scenes/vocabulary_rooms at all.
   for (const auto& [name, list] : palettes().lists)
     for (const PaletteEntry& entry : list)
       EXPECT_NE(std::ranges::find(material_kinds(), entry.kind), material_kinds().end()) << name;
@@ -344,7 +346,7 @@ TEST(Generate, ACutCornerMustBeOneAndLeaveAWay) {
   };
   EXPECT_NE(error("corner: north, size_m: [1, 1]").find("'north' is not a corner"),
             std::string::npos);
-  EXPECT_NE(error("corner: north_west, size_m: [99, 1]").find("[99, 1] is not part of the room"),
+  EXPECT_NE(error("corner: north_west, size_m: [99, 1]").find("[99, 1] does not leave"),
             std::string::npos);
 }
 
@@ -387,7 +389,7 @@ TEST(GenerateFloor, EveryRoomHasTheSameFurnitureAndThingsOfItsOwn) {
       EXPECT_EQ(rooms[k].walls, first.walls);
       EXPECT_NEAR(rooms[k].rect.x1 - rooms[k].rect.x0, first.rect.x1 - first.rect.x0, 1e-9);
       const bool turned = rooms[k].rect.y0 < rooms.front().rect.y0;
-      bool same = true;  // until the first piece of its own, rooms have the same pieces
+      bool same = true;  // rooms have the same pieces up to the first one that is a room's own
       for (std::size_t i = 0; i < std::min(rooms[k].items.size(), first.items.size()); ++i) {
         const ItemEntry &a = first.items[i], &b = rooms[k].items[i];
         same = same && a.name == b.name && a.size_m == b.size_m && a.materials == b.materials;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate through which glTF files come: extensions, and data that assimp takes for others.
+// How glTF files are checked and adapted: extensions, and data that assimp misreads.
 #include "scenes/mesh_io/gltf.hpp"
 
 #include <draco/compression/encode.h>
@@ -36,14 +36,14 @@ std::string raw(std::uint32_t number) {
   return {reinterpret_cast<const char*>(&number), sizeof number};
 }
 
-/// An image of one color; its kind is told by its content, whatever its name.
+/// An image of one color; its format is detected from its content, not from its name.
 std::string image(Rgb8 color) {
   std::string ppm = "P6\n2 2\n255\n";
   for (int i = 0; i < 4; ++i) ppm.append(reinterpret_cast<const char*>(&color), sizeof color);
   return ppm;
 }
 
-/// A glTF file of one node, mesh, primitive and material, to be filled.
+/// A glTF file with one node, mesh, primitive and material, to be filled by the tests.
 struct File {
   Json json = {{"asset", {{"version", "2.0"}}},
                {"scene", 0},
@@ -68,7 +68,7 @@ struct File {
   std::size_t view(const std::vector<T>& numbers) {
     return view({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)});
   }
-  /// Numbers as an accessor; `more` are further members.
+  /// Adds numbers as an accessor; `more` are additional members.
   template <class T>
   std::size_t add(const std::vector<T>& numbers, const std::string& type,
                   const Json& more = Json::object()) {
@@ -88,9 +88,9 @@ struct File {
            const Json& more = Json::object()) {
     primitive()["attributes"][attribute] = add(numbers, type, more);
   }
-  /// The triangle (0, 0, 0), (1, 0, 0), (0, 1, 0).
+  /// Sets the triangle (0, 0, 0), (1, 0, 0), (0, 1, 0).
   void set_triangle() { set<float>("POSITION", {0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3"); }
-  /// As the texture's image: one extension's if named.
+  /// Makes an image the source of the texture, inside an extension if one is named.
   void show(const std::string& uri, const std::string& extension = "") {
     json["images"].push_back({{"uri", uri}});
     const std::size_t image = json["images"].size() - 1;
@@ -124,7 +124,7 @@ class Gltf : public TemporaryFolder {
     warnings_.clear();
     return load_mesh(write("a.gltf", file.text()), &warnings_);
   }
-  /// The same from both kinds of files.
+  /// Loads the file in text and in binary form and expects the same scene.
   Scene load_both(File& file) {
     const Scene binary = load_mesh(write("a.glb", file.glb()));
     Scene scene = load(file);
@@ -223,7 +223,7 @@ TEST_F(Gltf, ATextureIsScaledTurnedAndMovedAndTakesItsSet) {
             (std::vector<Vector2f>{{0.5F, -0.25F}, {4.5F, -0.25F}, {0.5F, 1.75F}}));
   EXPECT_EQ(uvs(transform({{"scale", {2, 4}}, {"texCoord", 1}})),
             (std::vector<Vector2f>{{1, 1}, {0, 0}, {0.5F, 4}}));
-  // The extension's own example: the image's lower left quarter.
+  // The example of the extension itself: the lower left quarter of the image.
   const std::vector<Vector2f> quarter = uvs(
       transform({{"offset", {0, 1}}, {"rotation", std::numbers::pi / 2}, {"scale", {0.5, 0.5}}}));
   const std::vector<Vector2f> wanted = {{0, 1}, {0, 0.5F}, {0.5F, 1}};
@@ -246,7 +246,7 @@ TEST_F(Gltf, ATextureThatCannotLieAsItShouldIsWarnedOf) {
   file.material()["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
   load(file);
   ASSERT_EQ(warnings_.size(), 1U);
-  EXPECT_TRUE(names(warnings_[0], {"materials[0]", "emissive texture lies otherwise"}));
+  EXPECT_TRUE(names(warnings_[0], {"materials[0]", "emissive texture is placed differently"}));
   file.material().erase("emissiveTexture");
   file.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 10497}}};
   file.json["textures"][0]["sampler"] = 0;
@@ -375,7 +375,7 @@ TEST_F(Gltf, AnUnknownExtensionIsRefusedIfRequiredOtherwiseWarnedOf) {
                                  "KHR_materials_ior", "KHR_materials_variants"};
   load(file);
   ASSERT_EQ(warnings_.size(), 2U);
-  EXPECT_TRUE(names(warnings_[0], {"a.gltf", "ACME_fog", "not known"}));
+  EXPECT_TRUE(names(warnings_[0], {"a.gltf", "ACME_fog", "unknown"}));
   EXPECT_TRUE(names(warnings_[1], {"a.gltf", "KHR_lights_punctual", "lights are left out"}));
   file.json["extensionsRequired"] = {"KHR_materials_ior"};
   load(file);
@@ -412,7 +412,7 @@ TEST_F(Gltf, ImagesOfExtensionsAreShownOrNamedAndMagenta) {
     ASSERT_EQ(warnings_.size(), 1U);
     EXPECT_TRUE(names(warnings_[0], {"a.gltf: material look", ktx_or_dds, kind, "not read"}));
     file.json.erase("extensionsRequired");
-    file.show("t.png");  // beside it, for whom cannot read the other
+    file.show("t.png");  // the fallback for readers that cannot read the other one
     EXPECT_EQ(material_of(load(file)).texture(0, 0), (Rgb8{255, 0, 0}));
     EXPECT_TRUE(warnings_.empty());
   }
@@ -433,7 +433,8 @@ TEST_F(Gltf, NamesMayBeOfPercentCodesAndAnyLetters) {
       write("room.yaml", "objects:\n  - {file: \"r\xc3\xa4um%20/m \xc3\xb6.gltf\"}\n"), &warnings_);
   EXPECT_EQ(material_of(scene).texture(0, 0), (Rgb8{0, 0, 255}));
   EXPECT_TRUE(warnings_.empty());
-  // In a binary file, too; and a file whose very name has the codes comes first.
+  // The same in a binary file; and a file whose actual name contains the escape codes takes
+  // precedence.
   const auto binary = write("a.glb", file.glb());
   EXPECT_EQ(material_of(load_mesh(binary)).texture(0, 0), (Rgb8{0, 255, 0}));
   write("my%20t%C3%A9x%2050%.png", image({255, 255, 0}));

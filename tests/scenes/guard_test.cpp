@@ -19,7 +19,7 @@ namespace {
 
 using Warnings = std::vector<std::string>;
 
-/// A scene in which no field is as it is by default.
+/// A scene in which no field has its default value.
 Scene full_scene() {
   Scene scene{
       .name = "full",
@@ -44,7 +44,7 @@ Scene full_scene() {
       .floor = {.middle_m = {1, 2, 3}, .up = {0, 0.6, 0.8}, .rough_m = 0.07, .area_m2 = 12.5}};
   Material& all = scene.materials[1];
   all.base_color = {9, 8, 7};
-  Grid2d<Rgb8> texture(200, 100, {1, 2, 3});  // more than one turn of the pipe
+  Grid2d<Rgb8> texture(200, 100, {1, 2, 3});  // too large for one write to the pipe
   texture(199, 99) = {5, 6, 7};
   all.texture = texture;
   all.opacity = Grid2d<std::uint8_t>(200, 100, 130);
@@ -93,7 +93,7 @@ TEST_F(Guard, EveryFieldOfASceneComesBack) {
   EXPECT_EQ(warnings, (Warnings{"before", "first", std::string(100'000, 'w')}));
   const Scene wanted = full_scene();
   EXPECT_EQ(digest(scene), digest(wanted));
-  // What the digest leaves out:
+  // Fields that the digest leaves out:
   EXPECT_EQ(scene.name, wanted.name);
   ASSERT_EQ(scene.materials.size(), 2U);
   EXPECT_EQ(scene.materials[1].name, "all");
@@ -124,7 +124,7 @@ TEST_F(Guard, ACrashIsOneLineWithTheFileAndTheCause) {
   const auto crash = [](Warnings*) -> Scene { std::abort(); };
   EXPECT_TRUE(names(error_of_load(crash), {"a/b.dae: ", "crashed on it", "Aborted"}));
   EXPECT_TRUE(names(error_of_load([](Warnings*) -> Scene { std::_Exit(0); }),
-                    {"a/b.dae: ", "without a word"}));
+                    {"a/b.dae: ", "without a message"}));
 }
 
 TEST_F(Guard, TheInnermostFileIsNamed) {
@@ -187,7 +187,7 @@ TEST_F(Guard, WhoReadsMoreMayTakeMore) {
 TEST_F(Guard, AChildHasItsOwnStack) {
   const auto deep = [](Warnings*) {
     struct Recurse {
-      static int run(int depth) {  // some 200 bytes a turn
+      static int run(int depth) {  // about 200 bytes per call
         volatile char held[128] = {};
         held[depth % 128] = 1;
         return depth == 0 ? 0 : run(depth - 1) + held[depth % 128];

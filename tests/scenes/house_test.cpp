@@ -42,9 +42,9 @@ std::array<Vector3d, 3> corners(const Scene& scene, std::size_t face) {
   return result;
 }
 
-// ---- what stands in the way ------------------------------------------------------------------
+// ---- obstacles -------------------------------------------------------------------------------
 
-/// A triangle's part between two heights, seen from above; empty if there is none.
+/// The part of a triangle between two heights, seen from above; empty if there is none.
 std::vector<Vector2d> slice(const std::array<Vector3d, 3>& triangle, double low, double high) {
   std::vector<Vector3d> polygon(triangle.begin(), triangle.end());
   for (const auto& [sign, limit] : {std::pair{1.0, low}, std::pair{-1.0, -high}}) {
@@ -79,7 +79,7 @@ double distance(const Vector2d& a, const Vector2d& b, const Vector2d& c, const V
   return std::min({distance(a, c, d), distance(b, c, d), distance(c, a, b), distance(d, a, b)});
 }
 
-/// Least distance from a path to whatever of the house lies between 0.03 m (rugs, thresholds) and
+/// Smallest distance from a path to anything in the house between 0.03 m (rugs, thresholds) and
 /// 1.25 m (the robot's height), over the objects for which `counts` holds.
 double clearance(const std::vector<Vector2d>& path,
                  const std::function<bool(const Instance&)>& counts, std::string* nearest) {
@@ -139,7 +139,7 @@ TEST(House, RobotDrivesARingInTheLivingRoom) {
       << nearest;
 }
 
-// ---- what there is ---------------------------------------------------------------------------
+// ---- contents --------------------------------------------------------------------------------
 
 TEST(House, HasFourRoomsOfSixtySquareMeters) {
   ASSERT_EQ(house().rooms.size(), 4u);
@@ -170,7 +170,7 @@ TEST(House, ObjectsAreNamedOnceAndMeasured) {
     EXPECT_TRUE(names.insert(object.name).second) << object.name;
     EXPECT_GT((object.max_m - object.min_m).maxCoeff(), 0.005F) << object.name;
   }
-  // The bed of house.yaml: 2.06 m deep, its head on the east wall at x = 9.3.
+  // The bed from house.yaml: 2.06 m deep, with its head at the east wall at x = 9.3.
   const Instance& bed = instance("bedroom/bed");
   EXPECT_NEAR(bed.max_m.x(), 9.29, 0.011);
   EXPECT_NEAR(bed.max_m.x() - bed.min_m.x(), 2.06, 0.03);
@@ -179,7 +179,7 @@ TEST(House, ObjectsAreNamedOnceAndMeasured) {
 TEST(House, FurnitureStaysInsideTheHouse) {
   for (const Instance& object : house().instances) {
     if (object.name.starts_with("house/")) continue;
-    // Doorways and windows reach through the walls, 0.1 m and their casing.
+    // Doorways and windows extend through the walls by 0.1 m and their casing.
     EXPECT_GT(object.min_m.minCoeff(), -0.125F) << object.name;
     EXPECT_LT(object.max_m.x(), 9.425F) << object.name;
     EXPECT_LT(object.max_m.y(), 6.825F) << object.name;
@@ -259,8 +259,8 @@ TEST(House, NoRayLeavesButThroughWindows) {
       }
     }
   }
-  EXPECT_GT(outside, 0);  // or there are no windows
-  EXPECT_EQ(hull, 0);     // nobody sees between the walls
+  EXPECT_GT(outside, 0);  // otherwise there would be no windows
+  EXPECT_EQ(hull, 0);     // no ray ends between the walls
 }
 
 // ---- lights ----------------------------------------------------------------------------------
@@ -308,7 +308,8 @@ TEST_P(BadHouse, IsOneClearError) {
     EXPECT_EQ(what.find('\n'), std::string::npos) << what;
     std::smatch place;
     ASSERT_TRUE(std::regex_search(what, place, std::regex("^bad\\.yaml:([0-9]+): "))) << what;
-    // The place is where the mistake is, or the entry (at most a few lines long) that holds it.
+    // The reported place is that of the mistake, or of the entry (at most a few lines long) around
+    // it.
     EXPECT_NEAR(std::stod(place[1]), static_cast<double>(line), 5.0) << what;
   }
 }
@@ -383,7 +384,7 @@ double signed_volume(const Scene& scene) {
   return volume;
 }
 
-/// Every edge of a closed shape is run through once in each direction (points are compared by
+/// Whether every edge of a shape is used exactly once in each direction (points are compared by
 /// position, since faces do not share vertices across creases).
 bool is_closed(const Scene& scene) {
   std::map<std::array<float, 6>, int> edges;
@@ -409,12 +410,13 @@ TEST(MeshBuilder, ShapesAreClosedAndFaceOutwards) {
                 m.box(k, {0, 0, 0}, {1, 2, 0.5F}, {.bevel_m = 0.0F});
               }),
               1.0, 1e-5);
-  // A chamfer r takes r^2/2 off each edge (12 of lengths 1, 2, 0.5, less what corners share).
+  // A chamfer r removes r^2/2 along each edge (4 each of lengths 1, 2 and 0.5, less the shared
+  // corners).
   EXPECT_NEAR(measure([](MeshBuilder& m, MaterialId k) {
                 m.box(k, {0, 0, 0}, {1, 2, 0.5F}, {.bevel_m = 0.01F});
               }),
               1.0 - 4 * 3.5 * 0.01 * 0.01 / 2, 1e-4);
-  // A regular 64-gon is 0.9984 of its circle.
+  // A regular 64-gon has 0.9984 of the area of its circle.
   EXPECT_NEAR(measure([](MeshBuilder& m, MaterialId k) {
                 m.cylinder(k, {0, 0, 0}, {0, 0, 1}, {0.5F, 0.5F}, 64);
               }),
@@ -426,7 +428,8 @@ TEST(MeshBuilder, ShapesAreClosedAndFaceOutwards) {
   const double soft = measure([](MeshBuilder& m, MaterialId k) {
     m.cushion(k, {0, 0, 0}, {1, 1, 1}, 0.2F);
   });
-  EXPECT_GT(soft, 0.89);  // a cube with round edges is 0.9077; chords of the mesh cut off a little
+  EXPECT_GT(soft,
+            0.89);  // a cube with round edges has 0.9077; the chords of the mesh cut off a little
   EXPECT_LT(soft, 0.9077);
 }
 

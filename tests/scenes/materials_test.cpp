@@ -63,7 +63,8 @@ double step_between(int a, int b, int count, const At& at) {
   return sum / count;
 }
 
-/// The step across the seam is no larger than the largest step inside, so that no seam shows.
+/// Expects that the step across the seam is no larger than the largest step inside: no visible
+/// seam.
 template <class At>
 void expect_no_seam(int size, int count, const At& at, std::string_view kind) {
   double largest = 0.0;
@@ -144,7 +145,7 @@ TEST(Noise, WhiteNoiseIsStandard) {
     sum += v;
     squares += static_cast<double>(v) * v;
   }
-  // 90,000 draws: the mean is known to 0.0033, the variance to 0.004 (one sigma).
+  // 90,000 samples: the mean is known to 0.0033, the variance to 0.004 (one sigma).
   EXPECT_NEAR(sum / 90000, 0.0, 0.015);
   EXPECT_NEAR(squares / 90000, 1.0, 0.02);
 }

@@ -56,7 +56,7 @@ class MeshIo : public testing::Test {
   fs::path folder_;
 };
 
-/// Curved, textured, lit pieces of three classes and one unlabeled; materials are shared.
+/// Curved, textured, lit pieces of three classes and one unlabeled piece; they share materials.
 Scene example_scene() {
   Scene scene;
   scene.name = "example";
@@ -93,7 +93,7 @@ Scene example_scene() {
   return scene;
 }
 
-/// A face as it can be compared across files: where it is, what it is, what it looks like.
+/// A face in a form that can be compared across files: position, class and look.
 struct FaceRecord {
   std::array<Eigen::Vector3f, 3> corners;
   std::array<Eigen::Vector2f, 3> uvs;
@@ -222,7 +222,7 @@ TEST_F(MeshIo, AMaskBesideAnObjTextureCutsHoles) {
 }
 
 TEST_F(MeshIo, AMaskCutsTheSameHolesIntoAVeryWideTexture) {
-  constexpr int kWidth = 60000;  // squared, more than 31 bits hold
+  constexpr int kWidth = 60000;  // squared, it needs more than 31 bits
   Grid2d<std::uint8_t> texture(kWidth, 1, 200), mask(kWidth, 1, 0);
   for (int x = 0; x < kWidth; ++x) mask(x, 0) = x % 7 == 0 ? 0 : 255;
   write("leaf.mtl", "newmtl leaf\nmap_Kd wide.png\nmap_d mask.png\n");
@@ -267,7 +267,7 @@ TEST_F(MeshIo, TwoGltfMaterialsOfOneNameGlowEachAsItSays) {
 TEST_F(MeshIo, ATextureThatIsNoImageIsNamedAndMagenta) {
   write("room.mtl", "newmtl text\nmap_Kd text.png\nnewmtl huge\nmap_Kd huge.png\n");
   write("text.png", "this is not an image");
-  // A PNG's first bytes that announce 30,000 x 30,000 pixels, and nothing behind them.
+  // The first bytes of a PNG that declare 30,000 x 30,000 pixels, with nothing after them.
   write("huge.png",
         std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x02", 26));
   const auto file = write("room.obj",
@@ -289,7 +289,7 @@ TEST_F(MeshIo, ACutTextureAndAMissingMtllibAreNamed) {
   std::vector<std::string> warnings;
   testing::internal::CaptureStderr();
   load_mesh(write("room.obj", "mtllib room.mtl\n" + mesh), &warnings);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libpng would have its say
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libpng prints nothing
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("cut.png is truncated"), std::string::npos);
   warnings.clear();
@@ -297,7 +297,7 @@ TEST_F(MeshIo, ACutTextureAndAMissingMtllibAreNamed) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("other.obj:2: mtllib gone away.mtl is missing"), std::string::npos);
   warnings.clear();
-  load_mesh(write("room.obj", "mtllib gone.mtl\n" + mesh), &warnings);  // room.mtl is taken
+  load_mesh(write("room.obj", "mtllib gone.mtl\n" + mesh), &warnings);  // room.mtl is used
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("cut.png"), std::string::npos);
 }
@@ -311,7 +311,7 @@ TEST_F(MeshIo, WithoutAPlanEachFloorIsARoom) {
   const Scene read = load_mesh(folder_ / "hall.glb");
   ASSERT_EQ(read.rooms.size(), 1U);
   EXPECT_EQ(read.rooms[0].name, "hall");
-  EXPECT_NEAR(read.floor_area_m2(), 1.0 * 3.0, 1e-4);  // the piece's box, 1 m by 3 m
+  EXPECT_NEAR(read.floor_area_m2(), 1.0 * 3.0, 1e-4);  // the bounding box of the piece, 1 m by 3 m
 }
 
 TEST_F(MeshIo, PlyReadBackKeepsOrderLabelsAndColors) {
@@ -368,7 +368,7 @@ TEST_F(MeshIo, PlyColorIsTextureTimesLight) {
 }
 
 TEST_F(MeshIo, GltfExtrasNameClassAndInstanceAndYBecomesUp) {
-  // One triangle from data in the file: (0,0,0), (1,0,0), (0,2,0) in glTF's y-up frame.
+  // One triangle from data embedded in the file: (0,0,0), (1,0,0), (0,2,0) in glTF's y-up frame.
   const auto file = write("extras.gltf", R"({"asset":{"version":"2.0"},"scene":0,
     "scenes":[{"nodes":[0,1]}],
     "nodes":[{"name":"thing","mesh":0,"extras":{"class":"night stand","instance":7}},
@@ -397,7 +397,7 @@ TEST_F(MeshIo, ObjTextureBesideItAndAMissingOneIsNamedAndMagenta) {
                           "o table_1\nusemtl gone\nf 1/1 2/2 3/3\n");
   std::vector<std::string> warnings;
   const Scene scene = load_mesh(file, &warnings);
-  EXPECT_EQ(scene.triangles.size(), 3U);  // the square became two
+  EXPECT_EQ(scene.triangles.size(), 3U);  // the square was split in two
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("nowhere.png"), std::string::npos);
   const auto& there = *std::ranges::find(scene.materials, "there", &Material::name);
@@ -406,7 +406,7 @@ TEST_F(MeshIo, ObjTextureBesideItAndAMissingOneIsNamedAndMagenta) {
   const auto& gone = *std::ranges::find(scene.materials, "gone", &Material::name);
   EXPECT_TRUE(gone.texture.empty());
   EXPECT_EQ(gone.base_color, (Rgb8{255, 0, 255}));
-  // v counts downwards here: OBJ's (0, 0) is the lower left of the image.
+  // v counts downward here: (0, 0) in OBJ is the lower left corner of the image.
   for (std::size_t v = 0; v < scene.positions_m.size(); ++v)
     EXPECT_FLOAT_EQ(scene.uvs[v].y(), 1.0F - scene.positions_m[v].y());
   EXPECT_EQ(scene.class_of[0], *class_by_name("chair"));
@@ -444,7 +444,7 @@ TEST_F(MeshIo, BadFilesGiveOneErrorThatNamesThem) {
   const auto nan = write("nan.ply", header + "1" + list + "0 0 0\n1 0 0\nnan 1 0\n3 0 1 2\n");
   EXPECT_NE(error_of(nan).find("not finite"), std::string::npos) << error_of(nan);
   const auto points = write("points.ply", header + "0" + list + "0 0 0\n1 0 0\n0 1 0\n");
-  EXPECT_NE(error_of(points).find("no faces"), std::string::npos) << error_of(points);
+  EXPECT_NE(error_of(points).find("no visible faces"), std::string::npos) << error_of(points);
   const auto wild = write("wild.ply", header + "1" + list + "0 0 0\n1 0 0\n0 1 0\n3 0 1 99\n");
   EXPECT_NE(error_of(wild), "");
   EXPECT_THROW(load_scene(folder_ / "scene.xyz"), InputError);
@@ -469,7 +469,7 @@ TEST_F(MeshIo, APolygonOfVeryManyCornersIsAFan) {
     const auto& p = scene.positions_m;
     area += 0.5 * (p[b] - p[a]).cast<double>().cross((p[c] - p[a]).cast<double>()).z();
   }
-  EXPECT_NEAR(area, std::numbers::pi, 1e-4);  // coordinates have six digits
+  EXPECT_NEAR(area, std::numbers::pi, 1e-4);  // coordinates are written with six digits
 }
 
 TEST_F(MeshIo, ObjectsOfOneNameAreCounted) {
@@ -542,7 +542,7 @@ TEST_F(MeshIo, ADensePlyHasTheSameSurfacesAndMoreOfTheTexture) {
   save_scannet_ply(scene, folder_ / "dense.ply");
   const Scene read = load_mesh(folder_ / "dense.ply");
   EXPECT_GT(read.triangles.size(), 5 * scene.triangles.size());
-  // The piece of no instance counts as a backdrop and stays as it is.
+  // The piece without an instance counts as background and stays unchanged.
   EXPECT_EQ(std::ranges::count(read.instance_of, 0), std::ranges::count(scene.instance_of, 0));
   for (const ClassId id : {5, 43, 35, 2}) {
     ASSERT_GT(area_m2(scene, id), 1.0);
@@ -552,7 +552,7 @@ TEST_F(MeshIo, ADensePlyHasTheSameSurfacesAndMoreOfTheTexture) {
 }
 
 TEST(Subdivide, KeepsEdgesShortNeighborsJoinedAndInterpolatesLinearly) {
-  Scene scene;  // a square and an odd triangle hanging on it; light = x, uv = (y, x + y)
+  Scene scene;  // a square and an irregular triangle attached to it; light = x, uv = (y, x + y)
   scene.positions_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 0.4F, 0}};
   for (const Eigen::Vector3f& p : scene.positions_m) {
     scene.light.emplace_back(p.x(), p.x(), p.x());
@@ -572,7 +572,7 @@ TEST(Subdivide, KeepsEdgesShortNeighborsJoinedAndInterpolatesLinearly) {
       EXPECT_LE((fine.positions_m[a] - fine.positions_m[b]).norm(), 0.1F + 1e-6F);
       ++faces_at_edge[std::minmax(a, b)];
     }
-  // A crack would show as an edge with one face that is not on the outline.
+  // A crack would show up as an edge that has one face and is not on the outline.
   double outline = 0.0;
   for (const auto& [edge, count] : faces_at_edge) {
     EXPECT_LE(count, 2);
@@ -607,7 +607,7 @@ TEST(NodeName, GuessesClassFromTheNounOfTheLastPart) {
       {"wooden_bookshelf_worn", "bookshelf"},
       {"table/gadget", "void"},
       {"", "void"},
-      // CamelCase, digits, vendors' prefixes.
+      // CamelCase, digits, vendor prefixes.
       {"KitchenTable_01", "table"},
       {"aws_robomaker_residential_NightStand_01", "night stand"},
       {"FloorB_01", "floor"},
@@ -631,7 +631,7 @@ TEST(NodeName, GuessesClassFromTheNounOfTheLastPart) {
       {"books", "books"},
       {"wall_clock", "clock"},
       {"microwaveOven", "microwave"},
-      // Two classes: the noun.
+      // Names of two classes: the noun counts.
       {"floor_01_walls", "wall"},
       {"hospital_floor_02_ceiling", "ceiling"},
       {"table_lamp", "lamp"},
@@ -641,7 +641,7 @@ TEST(NodeName, GuessesClassFromTheNounOfTheLastPart) {
       {"table_with_chairs", "table"},
       {"box_of_books", "box"},
       {"window_frame", "window"},
-      // Words that only look like one.
+      // Words that only look like the name of a class.
       {"portable_gadget", "void"},
       {"bedroom", "void"},
       {"Bed_Room", "void"},
@@ -662,7 +662,7 @@ TEST(NodeName, WordsOfTheListNameClassesAndStandOnce) {
 }
 
 TEST_F(MeshIo, NamesAroundANodeHelpWhereItsOwnTellsNothing) {
-  // Three nodes: of a mesh that is named; below a group that is; below a story.
+  // Three kinds of nodes: with a named mesh; below a named group; below a story.
   const char* gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
     "nodes":[{"name":"root","children":[1,2,4,6]},{"name":"Cube","mesh":0},
              {"name":"Walls","children":[3]},{"name":"Cube.001","mesh":1},

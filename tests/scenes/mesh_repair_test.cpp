@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is mended on the way in, and what files of one scene share.
+// What is repaired when files are read, and what files of one scene share.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 class MeshRepair : public TemporaryFolder {
  protected:
-  /// A square of two triangles; the lower one shows the image's left half, the upper its right.
+  /// A square of two triangles; the lower one shows the left half of the image, the upper one the
+  /// right half.
   fs::path write_square(const std::string& name, const std::string& look) const {
     write(name + ".mtl", "newmtl look\n" + look);
     return write(name + ".obj",
@@ -36,7 +37,7 @@ std::string ppm(int width, int height, const std::string& texels) {
   return "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" + texels;
 }
 
-/// One triangle of one material; `color` is what stands between the tags.
+/// One triangle with one material; `color` is the text between the tags.
 std::string collada(const std::string& color, const std::string& positions) {
   return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><up_axis>Z_UP</up_axis></asset>
@@ -85,7 +86,7 @@ TEST_F(MeshRepair, ColladaMayHaveBlanksBeforeItsNumbers) {
   EXPECT_EQ(repaired_collada("<a"), "<a");
 }
 
-/// One triangle, binary if wanted; `more` are further members.
+/// One triangle, in binary form if requested; `more` are additional members.
 std::string gltf(const std::string& more, const std::string& in_node = "",
                  const std::string& in_accessor = "", bool binary = false) {
   const std::string uri =
@@ -192,7 +193,7 @@ TEST_F(MeshRepair, ColladaMayHaveCommentsAndPolygonsWithHoles) {
 TEST_F(MeshRepair, FilesOfOneSceneShareOneImageInMemory) {
   const std::string texture = ppm(2, 1, std::string("\x10\x20\x30\x40\x50\x60", 6));
   write("paint.ppm", texture);
-  write("copy.ppm", texture);  // another file, the same image
+  write("copy.ppm", texture);  // a different file with the same image
   write_square("a", "map_Kd paint.ppm\n");
   write_square("b", "map_Kd copy.ppm\n");
   const Scene scene = load_scene(write("room.yaml",
@@ -207,7 +208,8 @@ TEST_F(MeshRepair, FilesOfOneSceneShareOneImageInMemory) {
 }
 
 TEST_F(MeshRepair, ImagesFinerThanAnybodySeesAreShrunk) {
-  // 1024 texels: on a meter they stay, on 4 cm (0.04 mm each) they are halved until 0.6 mm.
+  // 1024 texels: on 1 m they are kept; on 4 cm (0.04 mm each) they are halved until a texel has 0.6
+  // mm.
   std::string texels;
   for (int i = 0; i < 1024 * 4; ++i) texels += std::string(3, i % 2 == 0 ? '\0' : '\xff');
   write("fine.ppm", ppm(1024, 4, texels));
@@ -224,12 +226,12 @@ TEST_F(MeshRepair, ImagesFinerThanAnybodySeesAreShrunk) {
   EXPECT_EQ(width("0.6"), 512);
   EXPECT_EQ(width("0.04"), 64);
   const Scene scene = load_scene(folder_ / "s.yaml");
-  // Area averages in linear light: half of white is sRGB 188.
+  // Averages over areas are taken in linear light: half of white is sRGB 188.
   EXPECT_EQ(scene.materials[scene.material_of[0]].texture(30, 0), (Rgb8{188, 188, 188}));
 }
 
 TEST_F(MeshRepair, EmissionIsMultipliedByItsTexture) {
-  // Left black, right linear one half (sRGB 188).
+  // The left half is black, the right half has a linear value of one half (sRGB 188).
   std::string texels;
   for (int y = 0; y < 10; ++y)
     for (int x = 0; x < 20; ++x) texels += std::string(3, x < 10 ? '\0' : '\xbc');
@@ -241,7 +243,7 @@ TEST_F(MeshRepair, EmissionIsMultipliedByItsTexture) {
   };
   EXPECT_TRUE(emission(0).isZero()) << emission(0).transpose();
   EXPECT_LT((emission(1) - Eigen::Vector3f(1, 1, 0.5F)).norm(), 0.06F) << emission(1).transpose();
-  // Without a texture all of it glows; with a missing texture nothing does, and that is reported.
+  // Without a texture all of it glows; with a missing texture nothing does, and a warning says so.
   const Scene plain = load_mesh(write_square("plain", "Ke 2 2 1\n"));
   for (const std::uint16_t material : plain.material_of)
     EXPECT_EQ(plain.materials[material].emission, Eigen::Vector3f(2, 2, 1));

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2f;
 
-/// What is left of one line of a material.
+/// What is left of one line of a material after its options are removed.
 std::string plain(const std::string& line, MtlTextures& textures) {
   const auto found = without_options("newmtl m\n" + line, "a.mtl", textures);
   return found ? found->substr(std::string("newmtl m\n").size()) : "";
@@ -47,7 +47,7 @@ TEST(MtlTextures, OptionsThatAreNotHonoredAreNamed) {
   ASSERT_EQ(textures.warnings.size(), 3U);
   EXPECT_TRUE(names(textures.warnings[0], {"a.mtl:2: material m: ", "map_kd's -mm"}));
   EXPECT_TRUE(names(textures.warnings[1], {"a.mtl:3: ", "map_d's -t"}));
-  EXPECT_TRUE(names(textures.warnings[2], {"a.mtl:3: ", "map_d lies otherwise"}));
+  EXPECT_TRUE(names(textures.warnings[2], {"a.mtl:3: ", "map_d is placed differently"}));
 }
 
 class MtlTexturesOf : public TemporaryFolder {};
@@ -66,7 +66,7 @@ TEST_F(MtlTexturesOf, AnObjsTexturesAreScaledAndMoved) {
   };
   const Scene scene = obj("1");
   EXPECT_TRUE(warnings.empty());
-  // v grows downward: 1 - v of the file.
+  // v grows downward: it is 1 - v of the file.
   EXPECT_EQ(scene.uvs,
             (std::vector<Vector2f>{{0.5F, 2}, {2.5F, 2}, {0.5F, 0}, {0, 1}, {1, 1}, {0, 0.5F}}));
   for (const std::uint16_t material : scene.material_of)

@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-/// Two rooms with all that a file can state.
+/// Two rooms with everything that a file can contain.
 HouseFile two_rooms() {
   HouseFile house;
   house.comment = "two rooms";
@@ -67,7 +67,8 @@ TEST(PlanFile, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(plan.items[0].materials.at("wood").seed, 7U);
   EXPECT_EQ(plan.items[0].size_m, file.rooms[0].items[0].size_m);
   ASSERT_EQ(plan.items[1].on, 0U);
-  EXPECT_NEAR(plan.items[1].position_m.x(), 2.5 + 0.3, 1e-12);  // the desk is turned by 180 degrees
+  EXPECT_NEAR(plan.items[1].position_m.x(), 2.5 + 0.3,
+              1e-12);  // the desk is rotated by 180 degrees
   EXPECT_NEAR(plan.items[1].turn_rad, std::numbers::pi, 1e-12);
   ASSERT_TRUE(plan.items[1].glow);
   ASSERT_EQ(plan.doorways.size(), 2U);

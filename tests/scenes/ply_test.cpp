@@ -39,7 +39,7 @@ std::string error_of_ply(const std::string& bytes) {
   return error_of([&] { parse_ply(bytes, "mesh.ply"); });
 }
 
-/// A header over elements of one's own, little-endian.
+/// A little-endian header with these elements.
 std::string header(const std::string& elements) {
   return "ply\nformat binary_little_endian 1.0\n" + elements + "end_header\n";
 }
@@ -93,7 +93,7 @@ TEST(Ply, TakesAnyTypeAndOrderAndPassesOverTheUnknown) {
   EXPECT_EQ(mesh.positions_m[3], Eigen::Vector3f(23, 13, 3));
   EXPECT_EQ(mesh.colors[0], (Rgb8{255, 128, 0}));
   EXPECT_EQ(mesh.labels[4], 4);
-  // The pentagon is a fan of three.
+  // The pentagon becomes a fan of three triangles.
   const std::vector<std::array<std::uint32_t, 3>> expected = {
       {0, 1, 2}, {4, 3, 2}, {4, 2, 1}, {4, 1, 0}};
   EXPECT_EQ(mesh.triangles, expected);
@@ -109,7 +109,7 @@ TEST(Ply, NamesTheFaceAndTheVertexThatIsNotThere) {
   PlyMesh mesh = square();
   mesh.triangles[1][2] = 4;
   EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"face 1", "vertex 4 of 4"}));
-  mesh.triangles[1][2] = 0xffffffff;  // -1 in a file of signed numbers
+  mesh.triangles[1][2] = 0xffffffff;  // -1 in a file with signed numbers
   EXPECT_TRUE(names(error_of_ply(ply_bytes(mesh)), {"face 1", "vertex -1 of 4"}));
   EXPECT_TRUE(names(error_of_ply(header("element vertex 1\n" + kPoint +
                                         "element face 1\n"
@@ -121,7 +121,7 @@ TEST(Ply, NamesTheFaceAndTheVertexThatIsNotThere) {
 TEST(Ply, NamesTheFaceOfTooFewCorners) {
   for (const char corners : {'\0', '\1', '\2'}) {
     std::string bytes = ply_bytes(square());
-    bytes[bytes.size() - 26] = corners;  // the first face's count
+    bytes[bytes.size() - 26] = corners;  // the number of corners of the first face
     EXPECT_TRUE(names(error_of_ply(bytes), {"face 0", "corners: 3 are needed"}));
   }
 }
@@ -175,7 +175,7 @@ TEST(Ply, SaysWhatIsWrongWithAHeader) {
   EXPECT_FALSE(is_plain_ply(header("element vertex 0\nproperty float s\n")));
 }
 
-/// The square as text.
+/// The same square as text.
 std::string square_as_text() {
   return "ply\nformat ascii 1.0\nelement vertex 4\n" + kPoint +
          "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty ushort label\n"
@@ -209,7 +209,7 @@ TEST(Ply, ReadsTextAndBigEndianAlike) {
 
 TEST(Ply, CutAnywhereIsToldInEveryEncoding) {
   const std::string text = square_as_text();
-  for (std::size_t size = 4; size + 3 < text.size(); ++size)  // the last index is one digit
+  for (std::size_t size = 4; size + 3 < text.size(); ++size)  // the last index has one digit
     EXPECT_FALSE(error_of_ply(text.substr(0, size)).empty()) << size;
   std::string wrong = text;
   wrong.replace(wrong.find("5e-1"), 4, "half");
@@ -225,7 +225,7 @@ TEST(Ply, CutAnywhereIsToldInEveryEncoding) {
 class LabeledPly : public TemporaryFolder {};
 
 TEST_F(LabeledPly, ReplicasFacesAreOfTheirObjects) {
-  // Two squares of object 7, one of object 3, one of none.
+  // Two squares belong to object 7, one to object 3, one to no object.
   std::string text = "ply\nformat ascii 1.0\nelement vertex 4\n" + kPoint + "element face 4\n" +
                      kList + "property int object_id\nend_header\n" +
                      "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
@@ -290,7 +290,7 @@ TEST_F(LabeledPly, LabelsAloneAreNyu40) {
 
 using PlyFile = TemporaryFolder;
 
-// As MeshLab writes it: blanks around the name.
+// As MeshLab writes it: with spaces around the name.
 TEST_F(PlyFile, BlanksAroundATexturesNameAreNotOfIt) {
   write("my tex.ppm", std::string("P6\n1 1\n255\n\xff") + '\0' + '\0');
   std::vector<std::string> warnings;
@@ -305,8 +305,8 @@ TEST_F(PlyFile, BlanksAroundATexturesNameAreNotOfIt) {
   EXPECT_EQ(scene.materials[0].texture(0, 0), (Rgb8{255, 0, 0}));
 }
 
-// As MeshLab writes it: two faces at a seam, of different places in the image. assimp gives each
-// vertex the place of its last face.
+// As MeshLab writes it: two faces at a seam that use different places of the image. assimp would
+// give each vertex the coordinates of its last face.
 TEST_F(PlyFile, CornersKeepTheTextureCoordinatesOfTheirFaces) {
   write("t.ppm", std::string("P6\n2 1\n255\n\xff") + std::string(4, '\0') + "\xff");
   const std::string text =
@@ -341,7 +341,7 @@ TEST_F(PlyFile, ColorsOfFacesAreWarnedOf) {
                                "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9 9\n"),
             &warnings);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_TRUE(names(warnings[0], {"a.ply", "colors of its faces are not read"}));
+  EXPECT_TRUE(names(warnings[0], {"a.ply", "its face colors are not read"}));
 }
 
 }  // namespace

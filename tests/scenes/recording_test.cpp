@@ -28,7 +28,7 @@ RecordingInfo info() {
           .depth_per_meter = 1000};
 }
 
-/// Smooth, so that JPEG changes little; the second of three frames is invalid.
+/// A smooth frame, so that JPEG changes little; the second of three frames has no pose.
 RecordedMoment moment(std::size_t index) {
   RecordedMoment m{.stamp_ns = static_cast<Stamp>(1000 * (33'333 * index + 7)),
                    .color = Grid2d<Rgb8>(16, 8),
@@ -65,13 +65,13 @@ void expect_recorded(const Recording& recording, bool stamps) {
     ASSERT_EQ(recording.world_from_device(i).has_value(), i != 1);
     if (i == 1) continue;
     const SE3 moved = recording.world_from_device(i)->inverse() * *expected.world_from_device;
-    EXPECT_LT(moved.log().norm(), 1e-6);  // floats
+    EXPECT_LT(moved.log().norm(), 1e-6);  // stored as floats
   }
 }
 
 class SensFile : public TemporaryFolder {
  protected:
-  /// A whole file and where its fields lie.
+  /// The bytes of a complete file; the constants below are the offsets of its fields.
   std::string bytes() const {
     save_sens(folder_ / "a.sens", info(), 3, moment);
     return read_file(folder_ / "a.sens");
@@ -84,7 +84,7 @@ class SensFile : public TemporaryFolder {
     std::memcpy(bytes.data() + at, &value, sizeof value);
     return bytes;
   }
-  /// What opening the file and reading all its frames says.
+  /// The error of opening the file and reading all of its frames.
   static std::string error(const std::string& bytes) {
     return error_of([&] {
       const auto recording = open_sens(hold(bytes), "a.sens");
@@ -98,7 +98,7 @@ TEST_F(SensFile, ReadsBackWhatItWrote) {
   const auto recording = open_recording(folder_ / "a.sens");
   expect_recorded(*recording, true);
   EXPECT_EQ(recording->info().sensor, "StructureSensor");
-  expect_recorded(*open_recording(folder_), true);  // the only one of its folder
+  expect_recorded(*open_recording(folder_), true);  // the only one in its folder
   save_sens(folder_ / "b.sens", info(), 1, moment);
   EXPECT_TRUE(names(error_of([&] { open_recording(folder_); }), {"2 .sens files"}));
 }
@@ -106,7 +106,8 @@ TEST_F(SensFile, ReadsBackWhatItWrote) {
 TEST_F(SensFile, CutAnywhereTheFramesBeforeAreUsedAndTheLostOnesCount) {
   const std::string whole = bytes();
   EXPECT_EQ(error(whole), "");
-  const std::size_t frames_end = whole.size() - 8;  // then come inertial measurements, unread
+  const std::size_t frames_end =
+      whole.size() - 8;  // inertial measurements follow; they are not read
   std::set<std::size_t> used;
   for (std::size_t size = 0; size < frames_end; size += 13) {
     std::vector<std::string> notes;
@@ -160,7 +161,8 @@ TEST_F(SensFile, ImagesThatAreNotWhatTheHeaderSaysAreRefused) {
                     {"frame 0", "16 x 8", "header says 18 x 8"}));
   EXPECT_TRUE(names(error(with(whole, kSizes + 8, std::uint32_t{9})), {"depth", "9 x 6"}));
   EXPECT_TRUE(names(error(with(whole, kSizes + 8, std::uint32_t{7})), {"depth", "7 x 6"}));
-  // A header that claims half a gigabyte for each image: refused by the bytes that are there.
+  // A header that declares half a gigabyte for each image is refused, as the file has too few
+  // bytes.
   EXPECT_TRUE(names(
       error(with(with(whole, kSizes + 8, std::uint32_t{16384}), kSizes + 12, std::uint32_t{16384})),
       {"16384 x 16384", "too few bytes"}));
@@ -203,7 +205,7 @@ TEST(ImageFault, TellsWhatADecoderWouldHideOrPrint) {
   damaged[50] ^= 1;
   EXPECT_TRUE(names(image_fault(damaged), {"sum"}));
   EXPECT_FALSE(decode_gray16(damaged));
-  // The end mark of a thumbnail within the head does not end the image.
+  // The end marker of a thumbnail inside the header does not end the image.
   const std::string thumbnail = std::string("\xff\xe1\0\6\xff\xd8\xff\xd9", 8);
   const std::string with_thumbnail = jpeg.substr(0, 2) + thumbnail + jpeg.substr(2);
   EXPECT_EQ(image_fault(with_thumbnail), nullptr);
@@ -239,7 +241,7 @@ TEST_F(SensFile, BytesBehindTheFramesThatAreNoMeasurementsAreNoted) {
     return open_sens(hold(bytes), "a.sens")->notes();
   };
   EXPECT_TRUE(notes(whole).empty());
-  EXPECT_TRUE(notes(whole.substr(0, whole.size() - 8)).empty());  // some writers end here
+  EXPECT_TRUE(notes(whole.substr(0, whole.size() - 8)).empty());  // some writers stop here
   std::string measured = with(whole, whole.size() - 8, std::uint64_t{2});
   measured += std::string(2 * 128, 'm');
   EXPECT_TRUE(notes(measured).empty());
@@ -248,7 +250,7 @@ TEST_F(SensFile, BytesBehindTheFramesThatAreNoMeasurementsAreNoted) {
         with(whole, kCount, std::uint64_t{2})}) {
     const auto found = notes(odd);
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_TRUE(names(found[0], {"a.sens", "bytes behind frame"}));
+    EXPECT_TRUE(names(found[0], {"a.sens", "bytes after frame"}));
   }
 }
 
@@ -284,7 +286,7 @@ TEST_F(Extracted, ALensWithoutAPlaceIsToldToBeTheDevices) {
   fs::remove(folder_ / "intrinsic/extrinsic_color.txt");
   const auto recording = open_recording(folder_);
   ASSERT_EQ(recording->notes().size(), 1U);
-  EXPECT_TRUE(names(recording->notes()[0], {"extrinsic_color.txt", "absent", "color camera"}));
+  EXPECT_TRUE(names(recording->notes()[0], {"extrinsic_color.txt", "missing", "color camera"}));
   EXPECT_TRUE(recording->info().color.device_from_camera.translation().isZero());
 }
 
@@ -410,7 +412,7 @@ TEST_F(LabelImagesOf, ZipsThatPointOutsideAreDamagedOrClaimTooMuchAreRefused) {
   EXPECT_TRUE(names(error(whole.substr(0, whole.size() / 2)), {"l.zip", "not a zip"}));
   EXPECT_TRUE(names(error("no zip"), {"l.zip"}));
   EXPECT_TRUE(names(error(""), {"l.zip", "empty"}));
-  std::string claims = whole;  // the size in the central directory, 24 bytes behind its mark
+  std::string claims = whole;  // the size in the central directory, 24 bytes after its signature
   const std::size_t central = claims.find("PK\x01\x02");
   ASSERT_NE(central, claims.npos);
   claims.replace(central + 24, 4, "\xff\xff\xff\x7f");

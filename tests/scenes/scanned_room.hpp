@@ -10,12 +10,12 @@
 
 namespace mh::test {
 
-/// A room of 6 x 5 m about the origin as a scanner leaves it: faces of some 5 cm, a bumpy floor.
+/// A room of 6 x 5 m around the origin as a scanner records it: faces of about 5 cm, a bumpy floor.
 struct ScannedRoom {
   double floor_z_m = 0.055, noise_m = 0.01;
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   bool labeled = true;
-  /// Whether the scan has floor there.
+  /// Whether the scan has floor at a place.
   std::function<bool(double x, double y)> has_floor = [](double, double) { return true; };
 
   Scene build() const {
@@ -40,7 +40,7 @@ struct ScannedRoom {
   }
   static ClassId class_of(const char* name) { return *class_by_name(name); }
 
-  /// A parallelogram of two faces.
+  /// Adds a parallelogram of two faces.
   static void add_sheet(Scene& scene, const Eigen::Vector3f& at, const Eigen::Vector3f& a,
                         const Eigen::Vector3f& b, InstanceId instance) {
     const auto first = static_cast<std::uint32_t>(scene.positions_m.size());
@@ -57,7 +57,7 @@ struct ScannedRoom {
     scene.instance_of.push_back(instance);
     scene.class_of.push_back(scene.instances[instance - 1U].class_id);
   }
-  /// A table (of no class) of that size, its top at 0.75 m over the floor's middle.
+  /// Adds a table without a class, of this size, whose top is 0.75 m above the center of the floor.
   void add_table(Scene& scene, double width_m, double depth_m) const {
     scene.instances.push_back({.id = 3, .name = "table"});
     const float w = static_cast<float>(width_m), d = static_cast<float>(depth_m);

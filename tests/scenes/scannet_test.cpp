@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A strip of six squares along x; the vertices of column i (0 to 6) are 2i and 2i + 1.
+// A strip of six squares along x; column i (0 to 6) consists of vertices 2i and 2i + 1.
 PlyMesh strip() {
   PlyMesh mesh;
   for (int i = 0; i <= 6; ++i)
@@ -43,7 +43,7 @@ constexpr const char* kTableV2 =
     "2\tchair\tchair\t4646\t5\t4\tchair\tchair\n"
     "1163\toffice chair\tchair\t595\t5\t4\tchair\tchair\n"
     "35\tmonitor\tmonitor\t765\t40\t7\tmonitor\totherprop\n";
-// v1 names the columns otherwise and has no raw_category.
+// v1 has different column names and no raw_category.
 constexpr const char* kTableV1 =
     "category\tindex\tcount\tnyu40id\teigen13id\tnyuClass\tnyu40class\n"
     "wall\t1\t8277\t1\t12\twall\twall\n"
@@ -51,7 +51,8 @@ constexpr const char* kTableV1 =
     "office chair\t1163\t595\t5\t4\tchair\tchair\n"
     "monitor\t35\t765\t40\t7\tmonitor\totherprop\n";
 
-// Columns 0 and 1 are segment 7, 2 and 3 segment 0, 4 segment 90000, 5 and 6 segment 3.
+// Columns 0 and 1 are segment 7, columns 2 and 3 segment 0, column 4 segment 90000, columns 5 and 6
+// segment 3.
 constexpr const char* kSegments =
     R"({"params":{"kThresh":"0.0001","segMinVerts":"20"},"sceneId":"s","segIndices":)"
     R"([7,7,7,7,0,0,0,0,90000,90000,3,3,3,3]})";
@@ -63,7 +64,7 @@ constexpr const char* kAggregation =
 
 class Scannet : public TemporaryFolder {
  protected:
-  /// Labels of the columns 0 to 6.
+  /// @param labels  of the columns 0 to 6
   void write_scene(const std::array<std::uint16_t, 7>& labels, const std::string& info) const {
     PlyMesh mesh = strip();
     write("s/s_vh_clean_2.ply", ply_bytes(mesh));
@@ -87,11 +88,11 @@ class Scannet : public TemporaryFolder {
   }
 };
 
-/// What both releases specify about the strip, two faces per square.
+/// What both releases specify for the strip, with two faces per square.
 void expect_strip(const Scene& scene) {
-  // Square 1 lies between wall (columns 0, 1) and chair: its first face has two corners on the
-  // wall, its second two on the chair. Square 3: chair and the unknown object. Square 4: unknown
-  // object and the monitor, which belongs to no object.
+  // Square 1 is between the wall (columns 0, 1) and the chair: its first face has two corners on
+  // the wall, its second face has two on the chair. Square 3 is between the chair and the unknown
+  // object, square 4 between the unknown object and the monitor, which belongs to no object.
   EXPECT_EQ(scene.class_of, (std::vector<ClassId>{1, 1, 1, 5, 5, 5, 5, 0, 0, 40, 40, 40}));
   EXPECT_EQ(scene.instance_of, (std::vector<InstanceId>{1, 1, 1, 2, 2, 2, 2, 3, 3, 0, 0, 0}));
   ASSERT_EQ(scene.instances.size(), 3U);
@@ -115,7 +116,7 @@ TEST_F(Scannet, ReadsAReleaseTwoFolder) {
   }
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_TRUE(names(warnings[0], {"s.aggregation.json", "1 of 3 objects", "'flux capacitor'"}));
-  EXPECT_EQ(scene.instances[1].min_m, Eigen::Vector3f(9, 21, 30));  // the chair's own faces
+  EXPECT_EQ(scene.instances[1].min_m, Eigen::Vector3f(9, 21, 30));  // only the faces of the chair
 }
 
 TEST_F(Scannet, ReadsAReleaseOneFolderWhoseLabelsAreRawIds) {
@@ -151,7 +152,7 @@ TEST_F(Scannet, CategoriesThatNyu40LumpsTogetherKeepTheirClass) {
   EXPECT_EQ(class_of(7), "otherprop");
   EXPECT_EQ(class_of(8), "void");
 
-  write_v2();  // the chair becomes a microwave: labels say 40
+  write_v2();  // the chair becomes a microwave, whose label is 40
   write("scannetv2-labels.combined.tsv",
         std::string(kTableV2) + "99\tmicrowave\tmicrowave\t9\t40\t7\tmicrowave\totherprop\n");
   write_scene({1, 1, 40, 40, 0, 40, 40}, "axisAlignment = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
@@ -184,7 +185,7 @@ TEST_F(Scannet, OpensAsAnySceneByFolderAndByMesh) {
   expect_strip(load_scene(folder_ / "s" / "s_vh_clean_2.ply"));
   EXPECT_TRUE(names(error_of([&] { load_scene(folder_); }), {"_vh_clean_2.ply"}));
   write("s/t_vh_clean_2.ply", ply_bytes(strip()));
-  expect_strip(load_scene(folder_ / "s"));  // the scene of the folder's own name
+  expect_strip(load_scene(folder_ / "s"));  // the scene named like the folder is loaded
   fs::rename(folder_ / "s", folder_ / "other");
   EXPECT_TRUE(names(error_of([&] { load_scene(folder_ / "other"); }), {"2 scenes"}));
 }
@@ -224,7 +225,7 @@ TEST_F(Scannet, CountsSegmentsOfSeveralObjectsAndSegmentsThatNoVertexHas) {
                                 R"({"objectId":1,"segments":[0,12,13],"label":"office chair"}]})");
   std::vector<std::string> warnings;
   const Scene scene = load_scannet(folder_ / "s", &warnings);
-  EXPECT_EQ(scene.instance_of[4], 2);  // segment 0 belongs to the last that names it
+  EXPECT_EQ(scene.instance_of[4], 2);  // segment 0 belongs to the last object that lists it
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_TRUE(names(warnings[0], {"aggregation.json", "1 of 4 segments", "segment 0)"}));
   EXPECT_TRUE(names(warnings[1], {"aggregation.json", "2 of the 4 segments", "segment 12)"}));
@@ -232,7 +233,7 @@ TEST_F(Scannet, CountsSegmentsOfSeveralObjectsAndSegmentsThatNoVertexHas) {
 
 TEST_F(Scannet, LabelsBeyondNyu40InAnAlignedSceneGiveWayToTheObjects) {
   write_v2();
-  write("scannet-labels.combined.tsv", kTableV1);  // an alignment shows that the scene is of v2
+  write("scannet-labels.combined.tsv", kTableV1);  // the alignment shows that the scene is from v2
   write_scene({1, 1, 50, 50, 0, 40, 50}, "axisAlignment = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
   std::vector<std::string> warnings;
   const Scene scene = load_scannet(folder_ / "s", &warnings);
@@ -259,7 +260,7 @@ TEST_F(Scannet, FilesThatDoNotFitTheMeshAreNamed) {
   PlyMesh empty = strip();
   empty.triangles.clear();
   write("s/s_vh_clean_2.ply", ply_bytes(empty));
-  EXPECT_TRUE(names(error(), {"s_vh_clean_2.ply", "no faces"}));
+  EXPECT_TRUE(names(error(), {"s_vh_clean_2.ply", "no visible faces"}));
 }
 
 TEST_F(Scannet, DamagedFilesAreNamedWithTheirPlace) {
@@ -324,13 +325,13 @@ TEST(ScannetLabelTable, ARowThatWasCutIsNamed) {
     return error_of([&] { parse_label_table(text, "t.tsv"); });
   };
   EXPECT_EQ(error(table), "");
-  EXPECT_EQ(error(table.substr(0, table.size() - 1)), "");  // the last line needs no end
+  EXPECT_EQ(error(table.substr(0, table.size() - 1)), "");  // the last line needs no newline
   const std::size_t last = table.rfind("35\tmonitor");
   for (std::size_t size = last + 1; size + 11 < table.size(); ++size)
     EXPECT_TRUE(names(error(table.substr(0, size)), {"t.tsv:5"})) << size;
   EXPECT_TRUE(names(error("id\traw_category\tcount\tnyu40id\n2\tchair\n1\twall\t9\t1\n"),
                     {"t.tsv:2", "2 cells", "4"}));
-  // A file of ours: what a wrong id would hide behind is checked too.
+  // In a file of ours, an id is checked even if the modelhouse column overrides it.
   EXPECT_TRUE(names(error("id\traw_category\tnyu40id\tmodelhouse\n2\tchair\t99\tchair\n"),
                     {"t.tsv:2", "99"}));
 }
@@ -345,8 +346,8 @@ TEST(ScannetLabelTable, ReadsItsOwnRowsBack) {
   }
 }
 
-/// Lit and textured pieces that share vertices: two chairs, a plant (which NYU40 lacks) and a
-/// floor that is not an object; one face of the second chair is marked as a pillow.
+/// Lit and textured pieces with shared vertices: two chairs, a plant (a class that NYU40 lacks) and
+/// a floor that is not an object; one face of the second chair is labeled as a pillow.
 Scene textured_scene() {
   Scene scene;
   scene.name = "pieces";
@@ -402,7 +403,8 @@ TEST_F(Scannet, AFolderReadBackHasTheSameFacesClassesAndInstances) {
     EXPECT_EQ(read.instances[i].name, scene.instances[i].name);
   }
   EXPECT_EQ(read.name, "room");
-  EXPECT_GT(read.positions_m.size(), scene.positions_m.size());  // copies where objects meet
+  EXPECT_GT(read.positions_m.size(),
+            scene.positions_m.size());  // vertices are duplicated where objects meet
 }
 
 TEST_F(Scannet, WhatAnyScannetToolReadsIsConsistent) {
@@ -412,7 +414,8 @@ TEST_F(Scannet, WhatAnyScannetToolReadsIsConsistent) {
   const PlyMesh labels = read_ply(stem + "_vh_clean_2.labels.ply");
   EXPECT_EQ(mesh.positions_m, labels.positions_m);
   EXPECT_EQ(mesh.triangles, labels.triangles);
-  EXPECT_GT(mesh.triangles.size(), 2 * textured_scene().triangles.size());  // split for the texture
+  EXPECT_GT(mesh.triangles.size(),
+            2 * textured_scene().triangles.size());  // split to represent the texture
   const std::string json = read_file(stem + "_vh_clean_2.0.010000.segs.json");
   const auto segments = parse_segments(json, "segs");
   ASSERT_EQ(segments.size(), mesh.positions_m.size());
@@ -424,7 +427,7 @@ TEST_F(Scannet, WhatAnyScannetToolReadsIsConsistent) {
     ASSERT_TRUE(table.class_of_category.contains(group.category));
     for (const std::uint32_t segment : group.segments) {
       EXPECT_TRUE(claimed.insert(segment).second) << "two objects claim one segment";
-      // A segment lies within one object and has one label, of NYU40.
+      // A segment is part of one object and has one label, from NYU40.
       std::set<std::uint16_t> of_segment;
       for (std::size_t v = 0; v < segments.size(); ++v)
         if (segments[v] == segment) of_segment.insert(labels.labels[v]);

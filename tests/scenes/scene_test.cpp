@@ -49,7 +49,7 @@ TEST(ValidateScene, AcceptsAGoodSceneAndRefusesEveryFlaw) {
       [](Scene& s) { s.instance_of[0] = 1; },
       [](Scene& s) { s.materials[0].tile_m.x() = 0; },
       [](Scene& s) { s.materials[0].emission.y() = -1; },
-      [](Scene& s) { s.uvs.clear(); },  // but a material has a texture
+      [](Scene& s) { s.uvs.clear(); },  // although a material has a texture
       [](Scene& s) { s.instances[0].id = 0; },
       [](Scene& s) { s.instances.push_back(s.instances[0]); },
       [](Scene& s) { s.instances.push_back({.id = 3, .class_id = 5, .name = "chair"}); },

@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// A test with a folder of its own, which goes with it.
+/// A test with its own folder, which is removed after it.
 class TemporaryFolder : public testing::Test {
  protected:
   TemporaryFolder() {
@@ -33,7 +33,7 @@ class TemporaryFolder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// The message of the InputError that something throws; empty if it throws none.
+/// The message of the InputError that `function` throws; empty if it throws none.
 template <class Function>
 std::string error_of(Function&& function) {
   try {
@@ -44,7 +44,7 @@ std::string error_of(Function&& function) {
   return "";
 }
 
-/// @returns whether the message names all of these
+/// @returns whether the message contains all of `wanted`
 inline testing::AssertionResult names(const std::string& message,
                                       std::initializer_list<const char*> wanted) {
   for (const char* part : wanted)

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// A header of 2 x 2 pixels, and what follows it.
+/// A header of 2 x 2 pixels, followed by `rest`.
 std::string tga(char kind, char bits, char descriptor, const std::string& rest, char colors = 0) {
   std::string bytes(18, '\0');
   bytes[1] = colors > 0 ? 1 : 0;
@@ -45,14 +45,14 @@ TEST(Tga, RowsBeginWhereItsHeaderSays) {
 }
 
 TEST(Tga, RunsPalettesAndFewBitsAreTheSameColors) {
-  // A run of one, three as they are.
+  // A run of one pixel, then three literal pixels.
   EXPECT_EQ(colors_of(tga(10, 24, 0x20, "\x80" + kBlue + "\x02" + kGreen + kRed + kGray)),
             kExpected);
   const cv::Mat one = decode_image(tga(10, 24, 0x20, "\x83" + kRed));
   EXPECT_EQ(cv::norm(one, cv::Mat(2, 2, CV_8UC3, cv::Scalar(0, 0, 255))), 0.0);
   const std::string places("\x00\x01\x02\x03", 4);
   EXPECT_EQ(colors_of(tga(1, 8, 0x20, kBlue + kGreen + kRed + kGray + places, 4)), kExpected);
-  // Five bits of red, green and blue.
+  // Five bits each for red, green and blue.
   EXPECT_EQ(colors_of(tga(2, 16, 0x20, std::string("\x1f\x00\xe0\x03\x00\x7c\x4a\x29", 8))),
             (std::vector<cv::Vec3b>{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {82, 82, 82}}));
   const cv::Mat gray = decode_image(tga(3, 8, 0x20, std::string("\x01\x02\x03\x04", 4)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes that are put together: our own YAML of placed objects, and Gazebo worlds.
+// Composed scenes: our own YAML of placed objects, and Gazebo worlds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 class Worlds : public TemporaryFolder {
  protected:
-  /// Two triangles of two materials in one node, z up.
+  /// Two triangles with two materials in one node, z up.
   fs::path write_mesh(const std::string& name) const {
     write("meshes/look.mtl", "newmtl Wood\nKd 0.5 0.25 0\nnewmtl Floor paint\nKd 0 0 1\n");
     return write("meshes/" + name,
@@ -87,9 +87,9 @@ TEST_F(Worlds, LabelRulesTellNodesAndMaterialsApart) {
   EXPECT_EQ(std::ranges::count(scene.class_of, *class_by_name("floor")), 1);
   EXPECT_EQ(std::ranges::count(scene.class_of, *class_by_name("desk")), 1);
   EXPECT_EQ(scene.instances.size(), 2U);
-  ASSERT_EQ(scene.rooms.size(), 1U);  // the box of the floor
+  ASSERT_EQ(scene.rooms.size(), 1U);  // the bounding box of the floor
   EXPECT_EQ(scene.rooms[0].name, "hall");
-  // The same by a side table beside the mesh, which comes after the scene's own rules.
+  // The same with a side file next to the mesh, whose rules come after the scene's own.
   write("meshes/labels.yaml", "'floor*': floor\n'*': bed\n");
   const Scene mesh = load_mesh(folder_ / "meshes/a.obj");
   EXPECT_EQ(std::ranges::count(mesh.class_of, *class_by_name("bed")), 1);
@@ -112,7 +112,7 @@ TEST_F(Worlds, BadYamlIsNamedByLineAndValue) {
   EXPECT_TRUE(names(error("  - {file: meshes/a.obj, color: red}\n"), {"room.yaml", "color"}));
   EXPECT_TRUE(
       names(error("  - {file: meshes/a.obj}\n  - {file: meshes/a.obj}\n"), {"room.yaml:3", "'a'"}));
-  EXPECT_TRUE(names(error("  []\n"), {"nothing to be seen"}));
+  EXPECT_TRUE(names(error("  []\n"), {"nothing visible"}));
 }
 
 TEST_F(Worlds, GazeboModelsAreFoundPlacedAndNamed) {
@@ -143,13 +143,14 @@ TEST_F(Worlds, GazeboModelsAreFoundPlacedAndNamed) {
   EXPECT_TRUE(warnings.empty()) << warnings[0];
   const Instance& desk = instance(scene, "desk_1");
   EXPECT_EQ(desk.class_id, *class_by_name("desk"));
-  // The box, 2 x 4 x 6 about (0, 0, 6), turned by 90 degrees; the mesh reaches x = 2 before that.
+  // The box is 2 x 4 x 6 around (0, 0, 6), turned by 90 degrees; the mesh extends to x = 2 before
+  // that.
   EXPECT_NEAR(desk.min_m.x(), 10 - 2, 1e-4);
   EXPECT_NEAR(desk.max_m.x(), 10 + 2, 1e-4);
   EXPECT_NEAR(desk.max_m.y(), 20 + 2, 1e-4);
   EXPECT_NEAR(desk.min_m.z(), 1, 1e-4);
   EXPECT_NEAR(desk.max_m.z(), 9, 1e-4);
-  // Without a class of its own, a model has those of its meshes' nodes.
+  // A model without a class of its own gets the classes of its meshes' nodes.
   EXPECT_TRUE(std::ranges::any_of(scene.instances, [](const Instance& i) {
     return i.name.starts_with("nameless/") && i.class_id == *class_by_name("table");
   }));
@@ -177,8 +178,8 @@ TEST_F(Worlds, IncludesThatLeadInACircleAreAnError) {
             "</include></world></sdf>");
   testing::internal::CaptureStderr();
   const std::string error = error_of([&] { load_gazebo_world(world); });
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libsdformat would have its say
-  EXPECT_TRUE(names(error, {"w.sdf includes", "a/model.sdf", "b/model.sdf", "circle"}));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // libsdformat prints nothing
+  EXPECT_TRUE(names(error, {"w.sdf includes", "a/model.sdf", "b/model.sdf", "cycle"}));
 }
 
 TEST_F(Worlds, BadWorldsAreNamedWithTheirPlace) {
@@ -208,12 +209,13 @@ TEST_F(Worlds, BadWorldsAreNamedWithTheirPlace) {
   EXPECT_TRUE(names(shape("<box><size>-1 1 1</size></box>"), {"a box of -1 x 1 x 1"}));
   EXPECT_TRUE(names(error("<model name='m'><link name='l'/></model></sdf>"), {"nothing"}));
   const auto world = write("e.world", "<sdf version='1.7'><world name='w'/></sdf>");
-  EXPECT_TRUE(names(error_of([&] { load_scene(world); }), {"e.world", "nothing to be seen"}));
+  EXPECT_TRUE(names(error_of([&] { load_scene(world); }), {"e.world", "nothing visible"}));
   EXPECT_TRUE(names(error("<model name='m'><link name='l'><pose>1 2 x</pose></link></model></sdf>"),
                     {"w.sdf"}));
 }
 
-/// Real glTF with separate buffers and textures, one of them absent; not part of this project.
+/// Real glTF with separate buffers and textures, one of them missing; the data are not part of this
+/// project.
 TEST_F(Worlds, DrakesLivingRoomLoadsByOurYamlAndByItsSdf) {
   const fs::path data = fs::path(MH_SOURCE_DIR) / "../shared/data/drake_living_room";
   if (!fs::exists(data)) GTEST_SKIP() << data << " is not there";
@@ -224,7 +226,7 @@ TEST_F(Worlds, DrakesLivingRoomLoadsByOurYamlAndByItsSdf) {
   const Scene scene = load_scene(folder_ / "room.yaml", &warnings);
   for (const std::string& warning : warnings) EXPECT_TRUE(names(warning, {"missing"}));
   EXPECT_EQ(instance(scene, "sofa").class_id, *class_by_name("sofa"));
-  // A room of some 6 m x 6 m x 3 m whose furniture stands inside on the floor.
+  // A room of about 6 m x 6 m x 3 m, with its furniture inside and on the floor.
   ASSERT_EQ(scene.rooms.size(), 1U);
   EXPECT_GT(scene.floor_area_m2(), 20);
   EXPECT_LT(scene.floor_area_m2(), 60);

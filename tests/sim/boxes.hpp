@@ -48,7 +48,7 @@ inline Robot pepper() {
   return load_robot(MH_SOURCE_DIR "/robots/pepper/pepper.yaml");
 }
 
-/// A differential drive.
+/// A robot with a differential drive.
 inline Robot turtlebot() {
   return load_robot(MH_SOURCE_DIR "/robots/turtlebot3/turtlebot3.yaml");
 }

@@ -51,7 +51,7 @@ inline Scene plain_scene(Rgb8 color = {255, 255, 255}) {
   return scene;
 }
 
-/// An axis-aligned box; faces look outwards, or inwards for a room.
+/// Adds an axis-aligned box; its faces look outward, or inward for a room.
 inline void add_box(Scene& scene, const Eigen::Vector3f& low, const Eigen::Vector3f& high,
                     bool inwards, ClassId class_id, InstanceId instance, std::uint16_t material = 0,
                     std::uint32_t n = 1) {

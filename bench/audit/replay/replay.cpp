@@ -26,7 +26,7 @@ std::size_t bytes_of(std::size_t vertices, std::size_t triangles) {
   return (9 * vertices + 12 * triangles) * 4 / 3;
 }
 
-/// The scene with faces as small as the size limit allows.
+/// The scene with its faces split as finely as the size limit allows.
 Scene with_small_faces(const Scene& scene) {
   for (const float edge_m : {0.08F, 0.12F, 0.18F, 0.27F, 0.4F, 0.6F, 1.0F}) {
     Scene split = split_for_colors(scene, edge_m);

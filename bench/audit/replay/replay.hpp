@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// Maximum size of a scene in a report, bytes of its script file.
+/// Maximum size of a scene in a report: bytes of its script file.
 inline constexpr std::size_t kMeshBytes = 3'000'000;
 
 /// A scene for a browser: positions in 16 bits within its box, colors with baked light at its
@@ -20,7 +20,7 @@ inline constexpr std::size_t kMeshBytes = 3'000'000;
 /// allows; a scene that is already too large is decimated (meshoptimizer).
 nlohmann::ordered_json mesh_json(const Scene& scene);
 
-/// Where replays come from.
+/// What replays are made with.
 struct ReplayTools {
   Cache cache;      ///< of light and finished maps
   int threads = 1;  ///< for baking light
@@ -34,7 +34,7 @@ struct Replay {
 };
 
 /// Executes a run again and records it. Runs repeat bit for bit; `same` in the scene states whether
-/// this one gave the positions that the result holds (a results file rounds orientations).
+/// this one gave the positions in the result (a results file rounds orientations).
 /// @throws InputError naming the run if it uses a recording or an outside system; InputChanged if a
 /// file that it reads differs from the one behind the result.
 Replay make_replay(const RunResult& result, const ReplayTools& tools);

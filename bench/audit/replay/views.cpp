@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 enum Flag : std::uint32_t {
   kHasLandmark = 1,  ///< a keypoint: the map has a landmark for it
   kIsRight = 1,      ///< a pair: both ends show the same surface
-  kIsWrong = 2,      ///< a pair: they do not; neither: an end shows no surface
+  kIsWrong = 2,      ///< a pair: they do not; neither flag: an end shows no surface
   kIsPenalized = 4   ///< a pair: its labels differ (equation 2)
 };
 
@@ -53,7 +53,7 @@ class ViewsOf {
  private:
   Json keyframes() const {
     std::map<Stamp, const MappedFrame*>
-        call_of;  // that made the keyframe; the last if it was culled
+        call_of;  // that made the keyframe; the last one, since earlier ones were culled
     for (const MappedFrame& call : run_.mapping.calls)
       if (call.keyframe_added) call_of[call.stamp_ns] = &call;
     Json list = Json::array();
@@ -76,8 +76,9 @@ class ViewsOf {
     RgbdFrame frame = usable_frame(*world_.mapping, call.index,
                                    mapping_noise(mapping_stream(run_.spec), call.restart));
     if (digest(frame) != call.image_digest)
-      throw MachineError(fmt::format("{}: mapping frame {}: the replay's image is not the run's",
-                                     run_.spec.name, call.index));
+      throw MachineError(
+          fmt::format("{}: mapping frame {}: the replay's image differs from the run's",
+                      run_.spec.name, call.index));
     return frame;
   }
 

@@ -28,7 +28,7 @@ BundleConfig config() {
 }
 
 /// A pose as (quaternion x y z w, translation), perturbed from the left. The cost functions return
-/// their Jacobians in the tangent space, padded by a zero column, so that this one is [I; 0].
+/// their Jacobians in the tangent space, padded by a zero column: hence PlusJacobian is [I; 0].
 class LeftPerturbation : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }

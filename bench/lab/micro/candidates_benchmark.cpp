@@ -2,9 +2,9 @@
 // candidates_benchmark MAP [KEYFRAMES]: selection of keyframe candidates (Algorithm 1) in a large
 // map, 100,000 keyframes by default, against a literal scan, which compares the query with every
 // keyframe as the paper's equations read. MAP is a map file; each keyframe of the large map has
-// labels and words of two of its keyframes, so that words are as common as in the real map: more
-// common than in a map of many different places, where queries share less. Keyframes have no
-// neighbors here: equation 5 then adds the same few sums to both. Both must choose the same, to the
+// labels and words of two of that file's keyframes, so that words are as common as in the real map:
+// more common than in a map of many different places, where queries share less. Keyframes have no
+// neighbors here: equation 5 would add the same few sums to both. Both must choose the same, to the
 // bit. CPU time of this thread, medians over the queries. Run from the repository's root, or name
 // the vocabulary: MH_VOCABULARY=FILE.
 
@@ -27,14 +27,14 @@ using namespace mh;
 
 constexpr std::uint64_t kQueries = 20;
 
-/// Each member of either vector with probability 1/2, with its weight there.
+/// Appends each member of `from` with probability 1/2, with its weight.
 void add_half(std::vector<WeightedMember>& to, const std::vector<WeightedMember>& from,
               const RandomStream& random) {
   for (const WeightedMember& member : from)
     if (random.uniform(member.id) < 0.5) to.push_back(member);
 }
 
-/// Ordered by id, once each, as AugmentedVector requires.
+/// Sorts by id and removes duplicates, as AugmentedVector requires.
 void put_in_order(std::vector<WeightedMember>& members) {
   std::ranges::sort(members, {}, &WeightedMember::id);
   const auto repeated = std::ranges::unique(members, {}, &WeightedMember::id);

@@ -2,8 +2,8 @@
 // Time per frame and memory of the process as the map grows.
 //   rooms  a small map and one ten times as large, made of features without images; both then see
 //          the same frames, first of known and then of new ground, alternating frame by frame.
-//   laps   a recorded sequence fed repeatedly, as to a robot that stays in one house; features are
-//          extracted once and read from a file.
+//   laps   a recorded sequence fed repeatedly, as if to a robot that stays in one house; features
+//          are extracted once and read from a file.
 // CPU time of this thread.
 #include <sys/resource.h>
 #include <unistd.h>

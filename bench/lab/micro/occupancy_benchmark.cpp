@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of space mapped from the keyframes of a house: integration of one, of all that a loop
-// closure moved, the octree's memory, a plan over the floor; beside OctoMap's own
+// Cost of mapping space from the keyframes of a house: integration of one keyframe and of all that
+// a loop closure moved, the octree's memory, a plan over the floor; compared with OctoMap's own
 // insertPointCloud() of the same points in the same run. CPU time of the process.
 // Usage: occupancy_benchmark SCENE.yaml TOUR.yaml ROBOT.yaml LEVEL.yaml [every n-th frame = 15]
 
@@ -35,7 +35,7 @@ double time_ms(const Work& work) {
   return clock_ms(CLOCK_PROCESS_CPUTIME_ID) - before;
 }
 
-/// The points that a mapper uses of a keyframe, camera frame.
+/// The points of a keyframe that a mapper uses, in the camera frame.
 octomap::Pointcloud points_of(const OccupancyMapper& mapper, Stamp stamp_ns) {
   octomap::Pointcloud cloud;
   const Grid2d<float>& depth_m = *mapper.depth_of(stamp_ns);

@@ -47,7 +47,7 @@ Scene wavy_floor(std::uint32_t n) {
   return scene;
 }
 
-/// A ScanNet folder of about that many triangles; removed when the process ends.
+/// A ScanNet folder of wavy_floor(squares); removed on destruction.
 class ScanFolder {
  public:
   explicit ScanFolder(std::uint32_t squares)

@@ -72,7 +72,7 @@ int run(const std::vector<std::string>& given) {
   const fs::path out = given[4];
   RenderSequenceOptions options{.frames = given.size() > 5 ? std::stoul(given[5]) : 1000,
                                 .threads = kThreads};
-  if (fs::exists(out)) throw InputError(fmt::format("{}: is there already", out.string()));
+  if (fs::exists(out)) throw InputError(fmt::format("{}: already exists", out.string()));
   const Robot robot = load_robot(given[2]);
   const SensorConfig sensors = load_sensor_config(given[3]);
   const Scene scene = load_lit_scene(given[0], kThreads);

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// What a clock of the system shows, ms: CLOCK_THREAD_CPUTIME_ID, CLOCK_MONOTONIC, ...
+/// The time of a system clock, ms: CLOCK_THREAD_CPUTIME_ID, CLOCK_MONOTONIC, ...
 inline double clock_ms(clockid_t clock) {
   timespec time{};
   clock_gettime(clock, &time);
@@ -20,7 +20,7 @@ inline double thread_ms() {
   return clock_ms(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/// The upper one of two. @pre not empty
+/// The upper median. @pre not empty
 inline double median(std::vector<double> values) {
   std::ranges::sort(values);
   return values[values.size() / 2];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `modelhouse live`: shows what arrives on the WebSocket and sends commands (docs/live.md).
 const $ = (id) => document.getElementById(id);
-const held = new Set();      // what drives now: "1,0,0"
+const held = new Set();      // controls held now: "1,0,0"
 let hello = null, state = null, map = { points: [], keyframes: [] }, socket = null;
 const trail = { true: [], estimate: [] };
 const times = [];
@@ -10,7 +10,7 @@ function send(message) {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
 }
 
-// While something is held, the command is repeated: the robot stops when its driver is gone.
+// While a control is held, the command is repeated: the robot stops when its driver is gone.
 function velocity() {
   const sum = [0, 0, 0];
   for (const each of held) each.split(",").forEach((n, k) => { sum[k] += Number(n); });

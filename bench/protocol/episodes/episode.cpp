@@ -14,12 +14,12 @@ namespace mh {
 namespace {
 
 constexpr double kStep_s = 0.1;      // between commands
-constexpr double kMapError_m = 0.1;  // it goes so much nearer by its map than the truth asks
-constexpr double kSettle_s = 1.0;    // it comes to rest after it has said that it stops
+constexpr double kMapError_m = 0.1;  // it drives this much nearer by its map than required
+constexpr double kSettle_s = 1.0;    // to come to rest after it has reported that it stops
 
 constexpr std::uint64_t kNoiseStream = 0x6570, kDrawStream = 0x6571;
 
-/// A pose between two.
+/// Interpolates between two poses.
 Pose2 between(const Pose2& a, const Pose2& b, double share) {
   return {a.place_m + share * (b.place_m - a.place_m),
           a.heading_rad + share * turn_to(a.heading_rad, b.heading_rad)};
@@ -29,7 +29,7 @@ std::uint64_t digest_of(const Twist2d& command, std::uint64_t sum) {
   return digest_bytes(command.data(), sizeof(double) * 3, sum);
 }
 
-/// The same for every system, another for every variant and start.
+/// The same for every system, different for every variant and start.
 std::uint64_t noise_seed(const EpisodesSpec& spec, const std::string& variant, std::size_t start) {
   const std::uint64_t of_variant = digest_bytes(variant.data(), variant.size());
   return RandomStream(spec.seed).fork(kNoiseStream).fork(of_variant).fork(start).key();
@@ -84,7 +84,7 @@ class Episode {
   }
 
  private:
-  /// Ends an episode before it began.
+  /// Ends an episode before it begins.
   EpisodeScore failed(const char* reason, const std::string& why) {
     score_.reason = reason;
     if (observe_)

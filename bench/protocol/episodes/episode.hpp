@@ -17,10 +17,10 @@ namespace mh {
 
 /// A contact faster than this is a collision.
 inline constexpr double kCollision_m_per_s = 0.1;
-/// A belief farther off than this, or turned by more, is false.
+/// A believed pose that is off by more than either of these is false.
 inline constexpr double kFalsePose_m = 0.5, kFalsePose_deg = 20;
 
-/// Where and with what an episode is run.
+/// Where an episode is run, and with which robot and system.
 struct EpisodePlace {
   SimulatedScene scene;
   const Robot& robot;
@@ -29,31 +29,31 @@ struct EpisodePlace {
   bool system_sees_labels = true;
   const RobotMap& map;
   const System& frozen;
-  std::uint32_t map_of_system = 0;  ///< TimedPose::map of what the robot's map is made of
-  SE3 truth_from_estimate;          ///< for the score alone
+  std::uint32_t map_of_system = 0;  ///< TimedPose::map of what the robot's map is made from
+  SE3 truth_from_estimate;          ///< for the score only
   std::string variant = "as_mapped";
   std::uint64_t system_seed = 0;  ///< of the SLAM system's draws
 };
 
-/// One moment of an episode, for logs and images.
+/// The state of an episode at one time, for logs and images.
 struct EpisodeMoment {
   double time_s = 0;
   const RgbdFrame* frame = nullptr;  ///< null if none arrived
   const SystemReport* report = nullptr;
   Pose2 world_from_base;                 ///< truth
-  std::optional<Pose2> believed;         ///< world, as the truth aligns the robot's map
-  Pose2 world_from_map;                  ///< the same alignment
+  std::optional<Pose2> believed;         ///< in the world: `world_from_map` applied
+  Pose2 world_from_map;                  ///< the robot's map aligned with the truth
   const Navigator* navigator = nullptr;  ///< null if the episode ended before it began
   std::vector<std::string> said = {};
 };
 using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
 
-/// Scores of an episode before it begins: where the robot is, what it is to find.
+/// The score of an episode before it begins: where the robot is and what it must find.
 EpisodeScore score_at_start(const std::string& variant, const EpisodeStart& start);
 
-/// Kidnaps the robot: it is put at the start in the dark, the light goes on, it looks around,
-/// relocalizes, plans on its own map, and drives to the goal. Deterministic; what it sees depends
-/// on seed, variant and start, not on the system.
+/// Kidnaps the robot: it is put at the start in the dark, the light is switched on, it looks
+/// around, relocalizes, plans on its own map, and drives to the goal. Deterministic; what it sees
+/// depends on seed, variant and start, not on the system.
 EpisodeScore run_episode(const EpisodePlace& place, const EpisodesSpec& spec,
                          const EpisodeStart& start, const EpisodeObserver& observe = {});
 

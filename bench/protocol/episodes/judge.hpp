@@ -26,8 +26,8 @@ struct EpisodeEnd {
   std::span<const Bump> bumps;
 };
 
-/// Completes a score that knows when the robot was located: success, SPL, contacts, the reason of a
-/// failure.
+/// Completes a score that already says when the robot was located: success, SPL, contacts, the
+/// reason for a failure.
 void judge(const EpisodeEnd& end, const EpisodeStart& start, double arrival_m, EpisodeScore& score);
 
 }  // namespace mh

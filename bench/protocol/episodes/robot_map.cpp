@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// A view tells the map something new after so much: at 2 m, 0.26 rad are half a meter.
+// A view adds something new to the map after this much motion: at 2 m, 0.26 rad is half a meter.
 constexpr double kMoved_m = 0.25, kTurned_rad = 0.26;
 
 /// The cells in which a wall was seen.
@@ -33,7 +33,7 @@ Grid2d<std::uint8_t> walls_of(const VoxelMap& map, const OccupancyGrid& grid) {
   return walls;
 }
 
-/// What the lasers saw from those frames' places, as the system estimated them.
+/// Adds what the lasers saw at the chosen frames, at the estimated poses.
 void add_lasers(const MapInput& input, const std::vector<std::size_t>& chosen,
                 const SE3& map_from_estimate, OccupancyGrid& grid) {
   if (!input.lasers) return;

@@ -16,35 +16,35 @@
 
 namespace mh {
 
-/// What a robot made of its mapping tour, for any SLAM system: the bench's mapper with the system's
-/// own poses, and the labels that came with the frames. Map frame: the base at the first tracked
-/// frame, z up; the robot knows how its camera is mounted.
+/// The map that a robot makes from its mapping tour, with any SLAM system: the bench's mapper
+/// integrates the frames, with their labels, at the system's own poses. Map frame: the base at the
+/// first tracked frame, z up; the robot knows how its camera is mounted.
 struct RobotMap {
   SE3 map_from_estimate;  ///< estimate: the system's own world
   OccupancyGrid grid;
   std::vector<MapObject> objects;
-  std::vector<std::vector<Eigen::Vector2d>> footprints_m;  ///< of each object: cells that it covers
+  std::vector<std::vector<Eigen::Vector2d>> footprints_m;  ///< cells that each object covers
   KnownMap known;                                          ///< the grid, as the navigator reads it
 
   bool empty() const { return known.blocked.empty(); }
 };
 
-/// Adds what a robot's lasers read at one moment.
+/// Adds what a robot's lasers read at one time.
 /// @param map_from_base  assumed pose of the robot
-/// @param lasers_m       by laser, as RobotReading's
+/// @param lasers_m       by laser, as in RobotReading
 void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
                std::span<const std::vector<float>> lasers_m);
 
 /// A grid as the navigator reads it, with the walls that its map saw.
 KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid);
 
-/// The cells that each object covers (their centers, m): of its class, inside its box. A box alone
-/// says too much of a thing that stands askew in the map's frame.
+/// The cells that each object covers (their centers, m): those of its class inside its box. The box
+/// alone is too large for a thing that is not aligned with the map's axes.
 std::vector<std::vector<Eigen::Vector2d>> footprints_of(const VoxelMap& map,
                                                         const std::vector<MapObject>& objects);
 
-/// Frames that the map is made of: those of the trajectory after which the camera moved or turned
-/// by some, as indices of the sequence.
+/// Frames that the map is made from, as indices of the sequence: those with a pose at which the
+/// camera has moved or turned enough since the last one.
 std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory& estimate);
 
 /// What a map is built from.
@@ -53,16 +53,16 @@ struct MapInput {
   const Trajectory& estimate;  ///< world_from_camera in the system's own world
   const Robot& robot;
   RandomStream noise;  ///< of the frames
-  /// The scans at a frame, by laser; empty: depth alone makes the grid.
+  /// The scans at a frame, by laser; if empty, the grid is made from depth alone.
   std::function<std::vector<std::vector<float>>(std::size_t frame)> lasers = {};
 };
 
-/// Builds the map from depth, labels and lasers. Makes the frames again; what was seen in a second
-/// attempt after tracking failed is seen with the noise of the first.
-/// An empty map if nothing was tracked, or no free floor was seen.
+/// Builds the map from depth, labels and lasers. Renders the frames again; frames that were shown
+/// again after tracking failed have the noise of their first showing here. The map is empty if
+/// nothing was tracked or no free floor was seen.
 RobotMap build_robot_map(const MapInput& input);
 
-/// The objects meant by a name, as goals, the best-scored first.
+/// The objects that a name refers to, as goals, the one with the best score first.
 /// @throws InputError with suggestions if the map has none.
 std::vector<NavigatorGoal> goals_named(const RobotMap& map, const std::string& name);
 

@@ -21,14 +21,14 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kClear_m = 0.05;     // around a robot that is put down
-constexpr double kSqueeze_m = 0.015;  // around one that takes the shortest way
-constexpr double kLeast_m = 0.5;      // a shorter way is no search
+constexpr double kSqueeze_m = 0.015;  // around one that takes the shortest path
+constexpr double kLeast_m = 0.5;      // a shorter path is not a search
 
 bool is_search(double way_m) {
   return std::isfinite(way_m) && way_m >= kLeast_m;
 }
 
-/// Shortest way (m) from each cell to a place where the robot has arrived.
+/// Length (m) of the shortest path from each cell to a place where the robot has arrived.
 Grid2d<float> ways_to(const EpisodeStart& goal, const FloorGrid& grid, double arrival_m,
                       double clearance_m) {
   std::vector<Vector2d> ends;
@@ -42,7 +42,7 @@ Grid2d<float> ways_to(const EpisodeStart& goal, const FloorGrid& grid, double ar
   return way_lengths(grid, ends, clearance_m);
 }
 
-/// Centers of the cells that a robot can be put down in, all within reach of each other.
+/// Centers of the cells where a robot can be put down, all reachable from each other.
 std::vector<Vector2d> cells_to_stand_in(const FloorGrid& grid, const Scene& scene,
                                         const Robot& robot) {
   const Grid2d<std::uint8_t> region = largest_region(grid, robot.footprint_radius_m + kClear_m);
@@ -111,7 +111,7 @@ std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& sce
   }
   if (goals.empty())
     throw InputError(fmt::format(
-        "{}: has none of the goals where the robot can reach it and has {} m to drive: {}",
+        "{}: has none of the goals where the robot can reach it and must drive at least {} m: {}",
         scene.name, kLeast_m, fmt::join(spec.goals, ", ")));
 
   std::vector<EpisodeStart> starts;

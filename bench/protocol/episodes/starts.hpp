@@ -15,24 +15,24 @@
 
 namespace mh {
 
-/// A thing's true box seen from above.
+/// A thing's true bounding box, seen from above.
 using TrueBox = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
 
-/// Where the robot is put, and what it is to find there. The same for every system.
+/// Where the robot is put, and what it must find from there. The same for every system.
 struct EpisodeStart {
   std::size_t index = 0;
   Eigen::Vector2d place_m = Eigen::Vector2d::Zero();  ///< world
   double heading_rad = 0;
   std::string goal = {};
-  std::vector<TrueBox> boxes = {};  ///< of every thing of that class
+  std::vector<TrueBox> boxes = {};  ///< of all things of the goal's class
   std::shared_ptr<const TrueWalls> walls = {};
-  double shortest_m = 0;  ///< of the ways over the true floor that end in success
+  double shortest_m = 0;  ///< of the paths over the true floor that end in success
 };
 
 /// Distance (m) of a place from the nearest box; infinite if there is none.
 double distance_to(const std::vector<TrueBox>& boxes, const Eigen::Vector2d& place_m);
 
-/// Whether a place is that near to a box, with no wall between: who stands behind a wall has not
+/// Whether a place is within arrival_m of a box with no wall between: a robot behind a wall has not
 /// arrived.
 bool is_arrival(const EpisodeStart& start, const Eigen::Vector2d& place_m, double arrival_m);
 
@@ -40,15 +40,15 @@ struct StandingPlace {
   Eigen::Vector2d place_m;
   double heading_rad;
 };
-/// Anywhere on the true floor that the robot can reach, turned anyhow.
-/// @throws InputError if no floor is there.
+/// Draws a place anywhere on the true floor that the robot can reach, with a random heading.
+/// @throws InputError if there is no floor.
 StandingPlace draw_place(const Scene& scene, const Robot& robot, RandomStream draw);
 
-/// Draws starts: anywhere on the true floor that the robot can reach, turned anyhow; the goal is
-/// one of the spec's that the scene has and that can be reached. Start i depends on i alone, not on
-/// how many there are. The shortest way keeps 1.5 cm from everything, over cells of 4 cm and their
-/// diagonals: at most 8 % longer than the shortest of all.
-/// @throws InputError if no floor or none of the goals is there.
+/// Draws starts: anywhere on the true floor that the robot can reach, with a random heading; the
+/// goal is one of the spec's goals that exists in the scene and can be reached. Start i depends
+/// only on i, not on the number of starts. The shortest path keeps 1.5 cm from everything and runs
+/// over 4 cm cells and their diagonals: it is at most 8 % longer than the true shortest path.
+/// @throws InputError if there is no floor or none of the goals.
 std::vector<EpisodeStart> draw_starts(const EpisodesSpec& spec, const Scene& scene,
                                       const Robot& robot);
 

@@ -12,17 +12,17 @@ namespace mh {
 /// The true walls of a scene, seen from above.
 class TrueWalls {
  public:
-  /// Takes the part of each wall that stands between the floor and the robot's head.
+  /// Takes the part of each wall between the floor and the robot's height.
   /// @pre the scene's floor is z = 0 (LevelScene)
   TrueWalls(const Scene& scene, double robot_height_m);
 
-  /// Whether a wall crosses the straight line between two places. What crosses its last 2 cm does
-  /// not count: things stand against walls.
+  /// Whether a wall crosses the straight line between two places. Walls that cross only its last 2
+  /// cm do not count: things stand against walls.
   bool between(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) const;
 
  private:
   struct Outline {
-    std::vector<Eigen::Vector2d> corners_m;  ///< of a convex polygon; on a line if it is upright
+    std::vector<Eigen::Vector2d> corners_m;  ///< of a convex polygon; on a line if upright
     Eigen::AlignedBox2d bounds_m;
   };
   std::vector<Outline> outlines_;

@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// Largest difference of two stamps that are treated as the same moment: 0.01 s, as in `evo`.
+/// Largest difference of two stamps that are treated as the same time: 0.01 s, as in `evo`.
 inline constexpr Stamp kMaxStampDifference_ns = 10'000'000;
 
 /// Two trajectories of equal length: element i of one belongs to element i of the other.
@@ -47,7 +47,7 @@ struct Similarity {
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
     return scale * (rotation * point) + translation_m;
   }
-  /// Scales positions; orientations only turn.
+  /// Scales positions; orientations are only rotated.
   SE3 operator*(const SE3& pose) const {
     return {rotation * pose.rotation(), *this * pose.translation()};
   }

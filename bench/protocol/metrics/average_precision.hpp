@@ -18,7 +18,7 @@ double box_overlap(const ImageBox& a, const ImageBox& b);
 struct TruthBox {
   ImageBox box;
   double area = 0;      ///< of the object itself, px: its visible pixels
-  bool ignore = false;  ///< ignored, found or missed: too small to be required
+  bool ignore = false;  ///< too small to be required: neither finding nor missing it counts
 };
 
 struct ScoredBox {
@@ -30,22 +30,23 @@ struct ScoredBox {
 enum class ObjectSize { kAll, kSmall, kMedium, kLarge };
 
 /// Average precision of one class by COCO's definition (Lin et al., ECCV 2014; detection
-/// evaluation, cocodataset.org): NaN without any truth.
+/// evaluation, cocodataset.org); NaN without any truth.
 struct AveragePrecision {
   double ap = 0;  ///< mean over overlaps of 0.50, 0.55, ..., 0.95
   double ap50 = 0, ap75 = 0;
-  double small = 0, medium = 0, large = 0;  ///< as `ap`, of objects of a size
-  std::size_t truths = 0;                   ///< that count
+  double small = 0, medium = 0, large = 0;  ///< as `ap`, for objects of one size
+  std::size_t truths = 0;                   ///< number of truths that count
 };
 
-/// Detections of an image, its best 100, are assigned in order of their scores, each to the free
-/// truth that it overlaps most, if by at least the threshold. Precision is interpolated at 101
-/// recalls (0, 0.01, ..., 1) by its maximum at that recall or a higher one. Truths of another size
-/// are ignored, and so are unassigned detections of another size. There are no crowds.
+/// The best 100 detections of an image are assigned in order of their scores, each to the free
+/// truth that it overlaps most, if the overlap reaches the threshold. Precision is interpolated at
+/// 101 recalls (0, 0.01, ..., 1) by its maximum at that recall or a higher one. Truths of a
+/// different size are ignored, and so are unassigned detections of a different size. There are no
+/// crowds.
 AveragePrecision average_precision(std::span<const TruthBox> truths,
                                    std::span<const ScoredBox> found);
 
-/// The same at one overlap and size. @returns NaN without any truth
+/// Average precision at one overlap and size. @returns NaN without any truth
 double average_precision(std::span<const TruthBox> truths, std::span<const ScoredBox> found,
                          double overlap, ObjectSize size);
 

@@ -11,7 +11,7 @@ namespace mh {
 double median(std::vector<double> values);
 /// The median of the known values; absent if there are none.
 std::optional<double> median_of_known(std::span<const std::optional<double>> values);
-/// 0 for an empty list.
+/// The mean value; 0 for an empty list.
 double mean(std::span<const double> values);
 
 }  // namespace mh

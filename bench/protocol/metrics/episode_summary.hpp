@@ -9,7 +9,7 @@ namespace mh {
 struct EpisodeSummary {
   double count = 0;
   double success = 0;              ///< share
-  double located = 0;              ///< share that at least once believed to know their place
+  double located = 0;              ///< share in which the robot ever believed itself located
   double spl = 0;                  ///< mean
   std::optional<double> median_s;  ///< time of the successes
   double collided = 0, wrong_arrivals = 0;  ///< shares

@@ -31,8 +31,8 @@ ErrorStatistics error_statistics(std::span<const double> errors);
 std::vector<double> ape_translation_m(const MatchedTrajectories& aligned);
 std::vector<double> ape_rotation_deg(const MatchedTrajectories& aligned);
 
-/// Front door: association by stamp, alignment, statistics. `count` is 0 if nothing was matched or
-/// the alignment is undetermined.
+/// The complete computation: association by stamp, alignment, statistics. `count` is 0 if nothing
+/// was matched or the alignment is undetermined.
 ErrorStatistics ape_translation(const Trajectory& truth, const Trajectory& estimate,
                                 Alignment alignment);
 ErrorStatistics ape_rotation(const Trajectory& truth, const Trajectory& estimate,

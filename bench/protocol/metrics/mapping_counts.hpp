@@ -7,7 +7,7 @@ namespace mh {
 
 /// Counts of a mapping, in addition to its trajectory.
 struct MappingCounts {
-  double failures = 0;  ///< times that tracking was lost
+  double failures = 0;  ///< how often tracking was lost
   double restarts = 0;  ///< rewinds
   double dropped = 0;   ///< frames dropped for good
   /// Share of the pairs compared with the local map whose labels disagree: how much labels

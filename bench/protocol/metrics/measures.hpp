@@ -13,10 +13,10 @@ namespace mh {
 /// episodes as "held_out.success", "episodes.success".
 std::span<const Metric> all_metrics();
 
-/// Returns the metric of a set of questions under its name among those of a run.
+/// Returns a metric of a set of queries or episodes with its name among the metrics of a run.
 Metric under(std::string_view questions, Metric metric);
 
-/// Finds a metric that the gate may judge; nullptr if there is none of that name.
+/// Finds a metric that the gate may judge; nullptr if there is none with that name.
 const Metric* find_measure(std::string_view name);
 
 }  // namespace mh

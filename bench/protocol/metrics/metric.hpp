@@ -5,7 +5,7 @@
 // visit)` calls visit(Metric, value) for each; the value is a double or, if it may be unknown, an
 // optional one. Its structured binding names every field of the struct, so that a field without a
 // line does not compile. Files, tables, exports and the gate are generated from these lists: a new
-// figure needs a field, its line, and the code that computes it.
+// figure needs a field, its line in the list, and the code that computes it.
 
 #include <functional>
 #include <optional>

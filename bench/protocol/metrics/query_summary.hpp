@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// Which queries; the sets are never pooled.
+/// The sets of queries; they are never pooled.
 enum class QuerySet {
   kHeldOut,     ///< test frames of the mapping tour
   kSecondTour,  ///< test frames of another tour
@@ -19,7 +19,7 @@ inline std::string_view name(QuerySet set) {
                                         : "graded";
 }
 
-/// The member of a record that has one for each set.
+/// The member for a set, of a record that has one for each set.
 template <class Sets>
 auto& of_query_set(Sets& sets, QuerySet set) {
   return set == QuerySet::kHeldOut      ? sets.held_out
@@ -33,8 +33,8 @@ struct QuerySummary {
   double success = 0;  ///< share of all queries
   /// Shares of all queries; absent if none can be judged because the truth is unknown.
   std::optional<double> correct, false_positive;
-  std::optional<double> in_map;          ///< share of those whose place is in the map
-  std::optional<double> success_in_map;  ///< share of these
+  std::optional<double> in_map;          ///< share whose place is in the map
+  std::optional<double> success_in_map;  ///< share of these that were answered
   /// Over the answered queries, to the local truth; absent if none was answered.
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame

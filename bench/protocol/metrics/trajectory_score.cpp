@@ -18,7 +18,8 @@ std::optional<double> rmse(const ErrorStatistics& s) {
 }
 
 /// Whether the path extends far enough sideways from its main direction to determine the
-/// alignment's rotation about it: position errors rotate it by about error / extent.
+/// alignment's rotation about that direction: position errors change the rotation by about error /
+/// extent.
 bool turn_is_determined(const Trajectory& truth, double error_m) {
   constexpr double kLeastExtent = 10;  // in multiples of the error: a turn of 0.1 rad
   Eigen::MatrixX3d at(static_cast<Eigen::Index>(truth.size()), 3);

@@ -9,17 +9,17 @@ namespace mh {
 /// Quality of a mapping tour's trajectory. An error is absent if the path does not determine it:
 /// too short, or on a line.
 struct TrajectoryScore {
-  double offered = 0;                       ///< frames
-  double tracked = 0;                       ///< frames with a pose at the end, in the largest map
-  double scored = 0;                        ///< of these, those with a true one: ATE is over them
+  double offered = 0;  ///< frames
+  double tracked = 0;  ///< frames with a pose at the end, in the largest map
+  double scored = 0;   ///< of these, those with a true pose: ATE is computed over them
   std::optional<double> ate_rmse_m;         ///< after SE(3) alignment without scale
-  std::optional<double> ate_median_m;       ///< the middle of the errors behind it
+  std::optional<double> ate_median_m;       ///< median of the same errors
   std::optional<double> ate_rmse_deg;       ///< of orientations, after the same alignment
   std::optional<double> ate_first_pose_m;   ///< in the frame of dock_from_estimate
   std::optional<double> rpe_frame_rmse_m;   ///< translation error per frame step
   std::optional<double> rpe_second_rmse_m;  ///< translation error per second
   double completeness = 0;                  ///< tracked / offered
-  double in_any_map = 0;                    ///< share of the offered frames with a pose anywhere
+  double in_any_map = 0;                    ///< share of the offered frames with a pose in any map
 };
 
 template <MaybeConst<TrajectoryScore> S, class Visit>
@@ -40,7 +40,7 @@ void fields(S& score, Visit& v) {
   v(Metric{"in_any_map", "", "%", 2, kMore, "offered"}, in_any_map);
 }
 
-/// Computes ATE, RPE and completeness of an estimate, by the definitions of evaluate().
+/// Computes ATE, RPE and completeness of an estimate, as evaluate() defines them.
 /// @param truth    every frame of the sequence
 /// @param offered  frames that the system was supposed to map
 TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& truth,

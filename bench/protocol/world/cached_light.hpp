@@ -14,10 +14,10 @@
 
 namespace mh {
 
-/// Receives what is being done, one short line each, not starting with a digit.
+/// Receives short lines about what is being done; none starts with a digit.
 using Say = std::function<void(std::string_view)>;
 
-/// Adds baked light to a scene that has lamps but none yet, from the cache if it is there.
+/// Adds baked light to a scene that has lamps but no baked light yet, from the cache if present.
 /// @param say    called when the light has to be baked; may be empty
 /// @param baked  as in bake_light
 void light_from_cache(Scene& scene, int threads, const Cache& cache, const Say& say = {},

@@ -21,13 +21,13 @@
 namespace mh {
 namespace {
 
-constexpr std::uint64_t kGraded = 0x677261646564;  // this draw's own stream
+constexpr std::uint64_t kGraded = 0x677261646564;  // own random stream for graded queries
 enum StreamName : std::uint64_t { kPlaces = 1, kScans = 2, kOrder = 3 };
 constexpr double kApart = 0.1;               // m + rad between any two queries
 constexpr std::size_t kDrawsPerQuery = 500;  // cells that need more draws stay incomplete
 constexpr std::size_t kScansByHand = 8;
 constexpr double kLead_s = 2.0;     // after which the exposure control has settled
-constexpr std::size_t kBehind = 3;  // frames after the query, for its shutter
+constexpr std::size_t kBehind = 3;  // frames after the query, for its rolling shutter
 
 constexpr Stamp kSecond_ns = 1'000'000'000;
 
@@ -38,7 +38,7 @@ struct Candidate {
   std::size_t at = 0;
 };
 
-/// Draws candidates, endlessly or until there are no more.
+/// Draws candidates, without end or until there are no more.
 class Source {
  public:
   virtual ~Source() = default;
@@ -81,7 +81,7 @@ class OnFloor : public Source {
   std::vector<Eigen::Vector2d> cells_;
 };
 
-/// Moments of scans by hand of the same place, in a drawn order.
+/// Views of handheld scans of the same place, in random order.
 class OfScans : public Source {
  public:
   OfScans(const GradedPlace& place, RandomStream stream) {
@@ -116,7 +116,8 @@ std::unique_ptr<Source> source_of(const GradedSpec& spec, const GradedPlace& pla
   return std::make_unique<OnFloor>(place, stream.fork(kPlaces));
 }
 
-/// The moment of a scan with what is before and after it, played at a multiple of its speed.
+/// The candidate's view with the part of its scan before and after it, played at a multiple of its
+/// speed.
 GradedQuery clip_of(const Candidate& candidate, const QueryGrade& grade, double speed) {
   GradedQuery query{.clip = {}, .at = 0, .grade = grade};
   if (candidate.scan == nullptr) {

@@ -19,7 +19,7 @@
 
 namespace mh {
 
-/// One graded query: its moment, and the motion around it (blur, and the lag of the exposure).
+/// One graded query, with the motion around it (for blur, and for the lag of the exposure control).
 struct GradedQuery {
   Trajectory clip;
   std::size_t at = 0;  ///< the query, in the clip
@@ -33,22 +33,22 @@ struct GradedQueries {
 
 /// What graded queries are drawn from.
 struct GradedPlace {
-  const Scene& queried;  ///< may be another scene than was mapped
+  const Scene& queried;  ///< may differ from the scene that was mapped
   std::shared_ptr<const Renderer> mapped_renderer, queried_renderer;
   const Robot& robot;
   const Trajectory& offered;  ///< true poses of the frames offered for mapping
-  bool by_hand = false;       ///< the mapping was a scan by hand, not a drive
+  bool by_hand = false;       ///< the mapping was a handheld scan, not a drive
 };
 
-/// Draws queries until each cell is full, or until so many draws were made that more are pointless.
-/// For a robot: at rest on the floor that it can reach, in a random direction. For a scan by hand:
-/// moments of other scans, each played at every speed; faster, the same poses pass in less time.
-/// Queries are at least 0.1 (m + rad) apart.
+/// Draws queries until each cell is full, or until so many have been drawn that continuing is
+/// pointless. For a robot: at rest on the floor that it can reach, in a random direction. For a
+/// handheld scan: views of other scans, each played at every speed; at a higher speed, the same
+/// poses pass in less time. Queries are at least 0.1 (m + rad) apart.
 /// @throws InputError if there is no floor.
 GradedQueries draw_graded(const GradedSpec& spec, const GradedPlace& place);
 
-/// The distance and angle of the truly nearest mapped view, 1 rad equivalent to 1 m. Both absent if
-/// there is none.
+/// The distance and angle of the nearest mapped view by true pose, where 1 rad counts as 1 m. Both
+/// are absent if there is none.
 QueryGrade grade_of(const Trajectory& mapped, const SE3& world_from_camera);
 
 /// The frames of graded queries, ten seconds apart.

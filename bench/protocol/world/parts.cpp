@@ -19,7 +19,7 @@ class FirstFrames : public Sequence {
       first_ns = std::min(first_ns, stamp_ns(i));
       last_ns = std::max(last_ns, stamp_ns(i));
     }
-    constexpr Stamp kMargin_ns = 100'000'000;  // longer than any gap that is interpolated over
+    constexpr Stamp kMargin_ns = 100'000'000;  // longer than any gap that is interpolated
     truth_.emplace();
     for (const TimedPose& pose : *known)
       if (pose.stamp_ns >= first_ns - kMargin_ns && pose.stamp_ns <= last_ns + kMargin_ns)

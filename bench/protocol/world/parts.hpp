@@ -16,7 +16,8 @@ std::shared_ptr<const Sequence> first_frames(std::unique_ptr<Sequence> all, std:
                                              std::optional<Trajectory> truth = std::nullopt,
                                              bool gives_imu = false);
 
-/// Every n-th frame of a sequence, from the first, as a camera of that lower rate sees them.
+/// Every n-th frame of a sequence, starting with the first, as a camera with that lower rate sees
+/// them.
 std::shared_ptr<const Sequence> every_nth(std::shared_ptr<const Sequence> all, std::size_t n);
 
 }  // namespace mh

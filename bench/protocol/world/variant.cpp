@@ -31,7 +31,7 @@ void require_equipped(const RunSpec& spec, const Robot& robot) {
                                  spec.environment.robot.string(), robot.name, part));
 }
 
-/// What a variant reads beside its place.
+/// The files that a variant reads.
 struct VariantFiles {
   std::optional<Scene> scene;
   std::optional<Pedestrian> pedestrian;
@@ -73,7 +73,7 @@ VariantPlace make_variant(const EpisodeVariant& variant, const RunSpec& spec,
         make_pedestrian_scene(*made.scene.scene, made.scene.renderer, *files.pedestrian);
   if (files.level) {
     made.level = with_dials(*files.level, labels_of_frames(spec));
-    made.level.lens_distortion = mapped.sensors.lens_distortion;  // the camera stays the same one
+    made.level.lens_distortion = mapped.sensors.lens_distortion;  // it is still the same camera
   }
   made.starts = draw_starts(*spec.episodes, *made.scene.scene, mapped.robot);
   return made;

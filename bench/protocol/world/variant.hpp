@@ -14,7 +14,7 @@ namespace mh {
 
 struct SimulatedPlace;
 
-/// Where the robot is kidnapped: what differs from the mapping, and the starts.
+/// The place where the robot is kidnapped, which may differ from the mapped one, and the starts.
 struct VariantPlace {
   std::string name;
   SimulatedScene scene;
@@ -26,14 +26,14 @@ struct VariantPlace {
 /// @param mapped  the place that was mapped
 /// @param inputs  receives what was read for them (input_name())
 /// @param light   bakes a scene's light
-/// @throws InputError as draw_starts(); if a scene's floor is not z = 0, or the robot cannot drive
-/// on its own.
+/// @throws InputError as draw_starts() does, or if a scene's floor is not at z = 0 or the robot
+/// cannot drive on its own.
 std::vector<VariantPlace> make_variants(const RunSpec& spec, const SimulatedPlace& mapped,
                                         std::vector<InputDigest>& inputs,
                                         const std::function<void(Scene&)>& light);
 
 /// Checks, before anything is mapped, that there is something to find in a run's environment.
-/// @throws InputError as make_variants()
+/// @throws InputError as make_variants() does
 void require_goals(const RunSpec& spec);
 
 }  // namespace mh

@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// The part of a scene's mesh that a path's views show.
+/// The part of a scene's surface that the views along a path show.
 class VisibleSurface {
  public:
   /// @param apart_m  minimum pose_distance() between the path's views that are used
@@ -18,8 +18,8 @@ class VisibleSurface {
                  const Trajectory& path, double apart_m = 0.1);
 
   /// The share of a view's surface that at least one of the path's views shows: in its image, and
-  /// not behind something by more than 8 cm or 4 % of the depth. 0 if no surface is in sight.
-  /// @param renderer  of the view's scene, which may be another than the path's
+  /// not behind something by more than 8 cm or 4 % of the depth. 0 if no surface is visible.
+  /// @param renderer  of the view's scene, which may differ from the path's
   double share(const Renderer& renderer, const SE3& world_from_camera) const;
 
  private:
@@ -27,7 +27,7 @@ class VisibleSurface {
     SE3 camera_from_world;
     Grid2d<float> depth_m;
   };
-  Camera camera_, sparse_;  ///< of the path's views, and of the one that is judged
+  Camera camera_, sparse_;  ///< of the path's views; of the view that is judged
   std::vector<View> views_;
 };
 

@@ -138,7 +138,7 @@ std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& wo
   const auto vocabulary =
       std::make_shared<const Vocabulary>(noted(world.inputs, "vocabulary", spec.vocabulary,
                                                [&] { return Vocabulary::load(spec.vocabulary); }));
-  world.held.append(scope.record());  // it is a view of its file
+  world.held.append(scope.record());  // the vocabulary is a view of its file
   return vocabulary;
 }
 
@@ -154,7 +154,7 @@ World open_recordings(const RunSpec& spec) {
     if (const double readout_s = calibration.slam.track.readout_s;
         readout_s > 0 && !e.suite_states_readout && !world.readout_s) {
       world.readout_s = readout_s;
-      world.notes.push_back(fmt::format("track.readout_s: {:g}, of its calibration", readout_s));
+      world.notes.push_back(fmt::format("track.readout_s: {:g}, from its calibration", readout_s));
     }
     for (const std::string& note : opened.notes)
       world.notes.push_back(without_place(note, sequence));
@@ -162,10 +162,8 @@ World open_recordings(const RunSpec& spec) {
     world.cut = world.cut || (spec.max_frames && *spec.max_frames < all);
     const bool gives_imu = std::ranges::count(spec.senses, Sense::kImu) > 0;
     if (gives_imu && opened.sequence->imu().empty())
-      throw InputError(
-          fmt::format("{}: has no inertial sensor (imu.csv), and the suite gives one "
-                      "(`senses`)",
-                      sequence));
+      throw InputError(fmt::format(
+          "{}: has no inertial sensor (imu.csv), but the suite uses one (`senses`)", sequence));
     return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all), std::nullopt,
                         gives_imu);
   };
@@ -198,7 +196,7 @@ std::vector<SE3> odometry_along(const DrivenPath& path, const Robot& robot,
                                 const std::filesystem::path& file) {
   if (robot.wheels() == nullptr)
     throw InputError(
-        fmt::format("{}: has no wheels, and the suite gives odometry (`senses`)", file.string()));
+        fmt::format("{}: has no wheels, but the suite uses odometry (`senses`)", file.string()));
   WheelOdometer odometer(*robot.wheels(), robot.equipment->odometry, seed);
   std::vector<SE3> odom_from_camera;
   for (std::size_t i = 0; i < path.camera.size(); ++i) {
@@ -291,7 +289,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
         along(*scene, *environment.kidnapped_tour, obstacles(place.mapping.camera.size()));
     const std::size_t before = place.mapping.camera.size();
     place.mapping = joined(std::move(place.mapping), elsewhere, rate_hz);
-    if (gives(Sense::kImu))  // not of being carried
+    if (gives(Sense::kImu))  // no readings while it is carried
       append(place.imu,
              {place.mapping.camera.begin() + static_cast<std::ptrdiff_t>(before),
               place.mapping.camera.end()},
@@ -329,7 +327,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   return world;
 }
 
-/// Replaces the labels of both sequences by a detector's.
+/// Replaces the labels of all sequences with a detector's.
 void add_detector(World& world, const DetectorSpec& spec, const Cache& cache, const Say& say) {
   const std::shared_ptr<const Detector> detector =
       noted(world.inputs, "detector", source_of(spec), [&] { return open_detector(spec); });
@@ -351,7 +349,7 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   if (spec.environment.is_recorded()) {
     const ReadScope scope;
     world = open_recordings(spec);
-    world.held = scope.record();  // the vocabulary's among it
+    world.held = scope.record();  // includes the vocabulary's
   } else {
     world = build(spec, threads, cache, say, baked);
   }

@@ -35,15 +35,15 @@ struct SimulatedPlace {
   std::shared_ptr<const Renderer> renderer;
   Robot robot;
   DrivenPath mapping;
-  std::vector<SE3> odom_from_camera;  ///< at the frames of `mapping`; empty unless it is given
-  std::vector<ImuReading> imu;        ///< along `mapping`; empty unless it is given
-  std::shared_ptr<const LasersAlong> lasers;        ///< along `mapping`; null unless they are given
+  std::vector<SE3> odom_from_camera;  ///< at `mapping`'s frames; empty unless the suite gives it
+  std::vector<ImuReading> imu;        ///< along `mapping`; empty unless the suite gives it
+  std::shared_ptr<const LasersAlong> lasers;  ///< along `mapping`; null unless the suite gives them
   std::shared_ptr<const LasersAlong> query_lasers;  ///< along `query_tour`; likewise
   std::optional<DrivenPath> query_tour;             ///< the second tour, if the environment has one
   std::shared_ptr<const Scene> query_scene;  ///< the second tour's scene; null: the same scene
   std::shared_ptr<const Renderer> query_renderer;  ///< of that scene; null: the same renderer
   std::shared_ptr<const PedestrianScene>
-      pedestrian_scene;  ///< with the pedestrians that are present during the mapping; or null
+      pedestrian_scene;  ///< with the pedestrian that walks during the mapping; or null
   std::shared_ptr<const PedestrianScene> query_pedestrian_scene;  ///< during the second tour
   SensorConfig sensors;                                           ///< the level
   GradedQueries graded;                                           ///< empty if the run has none
@@ -53,12 +53,12 @@ struct SimulatedPlace {
 struct World {
   std::shared_ptr<const Sequence> mapping;      ///< what is mapped
   std::shared_ptr<const Sequence> query_tour;   ///< what is queried in addition; or null
-  std::shared_ptr<const Sequence> graded = {};  ///< graded queries, each frame one; or null
-  std::optional<SimulatedPlace> simulated;      ///< what they are made from; a recording has none
+  std::shared_ptr<const Sequence> graded = {};  ///< graded queries, one per frame; or null
+  std::optional<SimulatedPlace> simulated;      ///< what these are made from; a recording has none
   std::vector<VariantPlace> variants = {};      ///< of the episodes; empty: none
   std::shared_ptr<const Vocabulary> vocabulary;
-  /// The rolling shutter's readout by the recordings' calibration, instead of the run's
-  /// `track.readout_s`; absent: the run's applies.
+  /// The rolling shutter's readout time from the recordings' calibration, instead of the run's
+  /// `track.readout_s`; if absent, the run's applies.
   std::optional<double> readout_s = {};
   bool cut = false;                     ///< the sequences were cut after RunSpec::max_frames
   std::vector<std::string> notes = {};  ///< PlaceFacts::notes
@@ -78,13 +78,13 @@ inline const Sequence* sequence_of(const World& world, QuerySet set) {
 /// @param images  as in build_world()
 void simulate(World& world, LabelMode labels, const SharedImages& images = {});
 
-/// What results record about it.
+/// What results record about a world.
 PlaceFacts facts(const World& world, const RunSpec& spec);
 
 /// Loads scene, robot, vocabulary and level of a run, bakes the light, drives both tours, draws the
-/// starts of episodes; or opens its recordings. With episodes, what is mapped has their frame rate.
-/// Reports baking through `say`, since it takes long.
-/// @param images  of all runs in this environment at this level, and of no other
+/// starts of episodes; or opens its recordings. With episodes, the mapped sequence has their frame
+/// rate. Reports baking through `say`, since it takes long.
+/// @param images  shared by all runs in this environment at this level, and by no others
 /// @throws InputError if a file is bad or a tour cannot be driven.
 World build_world(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
                   const BakeWatch& baked = {}, const SharedImages& images = {});

@@ -24,7 +24,7 @@ namespace {
 constexpr double kSheetMargin = 30, kGap = 12, kCaption = 22, kSheetHeader = 92;
 constexpr double kTileWidth = 400;
 constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colors
-constexpr double kSheetEye_m = 1.45;            // of a person who sits or a child who stands
+constexpr double kSheetEye_m = 1.45;            // of a sitting person or a standing child
 
 cv::Mat class_image(const Grid2d<ClassId>& labels) {
   Grid2d<Rgb8> colors(labels.width(), labels.height());
@@ -75,7 +75,7 @@ View shoot(std::string caption, const Renderer& renderer, const Camera& camera, 
 struct CornerView {
   View view;
   int objects = 0;   ///< that fill at least 1/100 of it, except walls, floor and ceiling
-  float near_m = 0;  ///< 9/10 are farther: near 0 if something is in the way
+  float near_m = 0;  ///< 9/10 of it are farther away; near 0 if something blocks the view
 };
 
 CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& renderer,
@@ -177,7 +177,7 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
           shoot_corner(scene, room, renderer, camera,
                        look_at({eye.x(), eye.y(), kSheetEye_m}, {middle.x(), middle.y(), 0.75})));
     }
-    // Those that show the most; if furniture blocks a corner, another one.
+    // The corners that show the most; those with a view blocked by furniture go last.
     constexpr float kFree_m = 0.7F;
     std::ranges::stable_sort(corners, std::greater<>(), [](const CornerView& corner) {
       return std::tuple(corner.near_m > kFree_m, corner.objects, corner.near_m);

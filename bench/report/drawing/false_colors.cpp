@@ -14,7 +14,7 @@ namespace {
 // Range of Turbo, which runs from a nearly black blue to a dark red.
 constexpr double kFarthest = 0.1, kNearest = 0.95;
 
-constexpr std::uint8_t kNoReturn = 215;  // gray, which is not in Turbo; black is void's
+constexpr std::uint8_t kNoReturn = 215;  // gray, which is not in Turbo; black is taken by void
 
 // By class. Found by search for the property that tests/bench/report/drawing/class_colors_test.cpp
 // checks: for any two classes that touch in images of the model house, the four rooms or the 201

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs gnuplot on a script; what it says goes into a file.
+/// Runs gnuplot on a script, with its output and errors written to a file.
 bool ended_well(const fs::path& script, const fs::path& said) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -47,7 +47,8 @@ std::string gnuplot_text(const std::string& text) {
   std::string quoted;
   for (std::string line; std::getline(lines, line);) {
     quoted += quoted.empty() ? "'" : ".\"\\n\".'";
-    // In single quotes only these end something: gnuplot misreads doubled ones at a text's start.
+    // Within single quotes, only a single quote is special; gnuplot misreads a doubled one at the
+    // start of a text.
     for (const char c : printable(line))
       quoted += c == '\'' ? std::string("\u2019") : std::string(1, c);
     quoted += "'";

@@ -8,17 +8,17 @@
 namespace mh {
 
 // Charts are drawn by gnuplot, since Debian packages it, it needs no window, and its whole input is
-// one script that anybody can change.
+// one script that anyone can change.
 
-/// A text as gnuplot holds it: nothing in it is interpreted, lines break at '\n'.
+/// A text quoted for gnuplot: nothing in it is interpreted, and lines break at '\n'.
 std::string gnuplot_text(const std::string& text);
 
-/// The first lines of a script: what is written, by the file's extension (.pdf: vectors, fonts
-/// embedded; else a PNG of 300 pixels to the inch), and where.
+/// The first lines of a script: the output format, by the file's extension (.pdf: vectors, fonts
+/// embedded; else a PNG of 300 pixels per inch), and the path.
 std::string gnuplot_terminal(const std::filesystem::path& file, double width_cm, double height_cm);
 
 /// Draws a file; readers see the old one or the complete new one.
-/// @param script  receives the path to name in gnuplot_terminal()
+/// @param script  makes the script; receives the path for gnuplot_terminal()
 /// @throws InputError naming the file if it is neither .pdf nor .png; MachineError if gnuplot is
 /// missing or fails.
 void draw_by_gnuplot(const std::filesystem::path& file,

@@ -23,7 +23,7 @@ struct Extent {
     least = std::min(least, value);
     most = std::max(most, value);
   }
-  /// From zero where the least value lies below half of the greatest.
+  /// From zero if the least value is below half of the greatest.
   std::string range() const { return least > 0 && least < 0.5 * most ? "[0:*]" : "[*:*]"; }
 };
 

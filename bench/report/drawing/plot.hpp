@@ -33,7 +33,7 @@ struct ShadedField {
   std::vector<Mark> marks;
   Ticks x_ticks, y_ticks;
   std::string low_color = "#ecf3fb", high_color = "#084594";
-  std::optional<std::size_t> framed = {};  ///< a mark
+  std::optional<std::size_t> framed = {};  ///< index of a mark
 };
 
 /// One panel: series, or a field.
@@ -41,7 +41,7 @@ struct Plot {
   std::string title, x_label, y_label;
   std::vector<Series> series;
   std::optional<ShadedField> field = {};
-  std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< else of what is drawn
+  std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< default: what is drawn
 };
 
 /// Panels under a heading, with lines of text below them.
@@ -51,8 +51,8 @@ struct PlotPage {
   std::string caption = {};
 };
 
-/// The script by which gnuplot draws a page: axes are linear, from zero unless all is far
-/// from it or a range is given.
+/// The gnuplot script that draws a page: axes are linear, from zero unless all values are far from
+/// it or a range is given.
 std::string plots_script(const PlotPage& page, const std::filesystem::path& file);
 
 /// Draws a page as .png or .pdf. @throws as draw_by_gnuplot()

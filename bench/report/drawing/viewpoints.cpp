@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kEye_m = 1.45;  // of a person who sits or a child who stands
+constexpr double kEye_m = 1.45;  // of a sitting person or a standing child
 constexpr double kHead_m = 1.9;
 constexpr std::size_t kTargets = 24;
 constexpr std::size_t kPlaces = 10;
@@ -47,7 +47,7 @@ struct Target {
   double radius_m = 0;
 };
 
-/// The largest objects, and everything that is not floor combined.
+/// The largest objects and, as one more target, everything above the floor.
 std::vector<Target> targets_in(const Scene& level) {
   Eigen::AlignedBox3d all;
   for (std::size_t face = 0; face < level.triangles.size(); ++face)
@@ -119,7 +119,7 @@ std::vector<SE3> walking_around(const Scene& level) {
   return views;
 }
 
-/// What a view shows, as keys that two views share if they show the same.
+/// What a view shows, as keys that two views share if they show the same things.
 struct Seen {
   SE3 pose;
   std::set<InstanceId> objects;

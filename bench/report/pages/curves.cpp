@@ -30,9 +30,9 @@ struct Sum {
   double mean() const { return sum / static_cast<double>(count); }
 };
 
-/// Which frame of its tour each pose of a run's estimate is of: by the calls that mapped it, else
-/// (a program that returned a trajectory alone) by the frames of a simulated truth, else by
-/// counting poses.
+/// The frame of the tour that each pose of a run's estimate belongs to: from the calls that mapped
+/// it; else (for a program that returned only a trajectory) from the frames of a simulated truth;
+/// else by counting poses.
 std::vector<std::size_t> frames_of_estimate(const RunResult& run) {
   std::map<Stamp, std::size_t> frame_at;
   for (const MappedFrame& call : run.mapping.calls) frame_at.emplace(call.stamp_ns, call.index);
@@ -63,15 +63,16 @@ std::vector<Sum> window_errors(const RunResult& run) {
   return windows;
 }
 
-/// The 97.5 % quantile of Student's t, by Abramowitz and Stegun, 26.7.5: within 0.1 % from 4
-/// degrees of freedom on.
+/// The 97.5 % quantile of Student's t, by Abramowitz and Stegun, 26.7.5: accurate to 0.1 % with at
+/// least 4 degrees of freedom.
 double student_t(double degrees_of_freedom) {
   const double z = 1.959964, n = degrees_of_freedom, z2 = z * z;
   return z * (1 + (z2 + 1) / (4 * n) + ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
 
-/// The curve starts as a mean over all environments; below this many, it is not comparable.
+/// Each curve starts as a mean over all environments; a mean over fewer than this is not comparable
+/// with that.
 constexpr std::size_t kFewestCounted = 5;
 
 struct Curve {
@@ -83,7 +84,7 @@ struct Curve {
 }  // namespace
 
 Json error_by_frame_json(const Suite& suite, std::span<const Row> rows) {
-  // By curve, window and environment: over trials.
+  // By curve, window and environment: sums over trials.
   std::map<Curve, std::vector<std::map<std::size_t, Sum>>> all;
   for (const Row& row : rows) {
     if (row.parameters != 0 || !is_own_row(suite, row.system, row.labels)) continue;

@@ -10,10 +10,10 @@
 namespace mh {
 
 /// The paper's Figure 4: for each system, level and kind of labels, the mean position error (m,
-/// after SE(3) alignment) over each kWindow frames of the tours, over the environments whose tours
-/// reach that far and are tracked there, with the number of these; of a sweep, at its first point.
-/// Per environment the mean over trials; the 95 % interval is that of a mean of independent
-/// environments. Null without a truth.
+/// after SE(3) alignment) in each window of kWindow frames, over the environments whose tours reach
+/// that far and are tracked there, and the number of these; for a sweep, at its first point. Each
+/// environment counts with its mean over trials; the 95 % interval is that of a mean of independent
+/// environments. Null without ground truth.
 inline constexpr std::size_t kWindow = 30;
 nlohmann::ordered_json error_by_frame_json(const Suite& suite, std::span<const Row> rows);
 

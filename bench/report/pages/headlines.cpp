@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Found = std::vector<const Judged*>;
 
-/// A length as a reader says it: "3.1 mm", "2.57 m".
+/// A length in a readable unit: "3.1 mm", "2.57 m".
 std::string length_text(double m) {
   if (m >= 1) return fmt::format("{:.2f} m", m);
   return m < 5e-5 ? fmt::format("{:.1g} mm", 1e3 * m) : fmt::format("{:.1f} mm", 1e3 * m);
@@ -61,7 +61,8 @@ bool is_of_labels(const SystemSpec& first, const SystemSpec& second) {
          first.settings.empty() && second.settings.empty();
 }
 
-/// Of one environment, whose ATE has no p: "; the ATE of slow is 5.2 times that of plain".
+/// For a single environment, whose ATE has no p: " The ATE of slow is 5.2 times that of plain:
+/// ...".
 std::string ate_text(const Suite& suite, std::span<const Row> rows, const SystemPair& pair,
                      std::size_t level) {
   if (suite.environments.size() > 1) return "";
@@ -117,7 +118,8 @@ Json headline(const Suite& suite, std::span<const Row> rows, const SystemPair& s
     if (v == Verdict::kSecondBetter) for_second.push_back(j);
   }
   const bool decided = !for_first.empty() || !for_second.empty();
-  // The one that is better by the suite's measure or, if neither or both are, in anything.
+  // The leader is better by the suite's measure; if neither or both are, the first leads if it is
+  // better in anything.
   const auto by_measure = [&](const Found& gains) {
     return std::ranges::any_of(
         gains, [&](const Judged* j) { return j->comparison.what.measure == name(suite.measure); });
@@ -138,7 +140,7 @@ Json headline(const Suite& suite, std::span<const Row> rows, const SystemPair& s
   if (!other.empty()) text += fmt::format("; {} has {}", follower, gains_text(suite, other));
   if (decided) text += ".";
   const Judged* shown = decided ? lead.front() : nullptr;
-  if (shown == nullptr && !family.empty()) {  // where a difference is nearest to be seen
+  if (shown == nullptr && !family.empty()) {  // the comparison nearest to a finding
     const auto told = [&](const Judged* j) {
       return std::tuple(j->comparison.what.measure == name(suite.measure), !j->saturated,
                         std::abs(j->comparison.difference));

@@ -10,15 +10,15 @@
 namespace mh {
 
 /// The verdict on each compared pair at each level in one plain sentence, with the figures of the
-/// comparison that it rests on: who is better, by how much, or that no difference was shown. Where
-/// one environment is all there is, ATE has no p: the sentence tells it if one is kToldFactor times
-/// the other. @param all  of judged()
+/// comparison that it rests on: who is better, by how much, or that no difference was shown. With a
+/// single environment, ATE has no p: the sentence mentions it if one is at least kToldFactor times
+/// the other. @param all  from judged()
 inline constexpr double kToldFactor = 2;
 nlohmann::ordered_json headlines_json(const Suite& suite, std::span<const Row> rows,
                                       std::span<const Judged> all);
 
-/// What each system does, in the figures that matter first: a row per level and arm with the share
-/// of the tour that it mapped, ATE, correct and answered queries of each set, ms per frame.
+/// What each system does, in the most important figures: a row per level and arm with the share of
+/// the tour that it mapped, ATE, correct and answered queries of each set, ms per frame.
 nlohmann::ordered_json tiles_json(const Suite& suite, std::span<const Row> rows,
                                   std::span<const CategoryRow> categories);
 

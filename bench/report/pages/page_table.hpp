@@ -15,7 +15,7 @@ namespace mh {
 
 /// How a column of a table is headed and printed.
 struct PageColumn {
-  std::string key;         ///< by which pages find it: "held_out.success"
+  std::string key;         ///< for pages to find it: "held_out.success"
   std::string title;       ///< what a reader sees
   std::string unit{};      ///< "m"; "%": a share, stored as 0 to 1 and printed times 100
   int decimals = 0;        ///< of numbers
@@ -25,9 +25,9 @@ struct PageColumn {
 /// The column that shows a metric.
 PageColumn column_of(const Metric& metric, std::string title = {});
 
-/// A table in columns, as pages read it: words are written once each and then by number, unknown
-/// values are null, numbers have seven significant digits. A column exists once a row has a cell in
-/// it; rows without one are unknown there.
+/// A table in columns, as pages read it: each word is written once and then referred to by number,
+/// unknown values are null, numbers have seven significant digits. A column exists once a row has a
+/// cell in it; rows without a cell are unknown there.
 class PageTable {
  public:
   explicit PageTable(std::string title, std::string note = {})

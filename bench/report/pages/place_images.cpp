@@ -24,12 +24,13 @@ constexpr std::size_t kMoments = 600;  ///< of a path that is drawn small
 constexpr int kFrameWidth_px = 320;
 constexpr std::size_t kFrames = 4;
 
-/// The drawing of a run with its queries, of the second tour if there is one; "" if there is none.
+/// A run's drawing with its queries (those of the second tour if it has one); "" if there is no
+/// drawing.
 std::string plan_of(const PagesSource& source, const RunResult& run) {
   constexpr std::uintmax_t kLargest = 2'000'000;
   constexpr std::string_view kPng = "\x89PNG";
   if (source.folder.empty()) return "";
-  // The files of another run may be there.
+  // The folder may hold another run's files.
   if (is_file(source.folder / run.spec.name / "map.yaml") && !grid_of(source, run)) return "";
   for (const char* name : {"topdown_second_tour.png", "topdown.png"}) {
     const fs::path file = source.folder / run.spec.name / name;
@@ -39,7 +40,7 @@ std::string plan_of(const PagesSource& source, const RunResult& run) {
   return "";
 }
 
-/// The first trials of one environment at one level, those of each arm once.
+/// The first trial of each arm in the environment and at the level of `like`.
 std::vector<const RunResult*> side_by_side(const Suite& suite, const std::vector<RunResult>& runs,
                                            const RunResult& like) {
   std::vector<const RunResult*> found;
@@ -114,7 +115,7 @@ Json frames_json(const PagesSource& source) {
       try {
         const RgbdFrame frame = usable_frame(*opened.sequence, i, RandomStream(0));
         list.push_back({{"frame", i}, {"jpeg", small_jpeg(frame.color, kFrameWidth_px)}});
-      } catch (const UnusableFrame&) {  // the next may be whole
+      } catch (const UnusableFrame&) {  // the next one may be usable
       }
     }
     if (list.empty()) problem = "none of the frames that were tried can be read";

@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Whether one value would press the others to the axis: it is far beyond all but a few.
+/// Whether the largest value is so far beyond most others that it would squeeze them against the
+/// axis.
 bool needs_logarithm(std::vector<double> values) {
   constexpr double kFar = 10;
   if (values.empty() || std::ranges::min(values) <= 0) return false;
@@ -34,8 +35,8 @@ std::string plot_by_density(const PagesSource& source, const PlotOrder& order,
   const Json json = density_json(*source.suite, rows);
   if (json.is_null())
     throw InputError(
-        fmt::format("{}: no environment was generated, so that the number of its "
-                    "objects is unknown: figure 3 cannot be drawn",
+        fmt::format("{}: no environment was generated, so the number of its objects is unknown: "
+                    "figure 3 cannot be drawn",
                     source.name));
   const PlotTable table(json.at("table"));
   const Json* column = table.column(order.measure);

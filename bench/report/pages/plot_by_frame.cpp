@@ -23,7 +23,7 @@ double tick_step(double range) {
 
 }  // namespace
 
-/// Figure 4: error against frames, and below it the environments still counted.
+/// Figure 4: error against frames, and below it the number of environments still counted.
 std::string plot_by_frame(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   const Json json = error_by_frame_json(
       *source.suite, make_rows(*source.suite, source.results.runs, source.results.failed));

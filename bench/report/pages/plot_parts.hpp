@@ -13,17 +13,17 @@
 
 namespace mh {
 
-// What the figures for papers share, and the figures: each is a script for gnuplot, in a file of
-// its own.
+// What the figures for papers share, and the figures: each is a script for gnuplot, made in a
+// source file of its own.
 
 /// The color of the i-th arm.
 const char* ink_of(std::size_t i);
 
-/// The arms that a table has rows of, in the suite's order, each with the ink of its place there.
+/// The arms of a suite in its order; an arm's place in that order determines its ink.
 class InkOfArms {
  public:
   explicit InkOfArms(const Suite& suite) : suite_(suite), arms_(arms_of(suite)) {}
-  /// @throws std::out_of_range for a row of no arm
+  /// @throws std::out_of_range if no arm has this system and these labels
   std::size_t place(const std::string& system, const std::string& labels) const {
     for (std::size_t i = 0; i < arms_.size(); ++i)
       if (suite_.systems[arms_[i].system].name == system && arms_[i].labels == labels) return i;
@@ -62,7 +62,7 @@ class PlotTable {
   const nlohmann::ordered_json& json_;
 };
 
-/// The terminal, the key above, axes left and below, a faint grid.
+/// The beginning of a script: terminal, key above, axes left and below, a faint grid.
 std::string beginning(const PlotOrder& order, const std::filesystem::path& file, double height_cm);
 
 std::string plot_by_density(const PagesSource& source, const PlotOrder& order,

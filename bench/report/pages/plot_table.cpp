@@ -26,8 +26,8 @@ std::string cell_of(const Json& column, std::size_t row) {
 
 }  // namespace
 
-/// A table: of table 1 what the paper's shows, of table 2 everything; columns without a value are
-/// left out. As wide as it needs to be.
+/// A table: for Table 1 the columns of the paper's, for Table 2 all; columns without a value are
+/// left out. It is as wide as it needs to be.
 std::string plot_table(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   const std::vector<CategoryRow> rows = make_category_rows(
       *source.suite, make_rows(*source.suite, source.results.runs, source.results.failed));

@@ -15,9 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kBytesOfMoment = 70;  ///< of both poses, as measured
+constexpr double kBytesOfMoment = 70;  ///< bytes of both poses, as measured
 
-/// A path as lists of integers: milliseconds since its start, mm, 1/10,000.
+/// A path as lists of integers: milliseconds since the start, positions in mm, quaternions in
+/// 1/10,000.
 Json path_json(const Trajectory& path, const SE3& to, Stamp start_ns, std::size_t moments) {
   if (path.empty()) return nullptr;
   const std::size_t step = (path.size() + moments - 1) / std::max<std::size_t>(1, moments);

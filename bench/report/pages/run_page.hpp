@@ -7,12 +7,12 @@
 
 namespace mh {
 
-/// How many moments of a trajectory a run's page may hold, so that all of a study's fit into
+/// How many poses of a trajectory a run's page may hold, so that the pages of all runs fit into
 /// `budget` bytes.
 std::size_t moments_for(std::size_t runs, std::size_t budget);
 
 /// What the page of one run shows beyond the tables: the true and the estimated path in the frame
-/// of the dock (positions in mm, orientations in 1/10,000), thinned to at most so many moments;
+/// of the dock (positions in mm, orientations in 1/10,000), thinned to about `moments` poses;
 /// tracking by call; the occupancy grid; digests and settings. What is unknown is null.
 nlohmann::ordered_json run_page_json(const PagesSource& source, const RunResult& run,
                                      std::size_t moments);

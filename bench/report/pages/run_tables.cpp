@@ -29,8 +29,8 @@ void identify(PageTable& table, const RunSpec& spec, const std::string& status) 
   table.number({"trial", "trial"}, spec.trial);
 }
 
-/// Titles of a run's metrics: those of queries with the short name of their set, those of episodes
-/// with that word.
+/// The title of a run's metric: for queries with the short name of their set, for episodes with
+/// that word.
 std::string metric_title(const Metric& metric) {
   std::string title = metric.heading.empty() ? metric.name : std::string(metric.heading);
   if (metric.name.starts_with("episodes.")) return "episodes: " + title;
@@ -69,7 +69,7 @@ void put_cost(PageTable& table, const PagesSource& source, const RunResult& run)
     table.number({"jobs", "runs side by side"}, run.circumstances.jobs);
 }
 
-/// The first cause that an audit states: by run, query set and frame, at the first point.
+/// The first cause that an audit states (at the first point), by run, query set and frame.
 using Causes = std::map<std::tuple<std::string, std::string, std::string>, std::string>;
 
 /// Cells of a line of CSV; quotes around a cell are removed.
@@ -104,7 +104,7 @@ Causes causes_in(const std::string& csv) {
   return causes;
 }
 
-/// The settings of a run's points, as the suite's sweep varies them; none of a single point.
+/// The settings of a run's points, as the suite's sweep varies them; empty for a single point.
 std::vector<std::string> points_of(const PagesSource& source, const RunResult& run) {
   std::vector<std::string> points;
   if (run.points.size() < 2) return points;

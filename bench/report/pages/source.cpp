@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A JSON file of the folder; null if it is missing or damaged, which is noted.
+/// A JSON file of the folder; null if it is missing or damaged; a damaged one is noted.
 /// @param keys  what it must hold
 Json json_file(PagesSource& source, const std::string& name,
                std::initializer_list<const char*> keys) {
@@ -101,7 +101,7 @@ std::optional<OccupancyGrid> grid_of(const PagesSource& source, const RunResult&
   if (source.folder.empty() || !is_file(file)) return std::nullopt;
   try {
     OccupancyGrid grid = load_map_server(file);
-    // The files of another run may be there.
+    // The folder may hold another run's files.
     if (digest_bytes(grid.cells.data(), grid.cells.size(), digest(run.estimate)) != run.map_digest)
       return std::nullopt;
     return grid;

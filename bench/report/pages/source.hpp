@@ -14,7 +14,7 @@
 
 namespace mh {
 
-/// Everything that the pages tell of one results folder. What the folder lacks is empty, and
+/// Everything that the pages show about one results folder. What the folder lacks is empty, and
 /// `problem` states in one line why nothing could be read.
 struct PagesSource {
   std::string name;                 ///< a heading: the last part of the folder's path
@@ -28,14 +28,14 @@ struct PagesSource {
   nlohmann::ordered_json audit = {};         ///< the folder's audit.json, or null
   std::string audit_csv = {};                ///< the folder's audit.csv: a line per query
   std::vector<std::string> damaged = {};     ///< files of the folder that could not be read
-  /// Frames of the first recording, if it is at hand (frames_json()); null: not asked for.
+  /// Frames of the first recording, if it is available (frames_json()); null if not requested.
   nlohmann::ordered_json frames = {};
-  /// What was recorded of runs by running them again (bench/audit/replay), by name.
+  /// What was recorded by repeating runs (bench/audit/replay), by name.
   std::map<std::string, nlohmann::ordered_json> replay_of = {}, views_of = {};
 };
 
-/// The grid of a run's map, of the results or from its folder; nullopt if there is none, or if it
-/// is damaged.
+/// The grid of a run's map, from the results or from the run's folder; nullopt if there is none, or
+/// if it is damaged.
 std::optional<OccupancyGrid> grid_of(const PagesSource& source, const RunResult& run);
 
 /// Reads a results folder or file. A damaged file, one of another version and one without a suite

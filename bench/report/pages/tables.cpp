@@ -45,7 +45,7 @@ bool is_whole_suite(const Suite& suite, const CategoryRow& row) {
          is_own_row(suite, row.system, row.labels);
 }
 
-/// Why a row's figures may not be taken as they are; "" if nothing is to be said.
+/// A caveat on a row's figures; "" if they need none.
 std::string remark_on(const Suite& suite, const CategoryRow& row, const QuerySummary& queries) {
   std::string missing = incomplete(row);
   if (!missing.empty() || !is_saturated(suite.systems[row.system], queries)) return missing;

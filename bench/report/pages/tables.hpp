@@ -11,20 +11,20 @@
 
 namespace mh {
 
-/// A system with the labels that it sees, and how pages and plots call it: "semantic, exact" or
+/// A system with the labels that it sees, and what pages and plots call it: "semantic, exact" or
 /// "semantic" if there is one kind.
 struct Arm {
   std::size_t system = 0;
   std::string labels, name;
 };
-/// In the suite's order, in which they have their colors.
+/// The arms of a suite in its order, which determines their colors.
 std::vector<Arm> arms_of(const Suite& suite);
 
 /// The labels that a system sees: "none" if it looks at none.
 std::string labels_seen(const Suite& suite, std::size_t system, const Labels& labels);
 
-/// Whether a row holds answers that no other one repeats: a system that sees no labels has the same
-/// in the rows of every kind.
+/// Whether a row's answers do not just repeat an earlier row's: a system that sees no labels has
+/// the same ones in the rows of every kind of labels.
 bool is_own_row(const Suite& suite, std::size_t system, const Labels& labels);
 
 /// What the words of the tables mean, with the suite's thresholds.
@@ -59,7 +59,7 @@ std::optional<SE3> answer_in_truth(const RunResult& run, QuerySet set, const Que
 /// @param only  this run alone; null: all
 nlohmann::ordered_json queries_json(const PagesSource& source, const RunResult* only = nullptr);
 
-/// The rows of audit.json and, apart, those of single environments; null without an audit.
+/// The rows of audit.json and, separately, those of single environments; null without an audit.
 nlohmann::ordered_json audit_tables_json(const PagesSource& source);
 
 }  // namespace mh

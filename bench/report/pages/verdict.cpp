@@ -22,7 +22,7 @@ bool is_share(const Comparison& c) {
   return c.what.unit.empty();
 }
 
-/// As it is shown: in percentage points or mm.
+/// A value as it is shown: in percentage points or mm.
 double shown(const Comparison& c, double value) {
   return (is_share(c) ? 100 : 1000) * value;
 }
@@ -31,7 +31,7 @@ double shown(const Comparison& c, double value) {
 std::string amount(const Comparison& c, double value, bool with_unit = true) {
   const double scaled = shown(c, value);
   const char* unit = !with_unit ? "" : is_share(c) ? " percentage points" : " mm";
-  // Nothing that is not zero is said to be zero.
+  // A value other than zero must not be shown as zero.
   if (scaled != 0 && std::abs(scaled) < 0.005) return fmt::format("{:+.1g}{}", scaled, unit);
   return fmt::format("{:+.2f}{}", scaled, unit);
 }
@@ -109,7 +109,8 @@ std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
             {family.systems, family.level, suite.environments[family.environment].name, c});
   }
   for (Judged& j : all) j.saturated = both_answer_all(rows, j, suite);
-  // What the suite is judged by first, then what else is judged, then what stands beside it.
+  // First the family, led by the suite's measure; then what is shown alongside; last what has no
+  // pairs.
   std::ranges::stable_sort(all, {}, [&](const Judged& j) {
     const Comparison& c = j.comparison;
     return std::array{c.pairs == 0, !c.in_family, c.what.measure != name(suite.measure)};

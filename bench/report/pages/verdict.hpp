@@ -17,7 +17,7 @@ namespace mh {
 /// square root of their number. Absent if no difference was observed or nothing can be detected.
 std::optional<double> pairs_to_decide(const Comparison& comparison);
 
-/// One comparison with what it is of.
+/// A comparison, with the systems, level and environment that it is about.
 struct Judged {
   SystemPair systems;
   std::size_t level = 0;
@@ -30,8 +30,8 @@ struct Judged {
 /// those by the suite's measure first.
 std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows);
 
-/// A comparison in figures: the difference with its interval, over what, and how many pairs would
-/// decide it if nothing was shown.
+/// A comparison in figures: the difference with its interval, the pairs that it is over and, if no
+/// difference was shown, how many pairs would decide it.
 std::string finding(const Suite& suite, const Judged& judged);
 
 /// Headlines (headlines.hpp), and every comparison: as a list for charts, and as a table.

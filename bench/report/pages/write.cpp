@@ -61,7 +61,7 @@ void remove_earlier_data(const fs::path& folder) {
       fs::remove(entry.path(), error);
 }
 
-/// What makes figures other than the suite's own: a reader must know it first.
+/// Why the figures are not those of the whole suite: a reader must know this first.
 Json warnings_json(const PagesSource& source) {
   Json warnings = Json::array();
   if (!source.problem.empty()) warnings.push_back(source.problem);
@@ -92,7 +92,7 @@ Json warnings_json(const PagesSource& source) {
   return warnings;
 }
 
-/// How the figures were made, for who wants to know.
+/// How the figures were made, for those who want to know.
 Json notes_json(const Suite& suite) {
   Json notes = Json::array();
   if (suite.trials == 1)
@@ -103,7 +103,7 @@ Json notes_json(const Suite& suite) {
   return notes;
 }
 
-/// Where tables and figures are if the suite sweeps settings; otherwise null.
+/// The point that tables and figures show if the suite sweeps settings; otherwise null.
 Json first_point(const PagesSource& source) {
   if (!source.suite || source.suite->sweep.points.empty()) return nullptr;
   return shown_point(source.suite->sweep, parameter_points(*source.suite).front());
@@ -248,7 +248,7 @@ WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sourc
   WrittenPages written{out / "index.html", pieces.files(), pieces.bytes()};
   for (const char* file : kBundle) {
     const std::string content = read_file(bundle_folder() / file);
-    write_atomically(out / file, content);  // index.html first would open before its data
+    write_atomically(out / file, content);  // after the data that index.html needs
     written.bytes += content.size();
     ++written.files;
   }

@@ -14,12 +14,12 @@ namespace mh {
 /// The folder with what a browser runs: index.html, app.js, app.css (bench/report/pages/bundle).
 std::filesystem::path bundle_folder();
 
-/// Digest of the files that the bundle is made from, below bench/report/web; the bundle holds the
-/// same in its first line. FNV-1a, 64 bits, over each file's path and content in order of the
-/// paths, so that bench/report/web/build.mjs computes it too.
+/// Digest of the files that the bundle is made from, below bench/report/web; the bundle's scripts
+/// hold the same in their second line. FNV-1a, 64 bits, over each file's path and content in order
+/// of the paths, so that bench/report/web/build.mjs computes it too.
 std::string digest_of_web(const std::filesystem::path& web);
 
-/// Names of the files that write_pages() leaves in a folder; its data stand in the folder `data`.
+/// Names of the files that write_pages() leaves in a folder; its data are in the folder `data`.
 std::vector<std::string> names_of_pages();
 
 /// What was written.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the bundle that `modelhouse report` copies: node build.mjs [FOLDER]
-// (default: bench/report/pages/bundle). Its first line holds a digest of everything it is made from.
+// (default: bench/report/pages/bundle). The second line of each script holds a digest of everything
+// that the bundle is made from.
 import { build } from "esbuild";
 import { mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";

@@ -108,7 +108,7 @@ Baseline load_baseline(const std::filesystem::path& file) {
     return read(json);
   } catch (const Json::exception& e) {
     throw InputError(fmt::format("{}: is damaged: {}", file.string(), json_fault(e)));
-  } catch (const InputError& e) {  // a number in it
+  } catch (const InputError& e) {  // a number in it is invalid
     throw InputError(fmt::format("{}: is damaged: {}", file.string(), e.what()));
   }
 }

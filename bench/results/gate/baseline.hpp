@@ -19,8 +19,8 @@ struct Baseline {
   std::string suite_digest;  ///< of its runs' scenes, tours, systems, seeds, protocol
   /// Program and machine that produced the figures: if all of it is equal, the bits must be too.
   nlohmann::ordered_json origin;
-  /// What a change may alter along with the program (see gate_settings). Null in a baseline written
-  /// by an older program.
+  /// Settings that a change may alter along with the program (see gate_settings). Null in a
+  /// baseline written by an older program.
   nlohmann::ordered_json settings = {};
   std::vector<RunFigures> runs = {};
 };

@@ -30,8 +30,8 @@ std::string run_digest(const RunResult& run) {
   return hex(sum);
 }
 
-/// "what=digest of content" of something that a run reads and of every file that it names, so that
-/// a file is the same after it was moved.
+/// "what=digest of content" for something that a run reads and for every file that it names; moving
+/// a file changes nothing.
 std::string content(std::string_view what, const std::filesystem::path& source,
                     const InputDigest& input) {
   if (is_generated(source)) {
@@ -46,9 +46,9 @@ std::string content(std::string_view what, const std::filesystem::path& source,
   return text;
 }
 
-/// What the sources of an environment or variant hold. One that is absent says nothing: suites of
-/// before a new one keep their baselines.
-/// @param input_of  the name among the inputs
+/// The contents of the sources of an environment or variant. An absent source adds nothing, so that
+/// suites keep their baselines when a new kind of source is introduced.
+/// @param input_of  returns a source's name among the inputs
 template <class Of, class InputOf>
 std::string contents(const Of& of, const std::vector<InputDigest>& inputs,
                      const InputOf& input_of) {
@@ -75,7 +75,7 @@ std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
   return text;
 }
 
-/// What decides labels. A kind alone is its name.
+/// Everything that determines labels; only the name of a kind without settings.
 std::string labels_text(const Labels& labels, InputReader& reader) {
   std::string text = fmt::format("labels={};", name(labels));
   if (labels.dials) text += fmt::format("dials={};", json_of(*labels.dials).dump());

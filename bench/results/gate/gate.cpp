@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kPower80 = 0.84;           // normal quantile of 80 % power
-constexpr double kSure95 = 1.86;            // Student's t, one-sided, of twice kFewestRuns
+constexpr double kSure95 = 1.86;            // Student's t, one-sided, for two sets of kFewestRuns
 constexpr double kMedianOverMean = 1.2533;  // ratio of standard errors: sqrt(pi / 2)
 constexpr double kRounding = 1e-12;         // sums of shares are equal to within this
 
@@ -67,7 +67,7 @@ double paired_change(const std::optional<double>& before, const std::optional<do
   return before ? worst : -worst;
 }
 
-/// As median(), for values that may be infinite: the middle of two opposite infinities is 0.
+/// Like median(), but for values that may be infinite: the middle of two opposite infinities is 0.
 double median_with_infinities(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
@@ -87,7 +87,7 @@ double standard_deviation(const std::vector<std::optional<double>>& values) {
   return std::sqrt(sum / static_cast<double>(known.size() - 1));
 }
 
-/// The smallest share of `count` above the tolerance.
+/// The smallest multiple of 1 / count above the tolerance.
 double next_step(double tolerance, double count) {
   return (std::floor(tolerance * count + kRounding) + 1) / count;
 }
@@ -142,7 +142,7 @@ bool is_asked(const Pairing& pairing, const Metric& measure) {
   });
 }
 
-/// Whether it has a figure in any run.
+/// Whether any run has a figure for the measure.
 bool occurs(const Pairing& pairing, const Metric& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return figure(*pair.first, measure.name) || figure(*pair.second, measure.name);

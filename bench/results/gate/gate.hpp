@@ -29,12 +29,12 @@ struct Change {
   double change = 0;
   double tolerance = 0;
   /// A true worsening of this size is detected with 80 % power: tolerance + 0.84 standard errors of
-  /// the median paired change. That is the error due to chance alone for a different but no worse
-  /// program: before and after drawn independently, with the spread over the baseline's seeds, so
-  /// 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 / queries above the
-  /// tolerance. If a system is not repeatable, before and after are drawn again each time, with the
-  /// spread over the runs of both; its change must exceed the tolerance by 1.86 standard errors to
-  /// be more than chance, and `detectable` holds that as well.
+  /// the median paired change. The standard error is that of chance alone for a different but no
+  /// worse program: before and after are drawn independently, with the spread over the baseline's
+  /// seeds, so it is 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 /
+  /// queries above the tolerance. If a system is not repeatable, the spread is that over the runs
+  /// of both, and the change must also exceed the tolerance by 1.86 standard errors to be more than
+  /// chance; `detectable` includes that.
   double detectable = 0;
   bool repeatable = true;
   ChangeVerdict verdict = ChangeVerdict::kSame;

@@ -134,11 +134,11 @@ std::string gate_report(const GateResult& result, const std::string& suite) {
                "better than the baseline (keep it with --update, or later loss goes unseen):");
   text += list(result, ChangeVerdict::kWorse, "worse than the baseline:");
   if (!result.unrepeatable.empty()) {
-    text +=
-        result.settings_known
-            ? "not repeatable: same program, same settings, same machine, other bits:\n"
-            : "not repeatable: same program, same machine, other bits; or other settings (`slam`, "
-              "vocabulary), which this baseline does not tell (--update makes one that does):\n";
+    text += result.settings_known
+                ? "not repeatable: same program, same settings, same machine, different bits:\n"
+                : "not repeatable: same program, same machine, different bits; or other settings "
+                  "(`slam`, vocabulary), which this baseline does not record (--update makes one "
+                  "that does):\n";
     for (const std::string& run : result.unrepeatable) text += "  " + run + "\n";
   }
   text += fmt::format("{}: {}: {} of {} measures worse, {} better\n", suite,

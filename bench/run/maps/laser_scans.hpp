@@ -10,7 +10,8 @@
 
 namespace mh {
 
-/// The lasers of a robot on its path through a scene: a second source for a map besides depth.
+/// The lasers of a robot on its path through a scene: a second source for a map, in addition to
+/// depth.
 class SceneLasers {
  public:
   /// @throws InputError if the robot has no lasers.
@@ -18,10 +19,10 @@ class SceneLasers {
   ~SceneLasers();
   SceneLasers(SceneLasers&&) noexcept;
 
-  /// The lasers' readings at the true pose of each pose that has one, placed at the (estimated)
-  /// pose.
+  /// The lasers' readings at each estimated pose whose true pose is known: read at the true pose,
+  /// placed at the estimated one.
   /// @param map_from_camera    ordered by stamp
-  /// @param world_from_camera  the true poses, ordered by stamp; of a camera on the robot
+  /// @param world_from_camera  the true poses of the robot's camera, ordered by stamp
   ScanGrid scans(const Trajectory& map_from_camera, const Trajectory& world_from_camera,
                  double resolution_m) const;
 

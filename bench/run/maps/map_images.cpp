@@ -32,7 +32,7 @@ std::pair<Vector2i, Vector2i> known_part(const OccupancyGrid& grid) {
   return {low, high};
 }
 
-/// A row of colored squares with words.
+/// A legend: a row of colored squares with words.
 void draw_key(Canvas& canvas, double y, const std::vector<std::pair<std::string, Rgb8>>& entries) {
   double x = kMapMargin;
   for (const auto& [word, color] : entries) {
@@ -66,7 +66,7 @@ std::vector<MapPoint> points_of(const VoxelMap& map) {
 cv::Mat draw_classes_over(const OccupancyGrid& grid, const std::vector<MapPoint>& points,
                           double ceiling_m) {
   constexpr Rgb8 kFloorTone{232, 234, 237}, kWallTone{90, 90, 90};
-  constexpr double kSlant = 0.62, kRise = 0.78;  // px per px of depth, of height
+  constexpr double kSlant = 0.62, kRise = 0.78;  // px on the image per px of depth and of height
   const auto [low, high] = known_part(grid);
   const Vector2i size = high - low;
   const double px = (kMapWidth - 2 * kMapMargin) / std::max(1, size.x());  // per cell
@@ -84,7 +84,7 @@ cv::Mat draw_classes_over(const OccupancyGrid& grid, const std::vector<MapPoint>
     ++count[p.label];
   }
   const auto rise_px = [&](const MapPoint& p) { return p.point_m.z() * px_per_m * kRise; };
-  // Below the north edge of the grid, px.
+  // Distance below the north edge of the grid, px.
   const auto down_px = [&](const MapPoint& p) {
     return (size.y() * grid.resolution_m - (p.point_m.y() - corner.y())) * px_per_m * kSlant;
   };
@@ -157,7 +157,7 @@ cv::Mat draw_against_truth(const OccupancyGrid& grid, const OccupancyGrid& plan)
             {"obstacle invented", kInventedObstacle},
             {"floor not seen", kNotSeen},
             {"obstacle not seen", Rgb8{200, 200, 200}},
-            {"free where nobody gets", kFreeElsewhere}});
+            {"free but unreachable", kFreeElsewhere}});
   return canvas.finish();
 }
 

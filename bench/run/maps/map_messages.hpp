@@ -8,13 +8,13 @@
 
 namespace mh {
 
-/// Writes a map for RViz and Foxglove, once each, in frame `map`, at time 0: `/map` (the grid),
-/// `/global_costmap/costmap` (its costs as Nav2 publishes them), `/objects` (a box and a name for
-/// each), `/voxels` (the occupied ones in the colors of their classes).
+/// Writes a map for RViz and Foxglove, one message per topic, in frame `map`, at time 0: `/map`
+/// (the grid), `/global_costmap/costmap` (its costs as Nav2 publishes them), `/objects` (a box and
+/// a name for each object), `/voxels` (the occupied ones in the colors of their classes).
 /// @throws as the writer does
 void write_map_messages(MessageWriter& file, const VoxelMap& map, const MapStudy& study);
 
-/// Whether a file is one that write_map_messages() made, to be replaced.
+/// Whether write_map_messages() made a file, so that it may be replaced.
 bool holds_map_messages(const std::filesystem::path& file);
 
 }  // namespace mh

@@ -13,7 +13,7 @@
 
 namespace mh {
 
-/// A share, as counts.
+/// A share, given by counts.
 struct Share {
   std::size_t good = 0, all = 0;
   void add(bool is_good) { good += is_good ? 1 : 0, ++all; }
@@ -22,23 +22,24 @@ struct Share {
   }
 };
 
-/// A voxel map against the exact mesh. "Seen": by exact rays from the true poses of the same
-/// keyframes, within the depth model's range, through pixels in which the sensor had a return.
+/// A voxel map compared with the exact mesh. "Seen" means hit or crossed by exact rays from the
+/// true poses of the same keyframes, within the depth model's range, through pixels in which the
+/// sensor had a return.
 struct VoxelScore {
   Share occupied_precision;  ///< occupied voxels with a true surface within one cell
-  Share occupied_recall;     ///< true surfaces that were seen, with an occupied voxel within one
-  Share free_precision;      ///< free voxels that no surface touches, in open space
-  Share free_within_one;     ///< free voxels with open space within one cell
-  Share free_recall;         ///< open space that was seen free and is free in the map
+  Share occupied_recall;  ///< true surfaces that were seen, with an occupied voxel within one cell
+  Share free_precision;   ///< free voxels that no surface touches, in open space
+  Share free_within_one;  ///< free voxels with open space within one cell
+  Share free_recall;      ///< open space that was seen free and is free in the map
 };
 
 /// @param exact  the same keyframes with exact depth at their true poses: what could be seen
 VoxelScore score_voxels(const VoxelMap& map, const VoxelMap& exact, const TrueSpace& truth);
 
-/// A grid against the true floor plan, both cut to the same cells.
+/// A grid compared with the true floor plan, over the cells of the plan.
 struct GridScore {
   Share iou;       ///< of free cells: free in both / free in either
-  Share iou_seen;  ///< the same over cells that the grid knows
+  Share iou_seen;  ///< the same, over cells that are known in the grid
 };
 /// @pre equal resolutions, origins at multiples of it
 GridScore score_grid(const OccupancyGrid& grid, const OccupancyGrid& plan);
@@ -53,13 +54,16 @@ struct TrueObject {
 };
 
 struct ObjectScore {
-  Share recall;  ///< true objects of at least the least size with one of the class within reach
-  /// Found objects of that size within reach of a true one of the class, of any size.
+  /// Share of the true objects (at least least_m long) with a found object of their class within
+  /// reach_m.
+  Share recall;
+  /// Share of the found objects (likewise) within reach_m of a true object of their class, of any
+  /// size.
   Share precision;
   std::vector<TrueObject> objects;
 };
 
-/// @param least_m  the least length of the longest side of an object
+/// @param least_m  minimum length of an object's longest side
 /// @param reach_m  between centers
 ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scene,
                           double least_m = 0.4, double reach_m = 0.25);

@@ -70,7 +70,7 @@ const TimedPose* pose_at(const Trajectory& trajectory, Stamp stamp_ns) {
 std::optional<FloorFrame> floor_of(const OccupancyMapper& mapper,
                                    const Trajectory& world_from_camera) {
   constexpr std::size_t kMostViews = 60;
-  constexpr int kStep = 4;  // of thinned pixels
+  constexpr int kStep = 4;  // in pixels of the thinned depth
   std::vector<LabeledPoint> points;
   std::vector<SE3> cameras;
   const std::size_t every = std::max<std::size_t>(1, world_from_camera.size() / kMostViews);

@@ -22,7 +22,7 @@ struct MapStudy {
   OccupancyGrid grid;
   std::vector<MapObject> objects;
 };
-/// @param scans  a second source of the grid; may be null
+/// @param scans  a second source for the grid; may be null
 MapStudy study_of(const VoxelMap& map, const ObstacleGridConfig& config,
                   const ScanGrid* scans = nullptr);
 
@@ -40,9 +40,10 @@ inline constexpr std::array<const char*, 12> kMapFiles{"map.ot",
                                                        "grid_against_truth.png",
                                                        "score.json"};
 
-/// Writes the octree alone. @throws InputError naming the file.
+/// Writes only the octree. @throws InputError naming the file.
 void write_octree(const std::filesystem::path& folder, const VoxelMap& map);
-/// Writes octree, grid (trinary and raw), costs and objects. @throws InputError naming the file.
+/// Writes the octree, the grid (trinary and raw), costs and objects. @throws InputError naming the
+/// file.
 void write_map_files(const std::filesystem::path& folder, const VoxelMap& map,
                      const MapStudy& study);
 
@@ -53,7 +54,7 @@ const TimedPose* pose_at(const Trajectory& trajectory, Stamp stamp_ns);
 std::optional<FloorFrame> floor_of(const OccupancyMapper& mapper,
                                    const Trajectory& world_from_camera);
 
-/// Scores of a map against the exact mesh, and of the same frames at true poses.
+/// Scores of a map against the exact mesh, and of a map made from the same frames at true poses.
 struct MapScores {
   std::size_t keyframes = 0;
   VoxelScore voxels, voxels_true_poses;
@@ -68,7 +69,7 @@ struct MapScoreConfig {
   double robot_height_m = 1.21;
 };
 
-/// @param mapper  holds the map of `study` and the depth of its keyframes; frame: the scene's
+/// @param mapper  holds the map of `study` and the depth of its keyframes; in the scene's frame
 /// @param truth   poses of the keyframes; those without one are left out
 /// @param lasers  whose scans are in the study's grid; may be null
 MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Trajectory& truth,

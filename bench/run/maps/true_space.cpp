@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// Whether a triangle touches the cube of half a side 0.5 around the origin: separating axes,
-/// Akenine-Moller, "Fast 3D triangle-box overlap testing", 2001.
+/// Whether a triangle touches the unit cube around the origin, by separating axes (Akenine-Moller,
+/// "Fast 3D triangle-box overlap testing", 2001).
 bool touches_cube(const std::array<Vector3d, 3>& corners) {
   const auto apart = [&](const Vector3d& axis) {
     const double reach = 0.5 * axis.cwiseAbs().sum();

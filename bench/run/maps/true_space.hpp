@@ -12,12 +12,12 @@
 
 namespace mh {
 
-/// The exact mesh of a scene as voxels: what a map of it should hold.
+/// The exact mesh of a scene as voxels: what a map of it should contain.
 class TrueSpace {
  public:
   enum class State : std::uint8_t {
     kClosed,   ///< inside of solids, behind walls, or outside of the scene
-    kOpen,     ///< space that is connected with a seed
+    kOpen,     ///< space that is connected to a seed
     kSurface,  ///< a face touches the voxel; panes of glass, which depth cameras do not see, do not
   };
 
@@ -28,9 +28,9 @@ class TrueSpace {
   State at(const Eigen::Vector3i& voxel) const;
   /// Whether a voxel within one cell along each axis has that state.
   bool is_near(const Eigen::Vector3i& voxel, State state) const;
-  /// The true floor plan between two heights: occupied where a surface is, free where a robot's
-  /// place is connected with a seed without crossing an occupied cell, else unknown. Cut to the box
-  /// of the rooms, if the scene has any: what is seen through a window is not part of the plan.
+  /// The true floor plan between two heights: occupied where a surface is, free where a cell is
+  /// connected to a seed without crossing an occupied cell, else unknown. Cut to the box of the
+  /// rooms, if the scene has any: what is seen through a window is not part of the plan.
   OccupancyGrid floor_plan(double low_m, double high_m,
                            std::span<const Eigen::Vector3d> seeds) const;
 

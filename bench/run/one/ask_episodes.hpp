@@ -14,28 +14,30 @@
 
 namespace mh {
 
-/// One episode of the first variant, to be watched.
+/// An episode of the first variant that is watched.
 struct WatchedEpisode {
   std::size_t start = 0;
   /// Makes its observer once the robot has its map.
   std::function<EpisodeObserver(const RobotMap&, const EpisodeStart&)> observer;
 };
 
-/// What the episodes of a run receive; only `only` changes which are run, nothing a score.
+/// What the episodes of a run receive; `only` changes which ones are run, and nothing changes a
+/// score.
 struct EpisodeTools {
-  /// Episodes that have ended are kept here, so that an interrupted run does not repeat them.
+  /// Scores of episodes that have ended are kept here, so that an interrupted run does not repeat
+  /// them.
   Cache ended = Cache();
   std::string key = {};  ///< of the run
   std::optional<WatchedEpisode> only = {};
-  std::function<void()> require_unchanged = [] {};  ///< called before one is kept; may throw
+  std::function<void()> require_unchanged = [] {};  ///< called before a score is kept; may throw
   std::function<void(std::string_view)> status = [](std::string_view) {};
-  std::function<void()> done = [] {};  ///< called after each
+  std::function<void()> done = [] {};  ///< called after each episode
 };
 
-/// Kidnaps a run's robot at each start of each variant, variant by variant. Its map is made of the
-/// mapped frames at the estimated poses.
+/// Kidnaps a run's robot at each start of each variant, variant by variant. Its map is made from
+/// the mapped frames at the estimated poses.
 /// @param estimate             of the mapping
-/// @param truth_from_estimate  for the scores alone
+/// @param truth_from_estimate  for the scores only
 /// @param noise                of the mapped frames
 /// @throws OutsideError
 std::vector<EpisodeScore> ask_episodes(const RunSpec& spec, const World& world,

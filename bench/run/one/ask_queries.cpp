@@ -84,7 +84,7 @@ class QueryRound {
   }
 
  private:
-  /// @param anchors  of this query, by map: found once each
+  /// @param anchors  of this query, by map: each is found once
   QueryScore judged(const QueryAnswer& answer, const QueryMoment& moment,
                     std::map<std::uint32_t, std::optional<Anchor>>& anchors) const {
     std::optional<Anchor> anchor;

@@ -16,10 +16,10 @@ bool shows_labels(const RunSpec& spec);
 /// How many frames are asked, over all sets, under each parameter point.
 std::size_t count_queries(const RunSpec& spec, const World& world);
 
-/// Puts each set of queries to a frozen system, under each parameter point, and scores the answers
-/// into run.points.
-/// @param run   with the mapping, its trajectory and frames
-/// @param done  called after each query and point
+/// Queries a frozen system with each set of queries under each parameter point, and adds the scored
+/// answers to run.points.
+/// @param run   has the mapping and its trajectory; receives the answers
+/// @param done  called after each query under each point
 void ask_queries(const RunSpec& spec, const World& world, System& frozen, const FilesAsKeyed& files,
                  RunResult& run, const std::function<void()>& done);
 

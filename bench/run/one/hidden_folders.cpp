@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder and those around it, except the root.
+/// A folder and its parent folders, except the root.
 std::set<fs::path> ancestors_of(const fs::path& folder) {
   std::set<fs::path> all;
   if (folder.empty()) return all;
@@ -31,8 +31,8 @@ std::set<fs::path> ancestors_of(const fs::path& folder) {
   return all;
 }
 
-/// Adds the folders that modelhouse wrote: this one and those in it.
-/// @param depth  how much deeper to look
+/// Adds the folders that modelhouse wrote, out of this one and those in it.
+/// @param depth  how many levels deeper to look
 void add_written(const fs::path& folder, int depth, std::vector<fs::path>& written) {
   std::error_code error;
   if (fs::exists(folder / kOutputMark, error)) written.push_back(folder);

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFramesOfEpisode = 80;  // that are mapped in the time that it takes
+constexpr std::size_t kFramesOfEpisode = 80;  // frames mapped in the time of an episode
 
 /// Counts units of work and reports their share.
 class WorkDone {
@@ -124,7 +124,7 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
 
-  // From before the program starts: what it reads is not seen here.
+  // Watched from before the program starts, since what it reads is not seen here.
   std::vector<fs::path> of_program;
   if (spec.system.is_outside())
     for (const ProgramFile& file : files_of(*spec.system.outside)) of_program.push_back(file.file);

@@ -14,13 +14,13 @@
 
 namespace mh {
 
-/// What an outside program of a run prints, in the run's folder.
+/// The log of what a run's outside program prints, in the run's folder.
 inline constexpr const char* kOutsideLog = "outside.log";
 
 /// The system of a run: our own SLAM with the run's settings, or an outside one that exchanges
 /// messages with us. Null for an outside program that processes a folder of recorded frames
 /// instead.
-/// @param folder  for the log of an outside program
+/// @param folder  where the log of an outside program is written
 /// @param hidden  as in RunTools
 /// @throws InputError if settings are out of range; OutsideError if the program does not start.
 std::unique_ptr<System> make_system(const RunSpec& spec, const World& world,
@@ -43,12 +43,12 @@ struct RunTools {
   std::size_t first = 0;         ///< frames before it were already mapped, by this same system
   bool occupancy = true;         ///< false: RunResult::volume stays null and its grid empty
   Cache maps = Cache();  ///< finished maps of the same mapping are loaded from and stored here
-  EpisodeTools episodes = {};  ///< what they are kept by, and which; the rest is set by the run
+  EpisodeTools episodes = {};  ///< where scores are kept, and which to run; the run sets the rest
 };
 
 /// Executes one run from the first frame to the last query: maps the tour, freezes, scores the
-/// trajectory, makes the queries under each parameter point, runs the episodes, builds the
-/// occupancy map.
+/// trajectory, builds the occupancy map, makes the queries under each parameter point, runs the
+/// episodes.
 /// @throws InputChanged if a file that it reads on demand was changed since the world was built;
 /// neither a map nor a result of it is kept.
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools);

@@ -32,19 +32,20 @@ class SequenceView : public Sequence {
 class FilesAsKeyed {
  public:
   explicit FilesAsKeyed(const ReadRecord& held);
-  /// @throws InputChanged if any file that was just read differs, even if it was restored since
+  /// @throws InputChanged if any file that was just read differs, even if it has been restored
+  /// since
   void require(const ReadRecord& now) const;
 
  private:
   std::map<std::filesystem::path, FileObservation> of_;
 };
 
-/// The frames as a run sees them: their files match its key, and the CPU time spent on making them
-/// is counted.
+/// The frames as a run sees them: their files match its key, and the CPU time spent making them is
+/// counted.
 class WatchedFrames : public SequenceView {
  public:
-  /// @param recording  where they come from; empty: they are simulated
-  /// @param labeled  false: they are shown without labels
+  /// @param recording  that they come from; empty: they are simulated
+  /// @param labeled  whether they are shown with labels
   /// @param spent_s  grows by the time spent
   WatchedFrames(const Sequence& inner, std::string recording, bool labeled,
                 const FilesAsKeyed& files, double& spent_s);

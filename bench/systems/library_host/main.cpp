@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// modelhouse-library-host LIBRARY SEED [SETTINGS]: speaks a conversation (docs/outside_systems.md)
-// for a shared library (include/modelhouse/system.h), so that no foreign code is ever loaded into
-// the bench. What the library prints goes to standard error.
+// modelhouse-library-host LIBRARY SEED [SETTINGS]: conducts the conversation
+// (docs/outside_systems.md) on behalf of a shared library (include/modelhouse/system.h), so that no
+// foreign code is ever loaded into the bench. What the library prints goes to standard error.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -54,13 +54,13 @@ class Image {
   explicit Image(const std::string& file) : bytes_(mh::read_file(file)) {
     int kind = 0, most = 0, end = 0;
     if (std::sscanf(bytes_.c_str(), "P%d %d %d %d%n", &kind, &width, &height, &most, &end) != 4)
-      throw Fault(file + ": is no image");
+      throw Fault(file + ": is not an image");
     first_ = static_cast<std::size_t>(end) + 1;
   }
   const std::uint8_t* bytes() const {
     return reinterpret_cast<const std::uint8_t*>(bytes_.data()) + first_;
   }
-  /// Pixels of two bytes each, which the file has in big-endian order.
+  /// Pixels of two bytes each, which are big-endian in the file.
   std::vector<std::uint16_t> shorts() const {
     std::vector<std::uint16_t> pixels(static_cast<std::size_t>(width) *
                                       static_cast<std::size_t>(height));
@@ -157,7 +157,7 @@ Json reply_json(const mh_reply& reply) {
   return json;
 }
 
-/// Runs a function of the library.
+/// Calls `function`; turns exceptions that escape from the library into faults.
 template <class Function>
 auto guarded(const Function& function) {
   try {
@@ -185,14 +185,14 @@ MakeSystem load(const fs::path& file) {
   return make;
 }
 
-/// A system of the library, from `hello` on.
+/// A system of the library, which exists from `hello` on.
 class HostedSystem {
  public:
   HostedSystem(const Json& hello, const fs::path& library, std::uint64_t seed, std::string settings)
       : setup_(hello, seed, std::move(settings)) {
     const MakeSystem make = load(library);
     system_ = guarded([&] { return make(&setup_.told); });
-    if (system_ == nullptr) throw Fault("made no system" + setup_.message());
+    if (system_ == nullptr) throw Fault("created no system" + setup_.message());
     if (system_->version != MH_SYSTEM_VERSION)
       throw Fault(
           fmt::format("was built with version {} of modelhouse/system.h, the bench has version {}",
@@ -300,8 +300,8 @@ class HostedSystem {
   std::uint64_t session_ = 0;
 };
 
-/// Standard input and output as they were, out of the library's reach: it finds nothing to read,
-/// and prints to the log.
+/// Takes standard input and output out of the library's reach and returns them: the library finds
+/// nothing to read, and prints to the log.
 std::pair<int, std::FILE*> take_streams() {
   const int requests = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
   const int replies = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);

@@ -69,7 +69,7 @@ float number_at(const char* at, std::size_t type, bool normalized) {
   }
 }
 
-/// What an item of an accessor is made of.
+/// What the items of an accessor are made of.
 struct Kind {
   std::size_t type, width, count;
   std::size_t bytes() const { return size_of(type) * width; }
@@ -90,7 +90,8 @@ int decode(std::string_view mode, char* to, std::size_t count, std::size_t strid
   return meshopt_decodeIndexSequence(to, count, stride, bytes, from.size());
 }
 
-/// Whether the decoders take such data: some of their assumptions are only asserted.
+/// Whether the decoders accept data with these parameters, since they only assert some of their
+/// assumptions.
 bool is_decodable(std::string_view mode, std::string_view filter, std::size_t count,
                   std::size_t stride) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 32, kWidest = 256;
@@ -157,7 +158,7 @@ void Data::fail(const std::string& what) const {
 std::string_view Data::buffer(std::size_t index) {
   if (index == new_buffer_) return added_;
   const std::span<Json> buffers = list_of(gltf_, "buffers");
-  if (index >= buffers.size()) fail(fmt::format("buffers[{}]: there is none", index));
+  if (index >= buffers.size()) fail(fmt::format("buffers[{}]: does not exist", index));
   const std::string uri = buffers[index].value("uri", "");
   if (uri.empty()) return index == 0 ? body_ : std::string_view();
   HeldBytes& held = buffers_[index];
@@ -172,7 +173,7 @@ std::string_view Data::buffer(std::size_t index) {
 
 std::string_view Data::view(std::size_t index) {
   const std::span<Json> views = list_of(gltf_, "bufferViews");
-  if (index >= views.size()) fail(fmt::format("bufferViews[{}]: there is none", index));
+  if (index >= views.size()) fail(fmt::format("bufferViews[{}]: does not exist", index));
   const std::string_view bytes = buffer(index_in(views[index], "buffer", kNone));
   const std::size_t offset = index_in(views[index], "byteOffset", 0);
   const std::size_t length = index_in(views[index], "byteLength", 0);
@@ -203,7 +204,7 @@ Data::Place Data::place_of(std::size_t view_index, std::size_t offset, std::size
 
 Values Data::values(std::size_t index, bool shares) {
   const std::span<Json> accessors = list_of(gltf_, "accessors");
-  if (index >= accessors.size()) fail(fmt::format("accessors[{}]: there is none", index));
+  if (index >= accessors.size()) fail(fmt::format("accessors[{}]: does not exist", index));
   const Json& accessor = accessors[index];
   const Kind kind = kind_of(accessor);
   const bool normalized = shares || accessor.value("normalized", false);

@@ -20,14 +20,15 @@ using Json = nlohmann::json;
 /// The name of the buffer with the decoded data: not a file, since assimp gets it from memory.
 inline constexpr const char* kDecodedBuffer = "decoded by modelhouse.bin";
 
-/// The items of an array of the file or of one of its items; empty if there is none of that name.
+/// The items of the array with this name in the file or in one of its items; empty if there is
+/// none.
 std::span<Json> list_of(Json& item, const char* name);
 
-/// A member of that name that is an index; `otherwise` if there is none.
+/// The index in the member with this name; `otherwise` if there is none.
 std::size_t index_in(const Json& item, const char* name, std::size_t otherwise);
 inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// The bytes that a base64 text stands for, up to the first other character.
+/// The bytes that a base64 text encodes, up to the first character that is not base64.
 std::string from_base64(std::string_view text);
 
 enum ComponentType : std::size_t {
@@ -46,30 +47,32 @@ struct Values {
   std::size_t count() const { return width == 0 ? 0 : numbers.size() / width; }
 };
 
-/// Reads the accessors of a glTF 2.0 file, and adds new ones, whose bytes are in one more buffer.
-/// @throws InputError naming file and item: a place outside its buffer, an unknown type.
+/// Reads the accessors of a glTF 2.0 file, and adds new ones, whose bytes are in one additional
+/// buffer.
+/// @throws InputError naming file and item: data outside of its buffer, an unknown type.
 class Data {
  public:
-  /// @param body  the binary chunk of a .glb; both must outlive this
+  /// @param body  the binary chunk of a .glb; it and `gltf` must outlive this
   Data(Json& gltf, const std::filesystem::path& file, std::string_view body);
 
-  /// Whether assimp reads the accessor as we do: floats in a buffer, none of them replaced.
+  /// Whether assimp reads the accessor as we do: floats in a buffer, not sparse.
   bool is_plain(std::size_t accessor) const;
-  /// Values as floats: normalized integers divided by the largest, sparse ones replaced.
-  /// @param shares the values are shares of one: integers are normalized even if the file does not
-  /// say so
+  /// Values as floats: normalized integers are divided by their type's maximum, sparse values are
+  /// replaced.
+  /// @param shares the values are fractions of one: integers are normalized even if the file does
+  /// not request that
   Values values(std::size_t accessor, bool shares = false);
-  /// Bytes of a view of a buffer.
+  /// The bytes of a buffer view.
   std::string_view view(std::size_t index);
-  /// Replaces the views of EXT_meshopt_compression by the data compressed there.
+  /// Replaces buffer views that use EXT_meshopt_compression with views of the decompressed data.
   void decompress_views();
 
   /// @returns the index of a new accessor
   std::size_t add(const Values& values);
-  /// @param accessor  its other members
+  /// @param accessor  the new accessor's other members
   std::size_t add(std::string_view bytes, Json accessor);
 
-  /// Enters the new buffer, if there is anything in it. @returns its content
+  /// Adds the new buffer to the file unless it is empty. @returns its content
   std::string finish();
 
   [[noreturn]] void fail(const std::string& what) const;

@@ -24,11 +24,11 @@ std::size_t component_type_of(draco::DataType type) {
     case draco::DT_FLOAT32:
       return kFloat;
     default:
-      return 0;  // not a type of accessors
+      return 0;  // no accessor has this type
   }
 }
 
-/// The values of an attribute in a new accessor; its other members are those of `like`.
+/// Adds an accessor with the values of an attribute; its other members are those of `like`.
 std::size_t add_attribute(const draco::Mesh& mesh, const draco::PointAttribute& from, Json like,
                           Data& data) {
   std::string bytes(mesh.num_points() * static_cast<std::size_t>(from.byte_stride()), '\0');
@@ -66,7 +66,7 @@ void decompress(Json& primitive, const Json& packed, Json& gltf, Data& data) {
     const draco::PointAttribute* from = mesh.GetAttributeByUniqueId(id.get<std::uint32_t>());
     const std::size_t accessor = index_in(attributes, name.c_str(), kNone);
     if (from == nullptr || accessor >= list_of(gltf, "accessors").size())
-      data.fail(fmt::format("Draco compression: attribute {}: there is none", name));
+      data.fail(fmt::format("Draco compression: attribute {}: does not exist", name));
     const Json like = list_of(gltf, "accessors")[accessor];
     attributes[name] = add_attribute(mesh, *from, like, data);
   }

@@ -5,7 +5,7 @@
 
 namespace mh::gltf {
 
-/// Replaces primitives of KHR_draco_mesh_compression by the triangles that are compressed there.
+/// Replaces primitives that use KHR_draco_mesh_compression with the decompressed triangles.
 /// @throws InputError if the compression is damaged.
 void decompress_primitives(Json& gltf, Data& data);
 

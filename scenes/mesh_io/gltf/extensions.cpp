@@ -30,13 +30,13 @@ constexpr Extension kExtensions[] = {
     {"KHR_meshopt_compression"},
     {"KHR_node_visibility"},
     {"KHR_texture_transform"},
-    // Kinds of images: each one that cannot be decoded is named in a warning.
+    // Kinds of images: each image that cannot be decoded is named in a warning.
     {"EXT_texture_astc"},
     {"EXT_texture_avif"},
     {"EXT_texture_webp"},
     {"KHR_texture_basisu"},
     {"MSFT_texture_dds"},
-    // Gloss and the inside of bodies, which no surface here has.
+    // Gloss and the interior of bodies, which are not modeled here.
     {"ADOBE_materials_clearcoat_specular"},
     {"ADOBE_materials_clearcoat_tint"},
     {"KHR_materials_anisotropy"},
@@ -112,7 +112,7 @@ void check_extensions(Json& gltf, const std::filesystem::path& file,
           file.string(), name));
     if (is_known && known->loss.empty()) continue;
     warnings.push_back(fmt::format("glTF extension {}: {}", name,
-                                   is_known ? known->loss : "is not known, and left out"));
+                                   is_known ? known->loss : "is unknown and left out"));
   }
 }
 

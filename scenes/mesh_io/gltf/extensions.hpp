@@ -9,7 +9,7 @@
 
 namespace mh::gltf {
 
-/// Checks the extensions that a glTF 2.0 file lists against one table: those that are honored or
+/// Checks the extensions that a glTF 2.0 file lists against a table: those that are honored or
 /// change nothing visible pass silently, others cause a warning.
 /// @param warnings  a line for each loss
 /// @throws InputError naming a required extension that is not known.

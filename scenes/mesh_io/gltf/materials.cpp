@@ -12,7 +12,7 @@
 namespace mh::gltf {
 namespace {
 
-/// An extension of an item, removed from it; null if it has none of that name.
+/// Removes an extension from an item and returns it; null if the item does not have it.
 Json take_extension(Json& item, const char* name) {
   const Json::json_pointer place(std::string("/extensions/") + name);
   if (!item.is_object() || !item.contains(place)) return nullptr;
@@ -75,9 +75,10 @@ UvPlacement take_placement_of(Json& material, std::size_t index,
   const auto is_positive = [](const Json& factor) { return factor > 0.0; };
   if (glows && emission != placement &&
       std::ranges::any_of(list_of(material, "emissiveFactor"), is_positive))
-    warnings.push_back(fmt::format(
-        "materials[{}]: its emissive texture lies otherwise than its base color: it is moved there",
-        index));
+    warnings.push_back(
+        fmt::format("materials[{}]: its emissive texture is placed differently from its base "
+                    "color: it is drawn where the base color is",
+                    index));
   return placement;
 }
 
@@ -123,10 +124,10 @@ std::vector<UvPlacement> take_uv_placements(Json& gltf, const std::filesystem::p
   for (std::size_t i = 0; i < materials.size(); ++i) try {
       placements.push_back(take_placement_of(materials[i], i, warnings));
     } catch (const Json::exception&) {
-      throw InputError(fmt::format("{}: materials[{}]: its KHR_texture_transform is not sound",
+      throw InputError(fmt::format("{}: materials[{}]: its KHR_texture_transform is not valid",
                                    file.string(), i));
     }
-  drop_name(gltf, "extensionsUsed", "KHR_texture_transform");  // assimp would read others
+  drop_name(gltf, "extensionsUsed", "KHR_texture_transform");  // assimp would apply the rest
   return placements;
 }
 

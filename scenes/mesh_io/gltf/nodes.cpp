@@ -10,10 +10,10 @@
 namespace mh::gltf {
 namespace {
 
-/// What a node's instances have of one kind: translations, rotations or scales.
+/// One property of a node's instances: their translations, rotations or scales.
 struct Track {
   const char* name;     ///< in the extension
-  const char* in_node;  ///< as a node calls it
+  const char* in_node;  ///< in a node
   Values values{};
 };
 

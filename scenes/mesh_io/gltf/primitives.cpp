@@ -26,7 +26,7 @@ class Mender {
   }
 
  private:
-  /// Assimp leaves out faces of vertices that are not there, without a word.
+  /// Warns of indices beyond the vertices: assimp silently leaves out their faces.
   void check_indices(const Json& primitive, const Json& mesh, const Json& attributes) {
     const std::size_t indices = index_in(primitive, "indices", kNone),
                       position = index_in(attributes, "POSITION", kNone);

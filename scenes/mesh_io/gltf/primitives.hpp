@@ -18,9 +18,10 @@ struct UvPlacement {
 };
 
 /// Gives every primitive data that assimp reads correctly: positions, colors and texture
-/// coordinates as floats (KHR_mesh_quantization, sparse accessors, Draco), morph targets applied by
-/// the weights of their mesh, and as the first set the texture coordinates of its material.
-/// @param placements  of each material, see take_uv_placements
+/// coordinates as floats (KHR_mesh_quantization, sparse accessors, Draco), morph targets applied
+/// with the weights of their mesh, and the set of texture coordinates that its material uses as the
+/// first set.
+/// @param placements  the placement for each material, see take_uv_placements
 /// @param warnings    a line for each mesh that lacks the set that its material uses
 void mend_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
                      std::vector<std::string>& warnings);

@@ -29,8 +29,8 @@ void append_chunk(std::string& out, std::string_view name, std::string_view data
   append_be32(out, libdeflate_crc32(0, out.data() + begin, out.size() - begin));
 }
 
-/// All rows in the file's order (RGB, and for 16 bits the upper byte first), each after its filter
-/// number: 2 (difference to the row above) for 8 bits, 0 (none) for 16.
+/// All rows in the file's order (RGB, and for 16 bits the upper byte first), each preceded by its
+/// filter number: 2 (difference from the row above) for 8 bits, 0 (none) for 16.
 std::vector<std::uint8_t> filtered(const cv::Mat& image) {
   cv::Mat rgb;
   if (image.type() == CV_8UC3) cv::cvtColor(image, rgb, cv::COLOR_BGR2RGB);
@@ -60,8 +60,8 @@ struct FreeCompressor {
   }
 };
 
-/// One per thread and level, created on first use: creating it costs as much as compressing a small
-/// image.
+/// The compressor of this thread for a level, created on first use: creating it costs as much as
+/// compressing a small image.
 libdeflate_compressor* compressor_of(int level) {
   thread_local std::array<std::unique_ptr<libdeflate_compressor, FreeCompressor>, 10> compressors;
   auto& compressor = compressors.at(static_cast<std::size_t>(level));
@@ -93,8 +93,7 @@ std::string encode_png(const cv::Mat& image, int level) {
   append_be32(header, static_cast<std::size_t>(image.rows));
   header += static_cast<char>(image.depth() == CV_16U ? 16 : 8);  // bits
   header += static_cast<char>(image.channels() == 3 ? 2 : 0);     // color or gray
-  header += std::string(3, '\0');  // the only compression method, the only set of filters, not
-                                   // interlaced
+  header += std::string(3, '\0');  // compression method 0, filter method 0, not interlaced
   std::string file = "\x89PNG\r\n\x1A\n";
   append_chunk(file, "IHDR", header);
   append_packed(file, filtered(image), level);

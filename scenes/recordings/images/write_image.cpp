@@ -31,7 +31,7 @@ void write_image(const std::filesystem::path& file, const cv::Mat& image,
   if (!cv::haveImageWriter(file.string()) ||
       !cv::imencode(file.extension().string(), image, bytes, settings))
     throw InputError(
-        fmt::format("{}: cannot be written: no format of images ends so", file.string()));
+        fmt::format("{}: cannot be written: no image format has this extension", file.string()));
   write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

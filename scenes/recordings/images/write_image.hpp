@@ -24,7 +24,7 @@ cv::Mat gray_image(const Grid2d<Number>& grid) {
 }
 
 /// Writes an image atomically, in the format given by the file's extension.
-/// @param settings  of the format, as cv::imencode takes them
+/// @param settings  the format's settings, as for cv::imencode
 /// @throws InputError if it cannot be written.
 void write_image(const std::filesystem::path& file, const cv::Mat& bgr,
                  const std::vector<int>& settings = {});

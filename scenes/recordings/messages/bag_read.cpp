@@ -15,7 +15,7 @@ namespace {
 
 using bag::Op;
 
-/// The fields of a record's header: "name=value" each, after its length.
+/// The fields of a record's header. Each is stored as its length, then "name=value".
 using Fields = std::map<std::string_view, std::string_view>;
 
 Fields fields_of(std::string_view header) {
@@ -63,7 +63,7 @@ class BagFile : public MessageFile {
     if (!all.starts_with(bag::kMagic)) refuse(all);
     read_records({all, bag::kMagic.size(), MessagePlace::kFile, 0});
     if (index_at_ == 0 && !leaves_out(kCut))
-      leave_out("ends", all.size(), "it was not closed: its messages are used as far as it goes");
+      leave_out("ends", all.size(), "it was not closed: its messages are used up to its end");
   }
 
  private:
@@ -93,7 +93,7 @@ class BagFile : public MessageFile {
     std::size_t end = 0;  ///< in the bytes that hold it
   };
 
-  /// nullopt if there is no whole record.
+  /// nullopt if there is no whole record at this position.
   static std::optional<Record> record_at(std::string_view bytes, std::size_t at) {
     ByteReader from(bytes.substr(at));
     try {
@@ -138,7 +138,7 @@ class BagFile : public MessageFile {
           read_bag_header(fields);
         else if (op != Op::kIndex && op != Op::kChunkInfo)
           throw InputError(
-              fmt::format("'op' is {}, a record of no known kind", static_cast<int>(op)));
+              fmt::format("'op' is {}, an unknown kind of record", static_cast<int>(op)));
       } catch (const Encrypted&) {
         throw InputError(fmt::format("{}: is an encrypted bag, which is not read", name()));
       } catch (const InputError& error) {
@@ -147,8 +147,8 @@ class BagFile : public MessageFile {
     }
   }
 
-  /// Reads the connections that are stored outside of chunks from there on, as after the last
-  /// chunk: the only chunk that holds them may be damaged.
+  /// Reads the connections that are stored outside of chunks from this position on (bags repeat
+  /// them after the last chunk), in case the only chunk that holds them is damaged.
   void read_connections_from(std::uint64_t at) {
     if (std::exchange(connections_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {
@@ -156,7 +156,7 @@ class BagFile : public MessageFile {
       try {
         const Fields fields = fields_of(record->header);
         if (op_of(fields) == Op::kConnection) read_connection(fields, record->data);
-      } catch (const InputError&) {  // is reported when it is reached
+      } catch (const InputError&) {  // reported when reading gets there
       }
     }
   }
@@ -184,7 +184,7 @@ class BagFile : public MessageFile {
     if (!channels_by_id_.contains(id)) read_connections_from(file_at);
     const auto channel = channels_by_id_.find(id);
     if (channel == channels_by_id_.end())
-      return leave_out("messages left out", file_at, "a message is of no connection");
+      return leave_out("messages left out", file_at, "a message belongs to no connection");
     count_message();
     visit_(channels()[channel->second], data, place);
   }
@@ -203,7 +203,7 @@ class BagFile : public MessageFile {
   const Visit& visit_;
   std::map<std::uint32_t, std::size_t> channels_by_id_;
   bool connections_are_read_ = false;  ///< by read_connections_from()
-  std::uint64_t index_at_ = 0;         ///< 0: it was not closed
+  std::uint64_t index_at_ = 0;         ///< 0 if the bag was not closed
 };
 
 }  // namespace

@@ -47,7 +47,7 @@ void append_record(ByteWriter& to, const HeaderFields& header, std::string_view 
   to.text(data);
 }
 
-/// Seconds and nanoseconds, as u32 each in one number.
+/// Seconds and nanoseconds as two u32, packed into one number.
 std::uint64_t time_of(Stamp stamp_ns) {
   constexpr Stamp kSecond_ns = 1'000'000'000;
   return static_cast<std::uint64_t>(stamp_ns / kSecond_ns) |
@@ -59,7 +59,7 @@ class BagWriter : public MessageWriter {
   BagWriter(const std::filesystem::path& file, ChunkCompression compression)
       : file_(file), lz4_(compression == ChunkCompression::kLz4) {
     file_.append(bag::kMagic);
-    file_.append(bag_header(0));  // that of a bag that is not closed
+    file_.append(bag_header(0));  // marks a bag that is not closed
   }
 
   ros::Wire wire() const override { return ros::Wire::kRos1; }
@@ -163,7 +163,7 @@ class BagWriter : public MessageWriter {
   std::vector<bool> is_sent_;             ///< by id: written in a chunk
   ByteWriter chunk_, chunk_infos_;
   std::uint32_t chunks_ = 0;
-  /// Stamp and place of each message of the open chunk, by topic.
+  /// Stamp and position of each message in the open chunk, by topic.
   std::map<std::uint16_t, std::vector<std::pair<Stamp, std::uint32_t>>> index_;
 };
 

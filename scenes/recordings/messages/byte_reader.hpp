@@ -13,7 +13,7 @@ namespace mh {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Takes little-endian numbers and texts from the beginning of bytes.
+/// Takes little-endian numbers and texts from the front of a sequence of bytes.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : rest_(bytes) {}
@@ -35,7 +35,7 @@ class ByteReader {
     std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
     return value;
   }
-  /// Bytes after their number as u32.
+  /// Takes bytes that are preceded by their count as u32.
   std::string_view text() { return take(number<std::uint32_t>()); }
 
  private:

@@ -7,8 +7,8 @@
 
 namespace mh {
 
-/// Decompresses the content of a chunk. Memory is allocated as bytes are decompressed, not by the
-/// claimed size.
+/// Decompresses the content of a chunk. Memory is allocated as bytes are decompressed, not
+/// according to the claimed size.
 /// @param compression  "lz4" (frames), "zstd" or "bz2"
 /// @param size         of the result, as the file claims
 /// @throws InputError "is ..." if the compression is unknown, the data is damaged or its size

@@ -15,8 +15,8 @@
 
 namespace mh::ros {
 
-/// Collects the text of a message's definition in the language of .msg files, with those of the
-/// messages that it contains.
+/// Collects the text of a message's definition in the language of .msg files, with the definitions
+/// of the messages that it contains.
 class Definer {
  public:
   explicit Definer(Wire wire) : wire_(wire) {}
@@ -39,7 +39,7 @@ class Definer {
     text_ += fmt::format("{} {}={}\n", type_of(value), name, value);
   }
 
-  /// The definition, and those of what it contains, each once.
+  /// The definition, followed by those of the messages that it contains, each once.
   std::string text() const {
     std::string all = text_;
     for (const auto& [type, part] : parts_)
@@ -96,7 +96,7 @@ class Definer {
   std::vector<Part> parts_;
 };
 
-/// The text of a message's definition, as bags and MCAP files hold it.
+/// The text of a message's definition, as stored in bags and MCAP files.
 template <class M>
 std::string definition(Wire wire) {
   Definer definer(wire);

@@ -45,16 +45,16 @@ struct Marker {
   static constexpr const char* kMd5 = "4048c9de2a16f4ae8e0538085ebf1b97";
   static constexpr std::uint8_t kCube = 1, kCubeList = 6, kText = 9, kAdd = 0;
   Header header;
-  std::string ns;  ///< with id: which marker this one replaces
+  std::string ns;  ///< with id: identifies the marker that this one replaces
   std::int32_t id = 0;
   std::int32_t type = kCube;
   std::int32_t action = kAdd;
   Pose pose;
-  Vector3 scale;  ///< m; of text, z is the height of a letter
+  Vector3 scale;  ///< m; for text, z is the height of a letter
   ColorRgba color;
   Duration lifetime;  ///< 0: forever
   bool frame_locked = false;
-  std::vector<Point> points;      ///< of lists
+  std::vector<Point> points;      ///< for lists
   std::vector<ColorRgba> colors;  ///< of the points
   std::string texture_resource;
   CompressedImage texture;

@@ -19,7 +19,7 @@ using mcap::Opcode;
 
 constexpr std::size_t kRecordHead = 9;  // opcode, length
 
-/// "sensor_msgs/Image" of either spelling.
+/// "sensor_msgs/Image" for either spelling.
 std::string common_type(std::string_view type) {
   std::string common(type);
   if (const auto at = common.find("/msg/"); at != std::string::npos) common.erase(at, 4);
@@ -41,7 +41,7 @@ class McapFile : public MessageFile {
   }
 
  private:
-  /// Records one after the other: of the file, or of a chunk.
+  /// A sequence of records: those of the file, or of a chunk.
   struct Records {
     std::string_view bytes;
     std::size_t begin = 0;
@@ -56,7 +56,7 @@ class McapFile : public MessageFile {
     std::size_t end() const { return content_at + content.size(); }
   };
 
-  /// nullopt if there is no whole record.
+  /// nullopt if there is no whole record at this position.
   static std::optional<Record> record_at(std::string_view bytes, std::size_t at) {
     ByteReader from(bytes.substr(at));
     if (from.left() < kRecordHead) return std::nullopt;
@@ -96,21 +96,21 @@ class McapFile : public MessageFile {
     return at;
   }
 
-  /// Reads the channels that are stored outside of chunks from there on, as in a summary: the only
-  /// chunk that holds them may be damaged.
+  /// Reads the channels that are stored outside of chunks from this position on (a summary repeats
+  /// them), in case the only chunk that holds them is damaged.
   void read_channels_from(std::uint64_t at) {
     if (std::exchange(channels_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {
       try {
         if (record->opcode == Opcode::kSchema) read_schema(record->content);
         if (record->opcode == Opcode::kChannel) read_channel(record->content);
-      } catch (const InputError&) {  // is reported when it is reached
+      } catch (const InputError&) {  // reported when reading gets there
       }
       at = record->end();
     }
   }
 
-  /// Whether the file ends as one that was closed: a summary, a footer, the magic bytes.
+  /// Checks that the file ends like one that was closed: with a summary, a footer, the magic bytes.
   void check_end(std::size_t at) {
     const std::string_view all = bytes();
     for (bool footer = footer_; !footer;) {
@@ -120,7 +120,7 @@ class McapFile : public MessageFile {
       at = record->end();
     }
     if (all.substr(at, mcap::kMagic.size()) != mcap::kMagic)
-      return leave_out("ends", at, "its footer is not followed by MCAP's last bytes");
+      return leave_out("ends", at, "its footer is not followed by MCAP's closing bytes");
     at += mcap::kMagic.size();
     if (at < all.size())
       leave_out("ends", at, fmt::format("{} bytes after its end are left out", all.size() - at));
@@ -134,7 +134,7 @@ class McapFile : public MessageFile {
     if (!channels_by_id_.contains(id)) read_channels_from(file_at);
     const auto channel = channels_by_id_.find(id);
     if (channel == channels_by_id_.end())
-      return leave_out("messages left out", file_at, "a message is of no channel");
+      return leave_out("messages left out", file_at, "a message belongs to no channel");
     from.number<std::uint32_t>();  // its number in the sequence
     place.received_ns = from.number<std::int64_t>();
     place.at += kHead;
@@ -168,9 +168,9 @@ class McapFile : public MessageFile {
       ended_ = true;
       const std::string_view data = bytes().substr(0, record.content_at - kRecordHead);
       const auto crc = ByteReader(record.content).number<std::uint32_t>();
-      // Damage that was already reported would explain a wrong sum.
+      // Damage that was already reported would explain a wrong checksum.
       if (crc != 0 && notes().empty() && libdeflate_crc32(0, data.data(), data.size()) != crc)
-        leave_out("checksums", data.size(), "its data's CRC is another: some of it is damaged");
+        leave_out("checksums", data.size(), "its data's CRC does not match: some of it is damaged");
     } else if (!in_chunk && opcode == Opcode::kFooter) {
       ended_ = footer_ = true;
     }
@@ -198,8 +198,8 @@ class McapFile : public MessageFile {
   std::map<std::uint16_t, std::string> schemas_;  ///< types by id
   std::map<std::uint16_t, std::size_t> channels_by_id_;
   bool channels_are_read_ = false;  ///< by read_channels_from()
-  bool ended_ = false;              ///< its data
-  bool footer_ = false;             ///< was met before any end of the data
+  bool ended_ = false;              ///< the data section has ended
+  bool footer_ = false;             ///< found without a DataEnd record before it
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ std::uint32_t checksum(std::uint32_t before, std::string_view bytes) {
   return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
-/// What the summary says about a chunk.
+/// A chunk's entry in the summary.
 struct ChunkEntry {
   std::uint64_t first_ns = UINT64_MAX, last_ns = 0, at = 0, size = 0, indexes_size = 0,
                 stored_size = 0, content_size = 0;
@@ -56,7 +56,7 @@ class McapWriter : public MessageWriter {
       define(Opcode::kSchema, schemas_, record.bytes());
     }
     const auto id = static_cast<std::uint16_t>(channels_.size());
-    ByteWriter quality;  // latched: durability "transient local", as rosbag2 writes it
+    ByteWriter quality;  // latched topics: durability "transient local", as written by rosbag2
     quality.text("offered_qos_profiles");
     quality.text(quality_of_service(topic.latched));
     ByteWriter record;
@@ -97,7 +97,7 @@ class McapWriter : public MessageWriter {
 
  private:
   static std::string quality_of_service(bool latched) {
-    // History keep last, depth, reliable, durability: 1 transient local, 2 volatile.
+    // History: keep last; the depth; reliable; durability: 1 transient local, 2 volatile.
     return fmt::format(
         "- history: 1\n  depth: {}\n  reliability: 1\n  durability: {}\n  deadline:\n    sec: 0\n  "
         "  nsec: 0\n  lifespan:\n    sec: 0\n    nsec: 0\n  liveliness: 0\n  "
@@ -248,7 +248,7 @@ class McapWriter : public MessageWriter {
   std::vector<std::string> schemas_, channels_;  ///< records, by id
   std::vector<std::uint64_t> counts_;            ///< messages by channel
   ByteWriter chunk_;
-  /// Stamp and place of each message of the open chunk, by channel.
+  /// Stamp and position of each message in the open chunk, by channel.
   std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> index_;
   ChunkEntry entry_;  ///< of the open chunk
   std::vector<ChunkEntry> chunks_;

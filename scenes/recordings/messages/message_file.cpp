@@ -75,7 +75,7 @@ HeldBytes MessageFile::open_chunk(std::uint32_t number) const {
   }
   if (chunk.crc && !checked_[number] &&
       libdeflate_crc32(0, content.view.data(), content.view.size()) != *chunk.crc)
-    throw InputError("is damaged: its CRC is another");
+    throw InputError("is damaged: its CRC does not match");
   checked_[number] = true;
   if (!is_plain(chunk.compression)) {
     opened_ = number;

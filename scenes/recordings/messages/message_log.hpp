@@ -13,7 +13,8 @@
 
 namespace mh {
 
-/// Serialized messages of several topics, in memory, to be written among others by their stamps.
+/// Serialized messages of several topics, in memory, to be merged with others by stamp when they
+/// are written.
 class MessageLog {
  public:
   struct Entry {
@@ -33,7 +34,8 @@ class MessageLog {
   void add(std::size_t topic, Stamp stamp_ns, const M& message) {
     entries_.push_back({stamp_ns, topic, ros::serialized(message, wire_)});
   }
-  /// Orders the messages by stamp; those of one stamp stay as they were added.
+  /// Sorts the messages by stamp; messages with the same stamp stay in the order in which they were
+  /// added.
   void sort() { std::ranges::stable_sort(entries_, {}, &Entry::stamp_ns); }
 
   ros::Wire wire() const { return wire_; }

@@ -14,13 +14,13 @@
 
 namespace mh {
 
-/// A topic of a file that is written.
+/// A topic to write.
 struct TopicSpec {
   std::string name;
   std::string type;        ///< as in ROS 1: "sensor_msgs/Image"
   std::string definition;  ///< in the language of .msg files
   std::string md5;         ///< of ROS 1
-  bool latched = false;    ///< kept for those who subscribe later
+  bool latched = false;    ///< kept for later subscribers
 };
 
 template <class M>
@@ -28,7 +28,7 @@ TopicSpec topic_spec(std::string name, ros::Wire wire, bool latched = false) {
   return {std::move(name), M::kType, ros::definition<M>(wire), M::kMd5, latched};
 }
 
-/// How the chunks of a file are compressed.
+/// Compression of a file's chunks.
 enum class ChunkCompression { kNone, kLz4, kZstd };
 
 /// A chunk ends once it has this many bytes, before compression.
@@ -43,8 +43,8 @@ class MessageWriter {
   virtual ros::Wire wire() const = 0;
   /// @returns the topic's number
   virtual std::uint16_t add_topic(const TopicSpec& topic) = 0;
-  /// @param stamp_ns  when it was received; readers of bags accept no time 0, so such a message
-  /// counts as received 1 ns later
+  /// @param stamp_ns  when it was received; readers of bags reject time 0, so a message with that
+  /// time counts as received 1 ns later
   virtual void write(std::uint16_t topic, Stamp stamp_ns, std::string_view message) = 0;
   virtual void finish() = 0;
 };

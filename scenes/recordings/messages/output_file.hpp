@@ -20,7 +20,7 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void append(std::string_view bytes);
-  /// Writes over what is there.
+  /// Overwrites bytes that were written before.
   void replace(std::uint64_t at, std::string_view bytes);
   std::uint64_t size() const { return size_; }
   void finish();
@@ -29,7 +29,7 @@ class OutputFile {
   void put(std::uint64_t at, std::string_view bytes);
 
   std::filesystem::path file_;
-  TemporaryFolder work_;  ///< next to it
+  TemporaryFolder work_;  ///< next to the file
   std::filesystem::path unfinished_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;

@@ -10,7 +10,7 @@
 
 namespace mh::ros {
 
-// Messages of a robot: what it measures, except images, and its map.
+// Messages of a robot: its measurements, except images, and its map.
 
 struct Bool {
   static constexpr const char* kType = "std_msgs/Bool";

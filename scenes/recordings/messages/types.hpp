@@ -10,11 +10,11 @@
 namespace mh::ros {
 
 // The ROS messages that are written and read, as ROS 1 (Noetic) and ROS 2 (Humble) define them. A
-// message lists its fields once, in order, to a visitor `f`: f(name, member) for a field of both,
-// f(name in ROS 1, name in ROS 2, member) where the names differ, f.ros1() and f.ros2() for a field
-// of one of them. Serialization, parsing and the text of the definition follow (wire.hpp,
-// definition.hpp). kMd5 is the published checksum of the definition in ROS 1, for types that are
-// sent.
+// message lists its fields once, in order, to a visitor `f`: f(name, member) for a field in both
+// versions, f(name in ROS 1, name in ROS 2, member) where the names differ, f.ros1() and f.ros2()
+// for a field in only one version. Serialization, parsing and the text of the definition follow
+// (wire.hpp, definition.hpp). kMd5 is the published checksum of the definition in ROS 1, for types
+// that are sent.
 
 struct Time {
   std::int64_t ns = 0;
@@ -217,7 +217,7 @@ struct Transform {
   }
 };
 
-/// From one stream of a RealSense to another; in ROS 1 a header precedes it.
+/// The transform from one stream of a RealSense to another; in ROS 1, a header precedes it.
 struct Extrinsics {
   static constexpr const char* kType = "realsense2_camera_msgs/Extrinsics";
   static constexpr const char* kTypeInRos1 = "realsense2_camera/Extrinsics";

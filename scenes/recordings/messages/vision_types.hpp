@@ -22,7 +22,7 @@ struct ObjectHypothesis {
 
 struct ObjectHypothesisWithPose {
   static constexpr const char* kType = "vision_msgs/ObjectHypothesisWithPose";
-  std::int64_t id = 0;  ///< of the class, in ROS 1; ROS 2 names it
+  std::int64_t id = 0;  ///< of the class, in ROS 1; ROS 2 has its name
   ObjectHypothesis hypothesis;
   PoseWithCovariance pose;
   static void fields(auto& m, auto& f) {

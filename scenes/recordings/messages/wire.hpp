@@ -16,8 +16,8 @@
 
 namespace mh::ros {
 
-/// How messages are put into bytes: as ROS 1 does, packed, or as ROS 2 does, in the Common Data
-/// Representation (CDR, version 1), where a number is aligned to its size.
+/// How messages are serialized: packed, as in ROS 1, or in the Common Data Representation (CDR,
+/// version 1), as in ROS 2, where numbers are aligned to their size.
 enum class Wire : std::uint8_t { kRos1, kCdr };
 
 static_assert(std::endian::native == std::endian::little);
@@ -27,7 +27,7 @@ inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
 template <class T>
 concept Number = std::is_arithmetic_v<T>;
 
-/// Appends a message's fields to a text of bytes.
+/// Appends a message's fields to a string of bytes.
 class Serializer {
  public:
   Serializer(std::string& out, Wire wire) : out_(out), wire_(wire) {
@@ -66,7 +66,7 @@ class Serializer {
     put(static_cast<std::uint32_t>(time.ns / kSecond_ns));
     put(static_cast<std::uint32_t>(time.ns % kSecond_ns));
   }
-  void put(const Duration& time) { put(Time{time.ns}); }  // none is negative
+  void put(const Duration& time) { put(Time{time.ns}); }  // never negative
   template <class T>
   void put(const std::vector<T>& list) {
     put(static_cast<std::uint32_t>(list.size()));
@@ -98,7 +98,7 @@ std::string serialized(const M& message, Wire wire) {
 /// Reads a message's fields from bytes.
 class Parser {
  public:
-  /// @throws InputError if the bytes begin with a representation other than CDR 1.
+  /// @throws InputError if the bytes do not begin with the representation CDR 1.
   Parser(std::string_view bytes, Wire wire) : all_(bytes), wire_(wire) {
     if (wire == Wire::kRos1) return;
     if (bytes.size() < 4) fail();
@@ -140,7 +140,7 @@ class Parser {
   std::uint32_t length() {
     std::uint32_t count = 0;
     get(count);
-    if (count > all_.size() - at_) fail();  // an element has a byte at least
+    if (count > all_.size() - at_) fail();  // an element has at least one byte
     return count;
   }
   void get(std::string& text) {

@@ -20,13 +20,13 @@ bool has_no_distortion(const ros::CameraInfo& info) {
   return std::ranges::all_of(info.d, [](double k) { return k == 0; });
 }
 
-/// @throws InputError if the calibration is not that of a pinhole with the distortion of plumb_bob
-/// or rational_polynomial.
+/// @throws InputError if the calibration is not that of a pinhole camera with plumb_bob or
+/// rational_polynomial distortion.
 void set_distortion(Camera& camera, const ros::CameraInfo& info) {
   if (has_no_distortion(info)) return;
   const std::string& model = info.distortion_model;
   const bool rational = model == "rational_polynomial";
-  // "Brown Conrady" is RealSense's word for plumb_bob.
+  // "Brown Conrady" is RealSense's name for plumb_bob.
   if (!rational && model != "plumb_bob" && model != "Brown Conrady" && !model.empty())
     throw InputError(fmt::format("distortion model '{}' is not supported", model));
   const std::size_t most = rational ? 8 : 5;
@@ -41,26 +41,26 @@ bool is_rectified(const std::string& topic) {
   return topic.substr(topic.rfind('/') + 1).find("_rect") != std::string::npos;
 }
 
-/// One axis of a calibration: that of the sensor, and the part that was cut out of it, whose pixels
-/// were joined (REP 104).
+/// One axis of a calibration: the whole sensor, and the part that was cropped from it, whose pixels
+/// were binned (REP 104).
 struct Axis {
   double focal_px, center_px;
   std::uint32_t size_px, offset_px, part_px, joined;
 
   std::uint32_t step() const { return std::max(joined, 1U); }
   double focal() const { return focal_px / step(); }
-  /// Pixel centers are at integers: the center of joined ones is between theirs.
+  /// Pixel centers are at integers: the center of binned pixels is between theirs.
   double center() const { return (center_px - offset_px - 0.5 * (step() - 1)) / step(); }
   int size() const {
     return static_cast<int>(std::min(part_px > 0 ? part_px : size_px, 65535U) / step());
   }
 };
 
-/// The camera that a calibration states for a topic of images.
+/// The camera that a calibration describes for a topic of images.
 Camera camera_of(const ImageTopic& images, const ros::CameraInfo& info) {
   Camera camera;
   const bool rectified = is_rectified(images.name);
-  // Drivers leave P empty where nothing has to be rectified.
+  // Drivers leave P empty if nothing has to be rectified.
   const bool by_p = rectified && (info.p[0] != 0 || !has_no_distortion(info));
   const Axis x{by_p ? info.p[0] : info.k[0],
                by_p ? info.p[2] : info.k[2],
@@ -108,14 +108,12 @@ Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
     return config.read_camera(config.calibration).camera;
   if (chosen.info == nullptr)
     throw InputError(
-        fmt::format("{}: holds no sensor_msgs/CameraInfo for {}; name its topic "
-                    "(info=TOPIC) or a settings file by --settings, in a suite by "
-                    "`settings:`",
+        fmt::format("{}: holds no sensor_msgs/CameraInfo for {}; name its topic (info=TOPIC) or a "
+                    "settings file with --settings, in a suite with `settings:`",
                     file, chosen.color->name));
   if (chosen.info->other_at_ns)
     notes.push_back(
-        fmt::format("{}: the calibration of {} is another from {} ns on: the first is "
-                    "used for all frames",
+        fmt::format("{}: the calibration of {} changes at {} ns: the first is used for all frames",
                     file, chosen.info->topic, *chosen.info->other_at_ns));
   try {
     return color_camera(chosen, topics);
@@ -127,8 +125,9 @@ Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
   }
 }
 
-/// The transform of RealSense's recorder for an image's stream, with whose name the image's name
-/// begins. @returns the end of the transform's name ("/tf/0"), and stream_from_reference
+/// The transform that RealSense's recorder stores for the stream of an image topic, whose name
+/// begins with the stream's. @returns the end of the transform's name ("/tf/0"), and
+/// stream_from_reference
 std::optional<std::pair<std::string, SE3>> recorded_tf(const RosTopics& topics,
                                                        const ImageTopic& images) {
   for (const auto& [name, stream_from_reference] : topics.transforms) {
@@ -144,14 +143,15 @@ bool have_sizes_of_their_own(const ImageTopic& color, const ImageTopic& depth) {
          (color.width_px != depth.width_px || color.height_px != depth.height_px);
 }
 
-/// color_from_depth, as a file states it; nullopt if it does not, or if the two already coincide.
+/// color_from_depth as stated in a file; nullopt if it is not stated, or if the two frames already
+/// coincide.
 std::optional<SE3> color_from_depth(const ChosenTopics& chosen, const RosTopics& topics) {
   const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
   const auto color_tf = recorded_tf(topics, color), depth_tf = recorded_tf(topics, depth);
   if (color_tf && depth_tf && color_tf->first == depth_tf->first)
     return (color_tf->second * depth_tf->second.inverse()).normalized();
-  // Drivers align depth to color, but publish depth's own calibration with it: the frame id reveals
-  // this.
+  // Drivers that align depth to color still publish depth's own calibration with it: the frame id
+  // reveals that depth is aligned.
   if (color.frame == depth.frame)
     return have_sizes_of_their_own(color, depth) ? std::optional(SE3()) : std::nullopt;
   if (auto fixed = fixed_transform(topics, color.frame, depth.frame);
@@ -163,7 +163,7 @@ std::optional<SE3> color_from_depth(const ChosenTopics& chosen, const RosTopics&
   return std::nullopt;
 }
 
-/// Whether the calibrations of depth and color differ, as far as the file says.
+/// Whether the calibrations of depth and color differ, as far as the file states them.
 bool differ(const ChosenTopics& chosen) {
   constexpr double kSame_px = 1;
   const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
@@ -180,9 +180,9 @@ bool is_identity(const SE3& transform) {
   return transform.translation().norm() < kNone && angle_between_rad(transform, SE3()) < kNone;
 }
 
-/// The depth camera that registers depth to color; nullopt where depth is registered already, or
-/// where it has to be taken as if it were, with a note.
-/// @throws InputError if the sizes differ and the file does not say how to register it.
+/// The depth camera for registering depth to color; nullopt if depth is already registered, or must
+/// be used as if it were, in which case a note is added.
+/// @throws InputError if the sizes differ and the file does not state how to register depth.
 std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTopics& topics,
                                         const std::string& file, std::vector<std::string>& notes) {
   const ImageTopic &color = *chosen.color, &depth = *chosen.depth;
@@ -214,12 +214,12 @@ std::optional<DepthCamera> depth_camera(const ChosenTopics& chosen, const RosTop
         file, depth.name, depth.width_px, depth.height_px, color.name, color.width_px,
         color.height_px, has_own ? "neither tf nor extrinsics" : "no CameraInfo of depth"));
   notes.push_back(fmt::format(
-      "{}: depth of {} has another {} than color of {}: it is used as if it were registered", file,
-      depth.name, differ(chosen) ? "calibration" : "frame", color.name));
+      "{}: depth of {} has a different {} from color of {}: it is used as if it were registered",
+      file, depth.name, differ(chosen) ? "calibration" : "frame", color.name));
   return std::nullopt;
 }
 
-/// Whether depth comes in meters, as floating-point numbers.
+/// Whether depth is stored in meters, as floating-point numbers.
 bool is_in_meters(const ImageTopic& depth) {
   return depth.encoding.starts_with("32FC1");
 }
@@ -229,7 +229,7 @@ double meant(float value) {
   return std::stod(fmt::format("{}", value));
 }
 
-/// Whole numbers of depth at 1 m: what the settings state, else what the file states, else 1000.
+/// Units of integer depth per meter: from the settings, otherwise from the file, otherwise 1000.
 double depth_per_meter(const ImageTopic& depth, const RosTopics& topics,
                        const RecordingConfig& config, const std::string& file,
                        std::vector<std::string>& notes) {
@@ -238,7 +238,7 @@ double depth_per_meter(const ImageTopic& depth, const RosTopics& topics,
                                           : std::nullopt;
   if (is_in_meters(depth)) {
     if (named && *named != 1)
-      notes.push_back(fmt::format("{}: its depth per meter, {:g}, has no use: {} is in meters",
+      notes.push_back(fmt::format("{}: its depth per meter, {:g}, is not used: {} is in meters",
                                   config.calibration.string(), *named, depth.name));
     return kRosDepthPerMeter;
   }

@@ -11,18 +11,18 @@
 
 namespace mh {
 
-/// The cameras of a recording in messages.
+/// The cameras of a recording that consists of messages.
 struct RosCameras {
   Camera color;
   std::optional<DepthCamera> depth;  ///< absent: depth is registered to color
-  double depth_per_meter = 0;        ///< of depth in whole numbers
+  double depth_per_meter = 0;        ///< for integer depth
 };
 
 /// Reads the cameras from CameraInfo or, for color, from a settings file. Depth that is not
-/// registered to color uses the transforms of tf, of RealSense's recorder or of its driver's
+/// registered to color uses the transforms from tf, from RealSense's recorder or from its driver's
 /// extrinsics.
-/// @throws InputError naming file and topic if there is no calibration, one of a lens that is not
-/// supported, or depth that cannot be registered.
+/// @throws InputError naming file and topic if there is no calibration, if its lens is not
+/// supported, or if depth cannot be registered.
 RosCameras ros_cameras(const ChosenTopics& chosen, const RosTopics& topics,
                        const RecordingConfig& config, const std::string& file,
                        std::vector<std::string>& notes);

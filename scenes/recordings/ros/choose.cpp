@@ -26,12 +26,13 @@ bool is_one_of(const auto& encodings, const std::string& encoding) {
   return std::ranges::find(encodings, encoding) != encodings.end();
 }
 
-/// Whether a topic is one of ours, of any camera: labels and instances are neither color nor depth.
+/// Whether a topic is one of our own, for any camera: labels and instances are neither color nor
+/// depth.
 bool is_ours(const ImageTopic& topic) {
   return topic.name.ends_with("/labels/image") || topic.name.ends_with("/instances/image");
 }
-/// By image_transport's compressedDepth, or by its `compressed`, whose format begins with the
-/// encoding: "16UC1; png compressed".
+/// Whether a topic has depth compressed by image_transport's compressedDepth, or by its
+/// `compressed`, whose format begins with the encoding: "16UC1; png compressed".
 bool has_compressed_depth(const ImageTopic& topic) {
   const std::string encoding = topic.encoding.substr(0, topic.encoding.find(';'));
   return topic.compressed &&
@@ -53,7 +54,8 @@ std::string parent_of(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
 }
 
-/// Those whose names begin as the color's does, if there are several: "/camera2/...".
+/// The topics whose names begin like the color topic's ("/camera2/..."), if there are several
+/// topics.
 std::vector<const ImageTopic*> of_same_camera(std::vector<const ImageTopic*> topics,
                                               const ImageTopic& color) {
   const auto camera_of = [](const std::string& name) { return name.substr(0, name.find('/', 1)); };
@@ -72,12 +74,12 @@ std::string listed(const std::vector<const ImageTopic*>& topics) {
   return text;
 }
 
-/// Every topic with its type, for a user who has to name one.
+/// Every topic with its type, for users who have to name one.
 std::string all_topics(const std::vector<MessageChannel>& channels) {
   std::string text;
   for (const MessageChannel& channel : channels)
     text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", channel.topic,
-                        channel.type.empty() ? "of no type" : channel.type,
+                        channel.type.empty() ? "without a type" : channel.type,
                         channel.wire ? "" : ", not encoded as ROS 1 or CDR");
   return text.empty() ? "it has no topics" : "its topics: " + text;
 }
@@ -115,7 +117,7 @@ class Chooser {
     return images;
   }
 
-  /// @param encodings that would be accepted, for the message
+  /// @param encodings accepted encodings, for the message
   const ImageTopic* only(const std::vector<const ImageTopic*>& found, const char* what,
                          const std::string& encodings) const {
     if (found.size() == 1) return found.front();
@@ -129,8 +131,9 @@ class Chooser {
                     file_, what, listed(found), what, found.front()->name));
   }
 
-  /// The calibration beside an image: /x/camera_info of /x/image_raw or /x/image_raw/compressed; as
-  /// RealSense's recorder names it, /x/info/camera_info of /x/image/data.
+  /// The calibration next to an image topic: /x/camera_info for /x/image_raw or
+  /// /x/image_raw/compressed; or, as named by RealSense's recorder, /x/info/camera_info for
+  /// /x/image/data.
   const Calibration* calibration_of(const ImageTopic& image) const {
     std::string folder = parent_of(image.name);
     for (int up = 0; up < 3; ++up, folder = parent_of(folder))

@@ -21,11 +21,12 @@ namespace {
 
 constexpr std::uint32_t kLargestSide_px = 65535;
 
-/// @param rows  of bytes @throws InputError if the image's size does not fit its data.
+/// @param rows  number of rows of bytes in the data
+/// @throws InputError if the image's size does not fit its data.
 void check_size(const ros::Image& image, std::size_t bytes_per_pixel, std::uint64_t rows) {
   if (image.width == 0 || image.height == 0 || image.width > kLargestSide_px ||
       image.height > kLargestSide_px)
-    throw InputError(fmt::format("is of {} x {} pixels", image.width, image.height));
+    throw InputError(fmt::format("has {} x {} pixels", image.width, image.height));
   const std::uint64_t row = bytes_per_pixel * image.width;
   if (image.step < row || std::uint64_t{image.step} * (rows - 1) + row > image.data.size())
     throw InputError(fmt::format("holds {} bytes, too few for {} x {} pixels of {} in rows of {}",
@@ -44,7 +45,7 @@ std::string encoding_of(std::string_view message, ros::Wire wire) {
   return ros::parsed<ros::Image>(message, wire).encoding;
 }
 
-/// Calls set(element of the grid, its bytes) for each pixel.
+/// A grid whose elements are get(the pixel's bytes).
 template <class T>
 Grid2d<T> pixels(const ros::Image& image, std::size_t bytes_per_pixel, const auto& get) {
   Grid2d<T> grid(static_cast<int>(image.width), static_cast<int>(image.height));
@@ -66,18 +67,19 @@ T number_at(const char* bytes, bool is_bigendian) {
 /// Places of red, green and blue in a pixel.
 struct ColorLayout {
   std::size_t bytes, r, g, b;
-  bool wide = false;  ///< 16 bits a channel
+  bool wide = false;  ///< 16 bits per channel
 };
 
-/// A color that OpenCV converts: how many rows of bytes it has per two rows of the image, how many
-/// bytes of a row per two pixels, and OpenCV's number of the conversion to red, green, blue.
+/// A color encoding that OpenCV converts: its rows of bytes per two rows of the image, its bytes in
+/// a row per two pixels, and OpenCV's code for the conversion to red, green, blue.
 struct Conversion {
   const char* encoding;
   int rows_of_2, bytes_of_2;
   int code;
 };
 
-// ROS names a mosaic by its first two rows, OpenCV's older names by the second row and column on.
+// ROS names a mosaic by its first two rows. So do the names of OpenCV that are used here; its older
+// names start at the second row and column.
 constexpr std::array kConversions = {Conversion{"bayer_rggb8", 2, 2, cv::COLOR_BayerRGGB2RGB},
                                      Conversion{"bayer_bggr8", 2, 2, cv::COLOR_BayerBGGR2RGB},
                                      Conversion{"bayer_gbrg8", 2, 2, cv::COLOR_BayerGBRG2RGB},
@@ -95,12 +97,12 @@ const Conversion* conversion_of(const std::string& encoding) {
   return found == kConversions.end() ? nullptr : &*found;
 }
 
-/// @param stored rows of bytes, as in the message
+/// @param stored the rows of bytes, as in the message
 Grid2d<Rgb8> converted(const cv::Mat& stored, const Conversion& conversion, int width, int height) {
   const bool mosaic = std::string_view(conversion.encoding).starts_with("bayer");
   if (mosaic ? width < 3 || height < 3 : width % 2 != 0 || height % (conversion.rows_of_2 - 1) != 0)
-    throw InputError(
-        fmt::format("is of {} x {} pixels, which no {} has", width, height, conversion.encoding));
+    throw InputError(fmt::format("has {} x {} pixels, which {} does not allow", width, height,
+                                 conversion.encoding));
   Grid2d<Rgb8> color(width, height);
   cv::Mat rgb(height, width, CV_8UC3, color.data());
   cv::cvtColor(stored, rgb, conversion.code);
@@ -142,8 +144,8 @@ float meters_of(float depth_m, double) {
   return std::isfinite(depth_m) && depth_m > 0 ? depth_m : 0;
 }
 
-/// What image_transport's plugin puts before the PNG: a number for the kind, and the two
-/// parameters of inverse depths: depth = a / (value - b).
+/// What image_transport's plugin writes before the PNG: a number for the kind, and the two
+/// parameters of inverse depth: depth = a / (value - b).
 struct DepthHead {
   std::uint32_t kind = 0;
   float a = 0, b = 0;
@@ -157,7 +159,7 @@ Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire, double 
   std::string_view png = image.data;
   DepthHead head;
   if (has_head) {
-    if (png.size() < sizeof(head)) throw InputError("is shorter than its head");
+    if (png.size() < sizeof(head)) throw InputError("is shorter than its header");
     std::memcpy(&head, png.data(), sizeof(head));
     png.remove_prefix(sizeof(head));
   }
@@ -171,7 +173,8 @@ Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire, double 
   return depth_m;
 }
 
-/// A JPEG or PNG. One of a mosaic holds it as gray: "bayer_rggb8; png compressed bayer_rggb8".
+/// Decodes a JPEG or PNG. A mosaic is stored as a gray image: "bayer_rggb8; png compressed
+/// bayer_rggb8".
 Grid2d<Rgb8> compressed_color(const ros::CompressedImage& image) {
   if (auto color = decode_color(image.data)) return std::move(*color);
   auto gray = decode_gray16(image.data);

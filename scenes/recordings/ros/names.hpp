@@ -8,12 +8,12 @@
 
 namespace mh::ros {
 
-// Topics that are written, and by which our own files are known when they are read.
+// Topics that we write, and by which we recognize our own files when reading them.
 inline constexpr const char* kColorTopic = "/camera/color/image_raw";
 inline constexpr const char* kColorInfoTopic = "/camera/color/camera_info";
 inline constexpr const char* kDepthTopic = "/camera/depth_registered/image";
 inline constexpr const char* kDepthInfoTopic = "/camera/depth_registered/camera_info";
-/// As in the drivers of structured light: P holds -fx * baseline.
+/// As published by drivers of structured-light cameras: P holds -fx * baseline.
 inline constexpr const char* kProjectorInfoTopic = "/camera/projector/camera_info";
 inline constexpr const char* kLabelTopic = "/camera/labels/image";
 inline constexpr const char* kLabelNamesTopic = "/camera/labels/names";
@@ -32,8 +32,8 @@ inline constexpr const char* kBaseFrame = "base_link";
 inline constexpr const char* kCameraFrame = "camera_link";
 inline constexpr const char* kOpticalFrame = "camera_optical_frame";
 
-/// From the optical frame (x right, y down, z forward) to that of the body (x forward, y left, z
-/// up), REP 103.
+/// From the optical frame (x right, y down, z forward) to the body frame (x forward, y left, z up),
+/// REP 103.
 inline SE3 link_from_optical() {
   Eigen::Matrix3d rotation;
   rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;

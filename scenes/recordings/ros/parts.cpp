@@ -23,7 +23,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Without the time in it, as ROS 1's recorder writes it: "2026-01-31-23-59-59".
+/// A name without the time that ROS 1's recorder writes into it: "2026-01-31-23-59-59".
 std::string without_time(std::string name) {
   constexpr std::string_view kTime = "0000-00-00-00-00-00";
   const auto is_time = [&](std::size_t at) {
@@ -36,7 +36,7 @@ std::string without_time(std::string name) {
   return name;
 }
 
-/// "run" and 12 of "run_12.bag".
+/// The name and number of a part: "run" and 12 for "run_12.bag".
 std::optional<std::pair<std::string, std::uint32_t>> part_of(const fs::path& file) {
   constexpr std::size_t kMostDigits = 6;
   const std::string stem = file.stem().string();
@@ -48,7 +48,8 @@ std::optional<std::pair<std::string, std::uint32_t>> part_of(const fs::path& fil
                    static_cast<std::uint32_t>(std::stoul(number)));
 }
 
-/// The files that ROS 2's metadata lists; empty if there is none, or if it lists others.
+/// The files that ROS 2's metadata lists; empty if there is no metadata, or if it lists different
+/// files.
 std::vector<std::string> listed_in_metadata(const fs::path& folder,
                                             const std::vector<std::string>& names) {
   const fs::path file = folder / "metadata.yaml";
@@ -87,7 +88,7 @@ std::vector<std::string> in_order(const fs::path& folder, const std::vector<std:
   std::vector<std::string> listed = listed_in_metadata(folder, names);
   if (!listed.empty()) return listed;
   const auto by_number = numbered(names);
-  // Recorders count from 0; people who number their recordings mostly from 1.
+  // Recorders count from 0; people who number their recordings mostly count from 1.
   if (by_number.empty() || by_number.begin()->first != 0) return {};
   for (const auto& [number, name] : by_number) listed.push_back(name);
   if (by_number.rbegin()->first + 1 != by_number.size())

@@ -30,7 +30,7 @@ ros::Image image_message(const ros::Header& header, const char* encoding, const 
           bytes_of(grid)};
 }
 
-/// The depth that TUM's files would give back.
+/// The depth as it would be read back from TUM's files.
 Grid2d<float> rounded_depth(const Grid2d<float>& depth_m) {
   Grid2d<float> rounded(depth_m.width(), depth_m.height());
   std::transform(depth_m.begin(), depth_m.end(), rounded.begin(),
@@ -38,7 +38,7 @@ Grid2d<float> rounded_depth(const Grid2d<float>& depth_m) {
   return rounded;
 }
 
-/// "5: chair" and so on, which a class map may be made of.
+/// The names of our classes as lines like "5: chair", which can serve as a class map.
 std::string class_names() {
   std::string text;
   for (const ClassInfo& info : classes()) text += fmt::format("{}: {}\n", info.id, info.name);

@@ -18,18 +18,19 @@
 namespace mh {
 
 /// Writes a camera's frames as ROS messages: color (rgb8), depth (32FC1, m), the calibration of
-/// both, class and instance images, detections, the true pose, and the camera's place in tf.
-/// Depth is that of TUM's files, rounded to 0.2 mm, so that a frame reads back with the same bits
-/// from either. Messages are written in the order of the frames, whoever adds them.
+/// both, class and instance images, detections, the true pose, and the camera's pose in tf. Depth
+/// is that of TUM's files, rounded to 0.2 mm, so that a frame reads back with the same bits from
+/// either. Messages are written in the order of the frames, regardless of the order in which
+/// threads add them.
 class RosRecorder : public SequenceWriter {
  public:
-  /// @param robot  what the robot under the camera sends, its place in tf included, sorted; nullopt
-  ///               if none carries the camera. What comes after the last frame is left out
+  /// @param robot  messages of the robot that carries the camera, including its pose in tf, sorted;
+  ///               nullopt if there is no robot. Messages after the last frame are left out
   RosRecorder(std::unique_ptr<MessageWriter> file, const Camera& camera,
               std::optional<MessageLog> robot);
 
   void add(std::size_t index, const ExactFrame& frame) override;
-  /// A file that is written in one go cannot be resumed.
+  /// A file that is written in one pass cannot be resumed.
   bool resume(std::size_t, Stamp, const SE3&) override { return false; }
   void finish() override;
 
@@ -71,11 +72,11 @@ class RosRecorder : public SequenceWriter {
 /// The calibration as a message.
 ros::CameraInfo camera_info_message(const Camera& camera);
 
-/// A box around each instance that has a class, with its most frequent one.
+/// A box around each instance that has a class, with its most frequent class.
 std::vector<ros::Detection2D> detections_of(const Grid2d<ClassId>& classes,
                                             const Grid2d<InstanceId>& instances);
 
-/// Writes a log as a whole file.
+/// Writes a log as the only content of a file.
 void write_log(MessageWriter& file, const MessageLog& log);
 
 }  // namespace mh

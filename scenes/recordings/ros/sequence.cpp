@@ -136,10 +136,8 @@ std::vector<StoredFrame> paired(const ChosenTopics& chosen, const std::string& f
   };
   if (!std::ranges::is_sorted(all_color, is_earlier)) {
     std::ranges::stable_sort(all_color, is_earlier);
-    notes.push_back(
-        fmt::format("{}: images of {} are not in the order of their stamps: they are "
-                    "sorted by them",
-                    file, chosen.color->name));
+    notes.push_back(fmt::format("{}: images of {} are not ordered by timestamp: they are sorted",
+                                file, chosen.color->name));
   }
   const StampIndex depth_at = index_of(*chosen.depth);
   const StampIndex labels_at = chosen.labels ? index_of(*chosen.labels) : StampIndex({});
@@ -163,7 +161,7 @@ std::vector<StoredFrame> paired(const ChosenTopics& chosen, const std::string& f
   return frames;
 }
 
-/// Whether a path is such a file, or a folder of such.
+/// Whether a path is a file with this extension, or a folder with one or more of them.
 bool looks_like(const fs::path& path, const char* extension) {
   if (is_folder(path)) return !list_folder(path, std::string("*") + extension).empty();
   return path.extension() == extension && is_file(path);
@@ -195,7 +193,7 @@ OpenedRecording open_mcap_recording(const fs::path& path, const RecordingConfig&
   return open_path(path, config, "*.mcap", open_mcap);
 }
 
-/// The files of a recording, and what they hold.
+/// The files of a recording, and their content.
 struct Read {
   std::vector<std::unique_ptr<MessageFile>> files;
   RosTopics topics;
@@ -203,7 +201,7 @@ struct Read {
   std::size_t messages = 0;
 };
 
-/// A part that is not such a file is left out, unless it is the only one.
+/// Reads one part of a recording. @throws InputError if it is not a file of messages
 void read_part(OpenMessages open, const MessageBytes& part, Read& read,
                std::vector<std::string>& notes) {
   const std::size_t number = read.files.size();
@@ -222,6 +220,7 @@ void read_part(OpenMessages open, const MessageBytes& part, Read& read,
   read.files.push_back(std::move(file));
 }
 
+/// Reads all parts. A part that is not a file of messages is left out, unless it is the only one.
 Read read_parts(OpenMessages open, const std::vector<MessageBytes>& parts,
                 std::vector<std::string>& notes) {
   Read read;
@@ -268,7 +267,7 @@ OpenedRecording open_messages(OpenMessages open, const std::vector<MessageBytes>
   sequence->frames = paired(chosen, name, opened.notes);
   sequence->true_poses = true_trajectory(topics, names, *chosen.color, opened.notes, name);
   opened.has_labels = chosen.labels != nullptr;
-  // Read even where labels are left out: what is read depends on the recording alone.
+  // Read even if labels are ignored, so that what is read depends only on the recording.
   if (!config.classes.empty()) {
     sequence->classes = load_class_map(config.classes);
     if (!opened.has_labels) opened.notes.push_back(no_labels_note(config.classes));

@@ -11,23 +11,23 @@
 
 namespace mh {
 
-/// ROS 1 bags and MCAP files, or a folder with one of them or with the parts of one. Topics are
-/// found by type and encoding, or named (RecordingConfig::topics); calibration comes from
-/// CameraInfo unless a file is specified. Color images are paired with the nearest depth image in
-/// time, as in TUM's layout.
+/// ROS 1 bags and MCAP files: a file, or a folder with one file or with the parts of one recording.
+/// Topics are found by type and encoding, or named by the user (RecordingConfig::topics);
+/// calibration comes from CameraInfo unless a file is specified. Color images are paired with the
+/// nearest depth image in time, as in TUM's layout.
 extern const SequenceReader kBagReader, kMcapReader;
 
 /// open_bag() or open_mcap().
 using OpenMessages = std::unique_ptr<MessageFile> (*)(HeldBytes, const std::string&,
                                                       const MessageFile::Visit&);
 
-/// The content of such a file, and its name in messages.
+/// The content of a bag or MCAP file, and the name by which messages to the user refer to it.
 struct MessageBytes {
   std::string name;
   HeldBytes content;
 };
 
-/// Opens such files, parts of one recording, as a recording.
+/// Opens bag or MCAP files that are the parts of one recording.
 /// @param name  names the recording in messages
 /// @throws InputError naming file and topic.
 OpenedRecording open_messages(OpenMessages open, const std::vector<MessageBytes>& parts,

@@ -5,11 +5,11 @@
 
 namespace mh {
 
-/// What each topic is used for. To name them: "color=/a,depth=/b,labels=/c,info=/d,truth=/e".
+/// The topic for each use. Users name them as "color=/a,depth=/b,labels=/c,info=/d,truth=/e".
 struct TopicNames {
   std::string color, depth, labels, info, truth;
 };
-/// @throws InputError on another key, one given twice, or no topic.
+/// @throws InputError on an unknown key, a key given twice, or a missing topic.
 TopicNames parse_topic_names(const std::string& text);
 
 }  // namespace mh

@@ -17,7 +17,7 @@
 namespace mh {
 namespace {
 
-/// tf of ROS 1 wrote "/map" where tf2 writes "map".
+/// ROS 1's tf wrote "/map" where tf2 writes "map".
 std::string frame_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
@@ -26,7 +26,7 @@ std::string frame_name(const std::string& name) {
 SE3 rigid(const ros::Quaternion& q, const SE3& pose) {
   const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(std::abs(norm - 1) < 0.1) || !pose.translation().allFinite())
-    throw InputError("holds a pose that is no rigid transform");
+    throw InputError("holds a pose that is not a rigid transform");
   return pose;
 }
 SE3 rigid(const ros::Pose& pose) {
@@ -49,15 +49,16 @@ void set_size(ImageTopic& topic, std::uint32_t width, std::uint32_t height) {
   topic.height_px = static_cast<int>(std::min<std::uint32_t>(height, INT32_MAX));
 }
 
-/// Whether several messages share one stamp.
+/// Whether there are several messages and all have the same stamp.
 bool stands_still(const auto& stamped) {
   return stamped.size() > 1 && std::ranges::all_of(stamped, [&](const auto& one) {
            return one.stamp_ns == stamped.front().stamp_ns;
          });
 }
 
-/// A topic's poses, or an edge's, with the times of receipt if all stamps are equal.
-/// @returns whether they did
+/// Replaces the stamps of the poses of a topic or an edge with the times of receipt if all stamps
+/// are equal.
+/// @returns whether they were
 bool repair(auto& topic) {
   if (!stands_still(topic.poses)) return false;
   for (std::size_t i = 0; i < topic.poses.size(); ++i)
@@ -142,7 +143,7 @@ void RosTopics::add_depth_units(const std::string& topic, float meters) {
   for (const std::string_view end : {"/option/Depth_Units/value", "/option/Depth Units/value"}) {
     if (!topic.ends_with(end)) continue;
     if (!(meters > 1e-9F && meters < 1e3F))
-      throw InputError(fmt::format("holds {}, which is no depth unit in meters", meters));
+      throw InputError(fmt::format("holds {}, which is not a depth unit in meters", meters));
     std::vector<float>& units = depth_units[topic.substr(0, topic.size() - end.size()) + "/"];
     if (std::ranges::find(units, meters) == units.end()) units.push_back(meters);
   }

@@ -24,8 +24,8 @@ struct StoredImage {
 struct ImageTopic {
   std::string name;
   bool compressed = false;          ///< sensor_msgs/CompressedImage
-  std::string encoding;             ///< "rgb8"; of a compressed one its format, "jpeg"
-  int width_px = 0, height_px = 0;  ///< 0 for a compressed one whose header does not state it
+  std::string encoding;             ///< "rgb8"; of compressed images, the format, "jpeg"
+  int width_px = 0, height_px = 0;  ///< 0 for compressed images whose header does not state it
   std::string frame;
   ros::Wire wire = ros::Wire::kRos1;
   std::vector<StoredImage> images;
@@ -35,10 +35,10 @@ struct ImageTopic {
 struct Calibration {
   std::string topic;
   ros::CameraInfo info;              ///< the first
-  std::optional<Stamp> other_at_ns;  ///< of the first that is another; nullopt: all are the same
+  std::optional<Stamp> other_at_ns;  ///< stamp of the first that differs; nullopt if none does
 };
 
-/// A topic of poses: PoseStamped, PoseWithCovarianceStamped's like, TransformStamped, Odometry.
+/// A topic of poses: PoseStamped, TransformStamped or Odometry.
 struct PoseTopic {
   std::string parent, child;  ///< frames; child is empty where the type has none
   std::vector<TimedPose> poses;
@@ -53,15 +53,15 @@ struct TfEdge {
   std::vector<Stamp> received_ns;  ///< when each came
 };
 
-/// What a file of messages holds for SLAM.
+/// The content of a file of messages that matters for SLAM.
 struct RosTopics {
   std::map<std::string, ImageTopic> images;
   std::map<std::string, Calibration> calibrations;
   std::map<std::string, PoseTopic> poses;
-  std::map<std::string, TfEdge> tf;  ///< by the child's name
+  std::map<std::string, TfEdge> tf;  ///< by the name of the child frame
   /// Transforms between two cameras by topic, as RealSense's recorder and driver state them.
   std::map<std::string, SE3> transforms;
-  /// Meters per unit of depth, by what the names of its topics begin with (RealSense); each value
+  /// Meters per unit of depth, by the prefix of the depth topics' names (RealSense); each value
   /// once, in the file's order.
   std::map<std::string, std::vector<float>> depth_units;
   std::size_t unreadable = 0;    ///< messages of these types that could not be parsed
@@ -89,27 +89,29 @@ struct ChosenTopics {
   const Calibration* depth_info = nullptr;  ///< may be null
 };
 /// Chooses by name, otherwise by type and encoding.
-/// @throws InputError naming the file and its topics if there is none of a kind, or several.
+/// @throws InputError naming the file and its topics if there is no topic of a kind, or more than
+/// one.
 ChosenTopics choose_topics(const RosTopics& topics, const TopicNames& names,
                            const std::vector<MessageChannel>& channels, const std::string& file);
 
-/// Drivers forget stamps: where those of all messages of color, depth or poses are the same, the
-/// time of receipt takes their place, in color and depth together.
-/// @param notes  receives which
+/// Some drivers forget to set stamps: if all messages of color or of depth have the same stamp, all
+/// images get their times of receipt instead. The same applies to each topic of poses.
+/// @param notes  receives a line for each repair
 void repair_stamps(RosTopics& topics, const ChosenTopics& chosen, std::vector<std::string>& notes,
                    const std::string& file);
 
-/// to_from_from by transforms of tf that do not change; nullopt if none connect the frames.
+/// The transform to `to` from `from`, composed of tf's transforms that do not change; nullopt if
+/// these do not connect the frames.
 std::optional<SE3> fixed_transform(const RosTopics& topics, const std::string& to,
                                    const std::string& from);
 
-/// The true trajectory of the camera's optical frame, from a topic of poses (that of `names`, ours,
-/// or one that calls itself ground truth) or from tf between "world" or "map" and that frame.
-/// nullopt if there is none.
-/// @param frame   the optical frame
-/// @param stamps  of the frames, where tf is evaluated if more than one of its frames moves
-/// @param notes   receives what the truth was taken from, unless it is ours
-/// @throws InputError if a named topic holds no poses, or cannot be connected with the camera.
+/// The true trajectory of the camera's optical frame, from a topic of poses (the one in `names`,
+/// ours, or one whose name says that it is ground truth), or from tf between "world" or "map" and
+/// that frame; nullopt if there is none.
+/// @param color   its frame is the optical frame; tf is evaluated at its stamps if more than one of
+/// tf's frames moves
+/// @param notes   receives where the truth was taken from, unless it is ours
+/// @throws InputError if a named topic holds no poses, or cannot be connected to the camera.
 std::optional<Trajectory> true_trajectory(const RosTopics& topics, const TopicNames& names,
                                           const ImageTopic& color, std::vector<std::string>& notes,
                                           const std::string& file);

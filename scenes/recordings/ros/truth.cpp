@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// Sorted by stamp; of several poses of one stamp the first.
+/// Sorts poses by stamp and keeps only the first pose with each stamp.
 Trajectory ordered(std::vector<TimedPose> poses) {
   std::ranges::stable_sort(poses, {}, &TimedPose::stamp_ns);
   const auto is_same = [](const TimedPose& a, const TimedPose& b) {
@@ -28,7 +28,7 @@ Trajectory ordered(std::vector<TimedPose> poses) {
 /// A frame and the edge of tf above it.
 using Link = std::pair<std::string, const TfEdge*>;
 
-/// The edges from a frame up to `top`, or as far as tf goes if it is empty.
+/// The edges from a frame up to `top`, or as far as tf goes if `top` is empty.
 std::vector<Link> way_up(const RosTopics& topics, std::string frame, const std::string& top = "") {
   std::vector<Link> way;
   std::set<std::string> seen;  // stops at a cycle
@@ -58,7 +58,7 @@ bool is_fixed(const TfEdge& edge) {
   return edge.is_static || edge.poses.size() == 1;
 }
 
-/// The optical frame in "world" or "map" by tf.
+/// The trajectory of the optical frame in "world" or "map", from tf.
 std::optional<Trajectory> by_tf(const RosTopics& topics, const ImageTopic& color) {
   std::vector<Link> way;
   for (const char* top : {"world", ros::kMapFrame}) {
@@ -69,7 +69,8 @@ std::optional<Trajectory> by_tf(const RosTopics& topics, const ImageTopic& color
   const auto moving =
       std::ranges::count_if(way, [](const Link& l) { return !is_fixed(*l.second); });
   if (moving == 0) return std::nullopt;
-  // Poses by edge, sorted. If only one edge moves, its own stamps are used: they are exact.
+  // Poses by edge, sorted. If only one edge moves, the stamps of its poses are used, since no
+  // interpolation is needed.
   std::vector<Trajectory> edges;
   std::vector<Stamp> stamps;
   for (const StoredImage& image : color.images) stamps.push_back(image.stamp_ns);
@@ -161,8 +162,7 @@ bool never_moves(const TfEdge& edge) {
   });
 }
 
-/// The frames above one, itself included, up to the first edge that moves, and their poses:
-/// above_from_it.
+/// A frame and those above it, up to the first edge that moves; each with above_from_frame.
 std::vector<std::pair<std::string, SE3>> fixed_way_up(const RosTopics& topics,
                                                       const std::string& frame) {
   std::vector<std::pair<std::string, SE3>> above{{frame, SE3()}};

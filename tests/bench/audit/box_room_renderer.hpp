@@ -6,11 +6,11 @@
 
 namespace mh::testing_support {
 
-/// The box room as a scene: exact images in closed form, for BoxRoom::camera() alone.
+/// The box room as a scene: exact images in closed form, only for BoxRoom::camera().
 class BoxRoomRenderer : public Renderer {
  public:
-  /// @param shift_m  of the whole room along x
-  /// @param blank    its walls are gray
+  /// @param shift_m  shift of the whole room along x
+  /// @param blank    true: its walls are gray
   explicit BoxRoomRenderer(double shift_m = 0, bool blank = false)
       : room_from_world_(Eigen::Matrix3d::Identity(), Eigen::Vector3d(-shift_m, 0, 0)),
         blank_(blank) {}

@@ -13,7 +13,7 @@
 
 namespace mh::testing_support {
 
-inline constexpr int kTurn = 240;  // frames of a whole turn; the tours see a part of it
+inline constexpr int kTurn = 240;  // frames of a full turn; the tours see only a part of it
 
 inline Trajectory tour(int first, int last,
                        const Eigen::Vector3d& moved_m = Eigen::Vector3d::Zero()) {
@@ -25,8 +25,8 @@ inline Trajectory tour(int first, int last,
   return path;
 }
 
-/// The room is mapped over a third of a turn. The second tour is another path through it, or
-/// through `elsewhere`.
+/// A world whose room is mapped over a third of a turn. The second tour is a different path through
+/// it, or through `elsewhere`.
 inline World world(Trajectory second = tour(10, 70, {0.15, -0.1, 0.05}),
                    std::shared_ptr<const Renderer> elsewhere = nullptr,
                    const SensorConfig& sensors = exact_sensors()) {

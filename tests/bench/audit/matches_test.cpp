@@ -18,7 +18,7 @@ MatchDecision decision(bool with_xi, std::uint32_t asked, std::uint32_t feature,
           .other_feature = asked};
 }
 
-/// Feature i shows the same as the map's point i; odd ones of the map are tables, all else chairs.
+/// Feature i shows the same as map point i; odd map points are tables, everything else is a chair.
 /// Points from 100 on are at a border, those from 200 on show nothing.
 std::pair<MatchEnd, MatchEnd> ends_of(const MatchDecision& d) {
   const auto end = [](std::uint32_t i, ClassId label) {
@@ -51,7 +51,7 @@ TEST(AuditMatches, WhatXiCostIsNamedByGateAndByLabel) {
   const DecisionTrace decisions{decision(true, 1, 1, kThreshold), decision(true, 3, 3, kRatio),
                                 decision(true, 101, 101, kThreshold), decision(true, 6, 6, kTaken),
                                 decision(true, 9, 2, kThreshold), decision(true, 8, 8, kKept),
-                                // at xi = 1 all are kept but one
+                                // at xi = 1 all but one are kept
                                 decision(false, 1, 1, kKept), decision(false, 3, 3, kKept),
                                 decision(false, 101, 101, kKept), decision(false, 6, 6, kKept),
                                 decision(false, 9, 2, kKept), decision(false, 8, 8, kRatio)};
@@ -71,7 +71,7 @@ TEST(AuditMatches, WhatXiCostIsNamedByGateAndByLabel) {
 
 TEST(AuditMatches, AnotherNearestFeatureIsAnotherPair) {
   using enum MatchGate;
-  // Under xi the nearest feature of point 1 is a false one, and kept.
+  // With xi, the nearest feature of point 1 is a wrong one, and is kept.
   const StageMatches m = of_words({decision(true, 1, 4, kKept), decision(false, 1, 1, kKept)});
   EXPECT_EQ(m.xi.lost_to_another, 1);
   EXPECT_EQ(m.xi.wrong_gained, 1);
@@ -79,7 +79,7 @@ TEST(AuditMatches, AnotherNearestFeatureIsAnotherPair) {
 
 TEST(AuditMatches, SearchesAreComparedEachWithItself) {
   using enum MatchGate;
-  // The same point is looked for in two candidates; only the first loses it.
+  // The same point is looked for in two candidates; only the first search loses it.
   const StageMatches m = of_words({decision(true, 1, 1, kRatio), decision(false, 1, 1, kKept),
                                    decision(true, 1, 1, kKept), decision(false, 1, 1, kKept)});
   EXPECT_EQ(m.xi.lost_to_ratio, 1);

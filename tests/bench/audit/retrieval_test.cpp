@@ -10,7 +10,7 @@ TEST(AveragePrecision, IsOneIfTheRelevantComeFirst) {
   EXPECT_DOUBLE_EQ(*average_precision({1, 1, 1, 0, 0}, 3), 1.0);
 }
 
-// The only relevant one at rank r: 1 / r.
+// With the only relevant item at rank r, average precision is 1 / r.
 TEST(AveragePrecision, OfOneAtRankRIsItsInverse) {
   for (std::size_t rank = 1; rank <= 20; ++rank) {
     Relevance ranked(20, 0);
@@ -19,7 +19,7 @@ TEST(AveragePrecision, OfOneAtRankRIsItsInverse) {
   }
 }
 
-// Every second one, from the second on: each precision is 1/2.
+// Every second item is relevant, starting with the second: precision is 1/2 at each of them.
 TEST(AveragePrecision, OfEverySecondIsHalf) {
   EXPECT_DOUBLE_EQ(*average_precision({0, 1, 0, 1, 0, 1, 0, 1}, 4), 0.5);
 }

@@ -34,18 +34,18 @@ TEST(CoVisibleShare, IsZeroIfTheOtherIsTurnedAway) {
   EXPECT_DOUBLE_EQ(shared(0.3, 0.3 - std::numbers::pi / 2), 0.0) << "the camera sees 58 degrees";
 }
 
-// The camera turns about its own center: a column at angle a of the image's middle is still seen if
-// |a + turn| is below half the field of view. Columns are spaced evenly in tan(a).
+// The camera turns about its own center: a column at angle a from the middle of the image is still
+// seen if |a + turn| is below half the field of view. Columns are spaced evenly in tan(a).
 TEST(CoVisibleShare, OfATurnIsThatOfTheColumnsLeft) {
   const Camera camera = BoxRoom::camera();
   const double turn = 0.25, half = std::atan(159.5 / camera.fx_px);
   const double seen = (std::tan(half) + std::tan(half - turn)) / (2 * std::tan(half));
-  // Rows at the side leave the image, too, up to 1 / cos of the turn.
+  // Rows near the sides leave the image, too, up to 1 / cos of the turn.
   EXPECT_NEAR(shared(0, turn), seen, 0.06);
   EXPECT_NEAR(shared(0, -turn), seen, 0.06);
 }
 
-// A wall in front of the other camera hides what is behind: seen from beyond it, nothing agrees.
+// The other view is from beyond a wall, which hides everything behind it: nothing agrees.
 TEST(CoVisibleShare, OfAnotherRoomIsZero) {
   const SE3 pose = BoxRoom::pose(3, 2.5, 0);
   const SE3 beyond(pose.rotation(), pose.translation() + Eigen::Vector3d(100, 0, 0));
@@ -75,7 +75,7 @@ TEST(SamePlace, IsWithinEightCentimetersOrFourPercentOfDepth) {
   EXPECT_FALSE(same(5.0, 0.201));
 }
 
-// A border of classes runs through the room every meter: y = 2 is 48 px right of the middle.
+// There is a border between classes every meter along the room: y = 2 is 48 px right of the middle.
 TEST(TrueView, FindsBordersOfClasses) {
   Features features;
   for (const float u : {159.5F + 48, 159.5F + 46, 159.5F + 24})

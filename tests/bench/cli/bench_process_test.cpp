@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `modelhouse bench` with real processes over a small room: what is promised of stores, shards,
+// `modelhouse bench` with real processes over a small room: its promises about stores, shards,
 // crashes, limits and signals.
 #include <fcntl.h>
 #include <signal.h>
@@ -33,7 +33,8 @@ const fs::path& test_folder() {
     fs::path path = fs::temp_directory_path() / ("mh_process_" + std::to_string(getpid()));
     static fs::path shared() { return MH_TEST_CACHE "/modelhouse-cache"; }
     Folder() {
-      // Baked light is shared by all tests (its key holds scene and code), maps and audits are not.
+      // Baked light is shared by all tests (its key covers scene and code); maps and audits are
+      // not.
       fs::create_directories(path / "cache");
       std::error_code none_yet;
       fs::copy(shared(), path / "cache" / shared().filename(), fs::copy_options::recursive,
@@ -44,7 +45,7 @@ const fs::path& test_folder() {
       for (const char* kind : {"map", "audit"}) fs::remove_all(own / kind);
       std::error_code no_matter;
       fs::create_directories(shared().parent_path(), no_matter);
-      // Under its name only when it is whole: other tests run meanwhile.
+      // Moved into place only when it is complete: other tests run at the same time.
       fs::rename(own, shared(), no_matter);
       for (const auto& entry : fs::directory_iterator(own / "light", no_matter))
         if (!fs::exists(shared() / "light" / entry.path().filename()))
@@ -57,7 +58,7 @@ const fs::path& test_folder() {
 
 const std::string kRoom = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
 
-/// A suite of three short runs, or of what `systems` says.
+/// A suite of three short runs, or of the runs that `systems` defines.
 fs::path write_suite(const std::string& name = "small",
                      const std::string& systems = "[semantic, plain]", const std::string& more = "",
                      const std::string& scene = kRoom, const std::string& labels = "[exact, boxes]",
@@ -88,7 +89,7 @@ class Command {
     ended_ = true;
     return mh::test::code_of(status_);
   }
-  /// Its processes, by their parent.
+  /// Its child processes.
   std::vector<pid_t> children() const {
     std::vector<pid_t> found;
     for (const auto& entry : fs::directory_iterator("/proc")) {
@@ -135,7 +136,7 @@ int runs_in(const fs::path& folder) {
                               " --out " + list.string() + " 2> /dev/null";
   if (std::system(command.c_str()) != 0) return 0;
   const std::string text = content(list);
-  return static_cast<int>(std::count(text.begin(), text.end(), '\n')) - 1;  // its head
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n')) - 1;  // without the header
 }
 
 std::string errors() {
@@ -150,7 +151,7 @@ std::string tables(const std::string& out) {
          content(test_folder() / "stdout");
 }
 
-/// The tables of a run that nobody disturbed.
+/// The tables of an undisturbed run.
 const std::string& undisturbed() {
   static const std::string kTables = [] {
     EXPECT_EQ(run(bench(write_suite(), "plain_run")), 0) << errors();
@@ -173,8 +174,8 @@ TEST(BenchProcess, JobsAndShardsChangeNoByte) {
   EXPECT_EQ(tables("merged"), undisturbed());
 }
 
-// Two trials of three systems and labels at a level that blurs, each run with images of its own,
-// and with images that the first one to need them made.
+// Two trials of three combinations of system and labels, at a level with motion blur: first each
+// run makes its own images, then the runs share images made by the first one that needs them.
 TEST(BenchProcess, SharedImagesChangeNoByte) {
   const std::string root = MH_SOURCE_DIR;
   const fs::path suite = write_suite("blurred", "[semantic, plain]",
@@ -190,7 +191,7 @@ TEST(BenchProcess, SharedImagesChangeNoByte) {
   EXPECT_EQ(run(bench(suite, "shared_images", "--jobs 2")), 0) << errors();
   EXPECT_EQ(tables("shared_images"), own);
   EXPECT_EQ(folders_of_work("shared_images"), 0);
-  // Room for a few only.
+  // The limit leaves room for only a few shared images.
   EXPECT_EQ(run(bench(suite, "few_images", "--images-limit 0.01")), 0) << errors();
   EXPECT_EQ(tables("few_images"), own);
 }
@@ -202,7 +203,8 @@ TEST(BenchProcess, AFinishedRunIsNotRepeated) {
   EXPECT_EQ(tables("plain_run"), undisturbed());
 }
 
-// What a run's parts took: none is negative, and together they are most of what it took, not more.
+// No part of a run's time is negative; together they make up most of the run's time, but not more
+// than it.
 TEST(BenchProcess, ThePartsOfARunsTimeAddUp) {
   undisturbed();
   const SQLite::Database db((test_folder() / "plain_run" / "results.sqlite").string());
@@ -295,7 +297,7 @@ TEST(BenchProcess, AHangupIsAnInterruptUnlessItIsIgnored) {
     const auto before = ::signal(SIGHUP, ignored ? SIG_IGN : SIG_DFL);  // as nohup does
     Command command("scene statistics model_house");
     ::signal(SIGHUP, before);
-    std::this_thread::sleep_for(std::chrono::seconds(3));  // its work takes longer
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // the command takes longer than this
     command.signal(SIGHUP);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_EQ(command.running(), ignored);
@@ -330,7 +332,7 @@ TEST(BenchProcess, ARenderingThatIsInterruptedSaysWhetherItGoesOn) {
 TEST(BenchProcess, EveryCommandThatIsInterruptedSaysSo) {
   ASSERT_TRUE(fs::exists(test_folder()));
   Command command("scene statistics model_house");
-  std::this_thread::sleep_for(std::chrono::seconds(3));  // its work takes longer
+  std::this_thread::sleep_for(std::chrono::seconds(3));  // the command takes longer than this
   command.signal(SIGINT);
   EXPECT_EQ(command.wait(), 130) << errors();
   EXPECT_NE(errors().find("modelhouse: interrupted; nothing is kept"), std::string::npos)
@@ -368,7 +370,7 @@ TEST(BenchProcess, ACheckThatIsInterruptedGoesOn) {
   EXPECT_TRUE(fs::is_empty(place)) << "it is removed once the check is done";
   const std::string baseline = content(fs::path(suite).replace_extension(".baseline.json"));
 
-  // The next one begins anew; after SIGKILL it resumes, too.
+  // The next check begins anew; after SIGKILL it resumes, too.
   EXPECT_EQ(interrupted(SIGKILL), -SIGKILL);
   EXPECT_EQ(run(check), 0) << errors();
   EXPECT_EQ(errors().find("3 runs, 3 of them to do"), std::string::npos) << errors();
@@ -409,8 +411,8 @@ TEST(BenchProcess, AnOutsideProgramThatIsRunAgainMeetsNeitherTruthNorLeavings) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".work.")) << entry.path();
 }
 
-// From the folders that it is told, and from its own, up and down: while it runs, another's
-// results, of which the truth is the same, are not there.
+// The program searches the folders that it was given and its own, upward and downward: while it
+// runs, the results of other systems, which have the same truth, must be hidden from it.
 TEST(BenchProcess, AnOutsideProgramFindsNoTruth) {
   const std::string finds =
       "find . $(dirname $(dirname $(dirname {dataset}))) -name truth.tum -o -name estimate.tum -o "
@@ -463,8 +465,9 @@ TEST(BenchProcess, AFolderThatWasDeletedIsToldOf) {
       << errors();
 }
 
-// Files that a scene names are part of the scene: its results are computed again, in this folder
-// and in others that share its cache, and no image of the old scene stays.
+// Files that a scene names are part of the scene: if one of them is replaced, the results are
+// computed again, in this folder and in others that share its cache, and no image of the old scene
+// is kept.
 TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndImagesAnew) {
   const fs::path folder = test_folder() / "replaced_mesh";
   fs::create_directories(folder);
@@ -498,7 +501,7 @@ TEST(BenchProcess, AReplacedMeshMakesResultsMapsAndImagesAnew) {
   EXPECT_EQ(made_in("replaced_elsewhere", "2"), after) << "a map of the old scene answered";
   fs::remove_all(test_folder() / "cache" / "map");
   EXPECT_EQ(made_in("replaced_without_maps", "2"), after);
-  put("room");  // its results are there, its images are not
+  put("room");  // its results are stored, its images are not
   EXPECT_EQ(made_in("replaced", "2"), before);
   EXPECT_EQ(made_in("replaced", "0"), before);
   EXPECT_EQ(content(test_folder() / "replaced/semantic-exact-pepper-0/notes.txt"), "mine");
@@ -597,13 +600,13 @@ TEST(BenchProcess, ACrashOfALibraryIsAFailureOfItsRunAlone) {
     EXPECT_NE(reported.find(line), std::string::npos) << line << reported;
   EXPECT_EQ(reported.find("nonsense"), std::string::npos) << reported;
   EXPECT_EQ(runs_in(test_folder() / "libraries"), 9);
-  // What it prints is neither shown nor mistaken for the bench's own output.
+  // What the library prints is neither shown nor mistaken for the bench's own output.
   const std::string said =
       content(test_folder() / "libraries" / "print-exact-pepper-0" / "outside.log");
   EXPECT_NE(said.find("0.5\n~nonsense\n0.5\n"), std::string::npos) << said;
   EXPECT_TRUE(said.ends_with("goodbye\n")) << said;
 
-  // After a rebuild of the library, its runs are repeated.
+  // After the library is rebuilt, its runs are repeated.
   EXPECT_EQ(run(bench(suite, "libraries")), 3);
   EXPECT_NE(errors().find("9 runs, 0 of them to do"), std::string::npos) << errors();
   std::ofstream(library, std::ios::app) << "x";
@@ -624,7 +627,7 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
       "sweep", "[semantic]",
       "parameters: {map: fixed, semantics.alpha: [0.8, 0.5], semantics.beta: [0.75, 0.9]}\n");
   EXPECT_EQ(run(bench(sweep, "sweep")), 0) << errors();
-  // The one maps for itself, the other takes the sweep's map from the cache.
+  // One of them makes its own map, the other takes the sweep's map from the cache.
   for (const auto& [alpha, beta, point, cache] :
        {std::tuple("0.8", "0.75", 0, "--no-cache"), std::tuple("0.5", "0.9", 3, "")}) {
     const std::string name = std::string("alone") + alpha;
@@ -640,7 +643,7 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
       std::string line, all;
       while (std::getline(lines, line))
         if (line.find("," + std::to_string(at) + ",1,0,1.5," + alpha + "," + beta) !=
-            std::string::npos)  // a label mass of 0: none is asked for
+            std::string::npos)  // the 0 is the label mass: none is requested
           all += line.substr(line.find("," + std::string(alpha) + ",")) + "\n";
       return all;
     };
@@ -731,7 +734,7 @@ TEST(BenchProcess, AScannetFolderIsASceneAndItsWarningsAreToldOnce) {
     EXPECT_EQ(run(command), 0) << command << errors();
     EXPECT_EQ(times_told(), 1U) << command << errors();
   }
-  // Boxes are drawn around objects, and nobody knows which face belongs to which.
+  // Boxes are drawn around objects, and it is unknown which face belongs to which object.
   suite.replace(suite.find("[exact]"), 7, "[boxes]");
   std::ofstream(test_folder() / "scan.yaml") << suite;
   EXPECT_EQ(run(bench(test_folder() / "scan.yaml", "boxes")), 2);
@@ -758,7 +761,7 @@ TEST(BenchProcess, MergingAPartTwiceIsHarmless) {
   const std::string part = (test_folder() / "plain_run").string();
   EXPECT_EQ(run("merge " + (test_folder() / "twice").string() + " " + part + " " + part), 0)
       << errors();
-  EXPECT_EQ(errors(), "merge: " + part + ": holds no result that is not here already\n");
+  EXPECT_EQ(errors(), "merge: " + part + ": holds no new results: all of them are here already\n");
   EXPECT_EQ(tables("twice"), undisturbed());
 }
 
@@ -769,7 +772,7 @@ TEST(BenchProcess, AnImageThatFoundNoRoomIsCopiedByTheNextMerge) {
   fs::resize_file(part / "views.png", 40'000'000);
   const std::string merge =
       " " MH_EXECUTABLE " merge " + out.string() + " " + part.string() + " >/dev/null 2>&1";
-  // A limit to the size of files stands for a full disk: 20 MB.
+  // A file size limit of 20 MB stands in for a full disk.
   EXPECT_NE(std::system(("trap '' XFSZ; ulimit -f 40000; exec" + merge).c_str()), 0);
   for (const auto& entry : fs::directory_iterator(out))
     EXPECT_NE(entry.path().extension(), ".png") << entry.path();
@@ -786,7 +789,8 @@ TEST(BenchProcess, PartsThatDoNotBelongTogetherAreRefusedAndLeaveNothing) {
             0)
       << errors();
   EXPECT_EQ(run("merge " + out + part + " " + (test_folder() / "f46").string()), 2);
-  EXPECT_NE(errors().find("made with other settings"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("made with settings, input or code different"), std::string::npos)
+      << errors();
   EXPECT_EQ(run(bench(write_suite(), "trials", "--trials 2 --shard 6/6")), 0) << errors();
   EXPECT_EQ(run("merge " + out + part + " " + (test_folder() / "trials").string()), 2);
   EXPECT_NE(errors().find("trials/results.sqlite: was run with --trials 2, "), std::string::npos)
@@ -828,7 +832,7 @@ TEST(BenchProcess, ABenchWithAnAuditGivesTheSameResultsAndTheSameAudit) {
   EXPECT_EQ(content(test_folder() / "bench_and_audit" / "audit.csv"),
             content(fs::path(alone) / "audit.csv"));
 
-  // An audit stays beside the results that it is of, and beside no others.
+  // An audit is kept next to the results that it belongs to, and removed when the results change.
   const fs::path audited = test_folder() / "bench_and_audit" / "audit.json";
   EXPECT_EQ(run(bench(write_suite(), "bench_and_audit")), 0) << errors();
   EXPECT_TRUE(fs::exists(audited));
@@ -837,16 +841,16 @@ TEST(BenchProcess, ABenchWithAnAuditGivesTheSameResultsAndTheSameAudit) {
   EXPECT_FALSE(fs::exists(audited));
   const std::string out = (test_folder() / "bench_and_audit").string();
   EXPECT_EQ(run("audit " + write_suite().string() + " --frames 45 --no-cache --out " + out), 2);
-  EXPECT_NE(errors().find("holds results of other runs"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("holds results of runs that"), std::string::npos) << errors();
   EXPECT_FALSE(fs::exists(audited));
   EXPECT_EQ(run(bench(write_suite(), "part", "--audit --shard 1/3")), 2);
-  EXPECT_NE(errors().find("--audit: takes the whole suite"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("--audit: needs the whole suite"), std::string::npos) << errors();
 }
 
 TEST(BenchProcess, BadInputIsTold) {
   std::ofstream(test_folder() / "empty.yaml");
   EXPECT_EQ(run("bench " + (test_folder() / "empty.yaml").string()), 2);
-  EXPECT_NE(errors().find("empty.yaml: the file holds nothing"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("empty.yaml: the file is empty"), std::string::npos) << errors();
   EXPECT_EQ(run(bench(write_suite(), "bad", "--shard 4/3")), 2);
   EXPECT_NE(errors().find("shard '4/3'"), std::string::npos) << errors();
   EXPECT_EQ(run(bench(write_suite(), "bad", "--shard 1/-3")), 2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is stored stands under the digest of what was read, whoever works in the same folder and
-// whatever changes meanwhile: each command is started as a user starts it, and disturbed.
+// Results are stored under the digest of the inputs that were read, no matter what else works in
+// the same folder or which files change meanwhile: each command is started as a user starts it, and
+// disturbed.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -28,7 +29,7 @@ const std::string kRoom = MH_SOURCE_DIR "/bench/scenarios/room.yaml";
 
 class ChangedInputs : public testing::Test {
  protected:
-  /// A command at work.
+  /// A running command.
   struct Started {
     pid_t process;
     fs::path said;
@@ -50,7 +51,8 @@ class ChangedInputs : public testing::Test {
     waitpid(command.process, &status, 0);
     return test::code_of(status);
   }
-  /// Runs a command and does something as soon as it has said something. @returns what it said
+  /// Runs a command and calls `disturb` as soon as the output contains `moment`. @returns the
+  /// output
   std::string disturbed(const std::string& arguments, const std::string& moment,
                         const std::function<void()>& disturb) {
     const Started command = start(arguments);
@@ -74,7 +76,8 @@ class ChangedInputs : public testing::Test {
   }
   std::string path(const std::string& name) const { return (work_.path() / name).string(); }
 
-  /// A suite with the room and a copy of it that has another name, so that its keys are its own.
+  /// A suite with the room and a copy of it under a different name, so that the copy has its own
+  /// keys.
   std::string two_rooms(const std::string& systems, const std::string& more = "") const {
     std::string other = content(kRoom);
     const auto at = other.find("name:");
@@ -93,7 +96,7 @@ class ChangedInputs : public testing::Test {
   void change(const std::string& name) const {
     std::ofstream(path(name), std::ios::app) << "# changed\n";
   }
-  /// Puts another file in the place of one and that one back, with its old times.
+  /// Replaces a file by another one and then puts the old one back, with its old modification time.
   void replace_for_a_moment(const std::string& name) const {
     const auto time = fs::last_write_time(path(name));
     fs::copy_file(path(name), path("kept"), fs::copy_options::overwrite_existing);
@@ -118,7 +121,7 @@ class ChangedInputs : public testing::Test {
 };
 
 TEST_F(ChangedInputs, AnotherSuiteWaitsForTheOneInItsFolder) {
-  // The first one's program holds it until the second was there.
+  // The first command's program keeps running until the second command has been tried.
   const std::string slow =
       "[{name: slow, protocol: conversation, command: 'until ls | grep -q ^g.$; do sleep 0.05; "
       "done; exit 3'}, plain]";
@@ -133,13 +136,13 @@ TEST_F(ChangedInputs, AnotherSuiteWaitsForTheOneInItsFolder) {
         << said_;
     EXPECT_EQ(run("scene convert " + kRoom + " --format scannet --out " + path("out")), 2) << said_;
     EXPECT_NE(said_.find("another command is at work"), std::string::npos) << said_;
-    change("first.yaml");  // an edited suite, started again, is another one, too
+    change("first.yaml");  // after an edit, the suite counts as another one, too
     EXPECT_EQ(run("bench " + path("first.yaml") + to), 2) << said_;
     std::ofstream(path("go"));
   });
-  EXPECT_EQ(code_, 3) << said;  // its program failed, as it was told to
+  EXPECT_EQ(code_, 3) << said;  // its program failed, as intended
   EXPECT_EQ(content(path("out/table.txt")).find("published"), std::string::npos);
-  // What it recorded as its suite is what it ran.
+  // The suite that it recorded is the one that it ran.
   EXPECT_EQ(SQLite::Database(path("out/results.sqlite"))
                 .execAndGet("SELECT content FROM suite")
                 .getString()
@@ -168,7 +171,7 @@ TEST_F(ChangedInputs, AProgramThatIsReplacedDuringItsRunHasNoResult) {
                          path("then.sh") + "'}]",
                      .labels = "[exact]"}
         .write(path("suite.yaml"));
-    // Replaced and put back, with its old times: only the file system knows.
+    // Replaced and put back with its old times: only the file system can tell.
     write_atomically(path("then.sh"), "cd " + work_.path().string() + " && cp -p " + changes +
                                           " was && echo : >>" + changes + " && cp -p was " +
                                           changes + "\n");
@@ -178,8 +181,8 @@ TEST_F(ChangedInputs, AProgramThatIsReplacedDuringItsRunHasNoResult) {
   }
 }
 
-/// Commands over a vocabulary of their own: a view of its file, whose words change under a run if
-/// it is written in place.
+/// Commands with their own vocabulary file, which is memory-mapped: its words change during a run
+/// if the file is written in place.
 class ChangedWords : public ChangedInputs {
  protected:
   ChangedWords() {
@@ -224,7 +227,7 @@ TEST_F(ChangedWords, DuringAReplayLeaveNoPages) {
   EXPECT_FALSE(fs::exists(path("pages/index.html")));
 }
 
-// The first run's program takes away what the second reads.
+// The first run's program moves away a file that the second run reads.
 TEST_F(ChangedInputs, AFileThatIsAwayForAMomentIsNoFailureOfItsRun) {
   const std::string suite =
       two_rooms("[{name: p, protocol: trajectory, command: 'echo {trajectory}; mv " +
@@ -323,7 +326,7 @@ TEST_F(ChangedInputs, AReplayIsOfTheFilesOfItsResult) {
   EXPECT_FALSE(fs::exists(path("other_pages/index.html")));
 }
 
-/// Commands over a recording, whose images are read as they come.
+/// Commands over a recording whose images are read on demand.
 class ChangedRecording : public ChangedInputs {
  protected:
   void SetUp() override {
@@ -331,7 +334,7 @@ class ChangedRecording : public ChangedInputs {
         run("render " + kRoom + " --motion handheld:0:60 --level ideal --out " + path("room")), 0)
         << said_;
   }
-  /// The first image, which is read by the time that a command reports progress.
+  /// Changes the first image, which has been read by the time a command reports progress.
   void change_image() const {
     replace_for_a_moment(
         (fs::path("room/rgb") / list_folder(path("room/rgb"), "*.png").front()).string());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The executable as a user meets it: bad input gives one clear line, exit code 2 and no file.
+// The executable as a user sees it: bad input gives one clear line, exit code 2 and no file.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,7 +55,7 @@ class CommandLine : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  /// The run failed as bad input should: code 2, one line that says so and holds `part`.
+  /// Expects a run to fail as on bad input: code 2 and one line of error that contains `part`.
   void expect_refused(const std::string& arguments, const std::string& part) {
     EXPECT_EQ(run(arguments), 2) << err_;
     const std::string mark = "modelhouse: error: ";
@@ -86,7 +86,7 @@ class CommandLine : public testing::Test {
     return write("suite.yaml", text);
   }
 
-  /// Files below the folder, the suite apart.
+  /// Number of files below the folder, apart from the suite.
   std::size_t files_left() const {
     std::size_t count = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder_))
@@ -111,7 +111,8 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
   }
 }
 
-// A recording made by the renderer is its own twin: what differs is the depth's unit in the file.
+// A recording made by the renderer is its own twin: only the depth unit in the file makes a
+// difference.
 TEST_F(CommandLine, ATwinOfARenderingIsItself) {
   const std::string room = std::string(MH_SOURCE_DIR) + "/bench/scenarios/room.yaml";
   const std::string recording = (folder_ / "recording").string(), out = (folder_ / "twin").string();
@@ -201,7 +202,7 @@ TEST_F(CommandLine, DefaultsStandInTheHelp) {
   }
 }
 
-/// Every name of an option that a command's help lists, and its commands.
+/// All names of options and commands that a command's help lists.
 std::vector<std::string> names_in_help(const std::string& help) {
   std::vector<std::string> names;
   std::istringstream lines(help);
@@ -348,7 +349,7 @@ TEST_F(CommandLine, BenchFindsWhatCannotBeWorkedWithBeforeTheWork) {
   ASSERT_NE(small.find(extent), std::string::npos);
   small.replace(small.find(extent), extent.size(), "extent_m: [0, 0, 5.3, 6.7]");
   refused("scene", write("small.yaml", small).string(), "small.yaml:");
-  // From inside the outer wall.
+  // The tour starts inside the outer wall.
   const fs::path tour = write(
       "walled.yaml",
       "name: walled\nstart: {position: [-3, -3], heading_deg: 0}\nwaypoints: [{to: [1, 1]}]\n");
@@ -428,7 +429,7 @@ TEST_F(CommandLine, AVocabularyInText) {
   EXPECT_EQ(run("vocabulary convert " + own + " --out " + back), 0) << err_;
   EXPECT_EQ(read_file(back), "10 6 0 0\n" + node + " 1.25");
   const std::string bad = write("bad.txt", "10 6 0 0\n" + node + " 1.25 3\n").string();
-  expect_refused("vocabulary info " + bad, "bad.txt:2: line goes on where it should end: '3'");
+  expect_refused("vocabulary info " + bad, "bad.txt:2: line continues where it should end: '3'");
   expect_refused("vocabulary info " + text + " --frames here --settings s.yaml", "s.yaml");
   expect_refused("vocabulary train --images " + (folder_ / "none.txt").string() + " --out " + own,
                  "none.txt");
@@ -453,7 +454,7 @@ TEST_F(CommandLine, ImagesAndSequencesGoWhereTheyCanBeRead) {
   expect_refused(render + folder_.string() + " --frames 0", "--frames");
   expect_refused(render + folder_.string() + " --frames -1", "--frames");
   write("rgb.txt", "");
-  expect_refused(render + folder_.string(), "holds a sequence already");
+  expect_refused(render + folder_.string(), "already holds a sequence");
 }
 
 TEST_F(CommandLine, ARecordingInScannetsFormatEndsAtAHundredPerCent) {
@@ -464,7 +465,7 @@ TEST_F(CommandLine, ARecordingInScannetsFormatEndsAtAHundredPerCent) {
   ASSERT_EQ(run(command), 0) << err_;
   EXPECT_TRUE(err_.ends_with("100 %\n")) << err_;
   EXPECT_EQ(nlohmann::json::parse(out_)["frames"], 2) << out_;
-  // A second time, with files of somebody else's beside it.
+  // A second run, with unrelated files of the user next to its output.
   const std::string sens = content(folder_ / "s/s.sens");
   ASSERT_GT(sens.size(), 1000u);
   for (const char* name : {"s/.s.4194305.tmp.sens", "s/s.sens.old", "s/.office.txt"})
@@ -482,7 +483,7 @@ TEST_F(CommandLine, ARenderingThatWroteNothingDoesNotBindTheNext) {
                              " --motion handheld:0 --frames 2 --robot " + robot_ + " --out " + out;
   ASSERT_EQ(run(render + " --seed 1"), 0) << err_;
   expect_refused(render + " --seed 2", "with other settings");
-  // As after Ctrl-C before the first frame.
+  // What Ctrl-C before the first frame leaves behind.
   for (const char* part : {"rgb", "rgb.txt", "depth", "label", "instance"})
     fs::remove_all(folder_ / "out" / part);
   EXPECT_EQ(run(render + " --seed 2"), 0) << err_;
@@ -490,19 +491,19 @@ TEST_F(CommandLine, ARenderingThatWroteNothingDoesNotBindTheNext) {
   write("foreign/a.mcap", "mine");
   expect_refused("render " + mesh.string() + " --motion handheld:0 --frames 1 --robot " + robot_ +
                      " --format mcap --out " + (folder_ / "foreign").string(),
-                 "holds a sequence already (a.mcap)");
+                 "already holds a sequence (a.mcap)");
   fs::create_directories(folder_ / "theirs");
   for (const char* name : {"theirs/render.json", "theirs/groundtruth.txt"}) write(name, "mine");
   expect_refused("render " + mesh.string() + " --motion handheld:0 --frames 1 --robot " + robot_ +
                      " --out " + (folder_ / "theirs").string(),
-                 "render.json: is there already, and not from `modelhouse render`");
+                 "render.json: already exists and was not written by `modelhouse render`");
   for (const char* name : {"theirs/render.json", "theirs/groundtruth.txt"})
     EXPECT_EQ(content(folder_ / name), "mine") << name;
 }
 
 TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
   const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
-  // Cameras 2 m above the floor that look down at it, one of them beyond its edge.
+  // Cameras 2 m above the floor that look down; one of them is beyond the floor's edge.
   const fs::path poses = write("poses.tum",
                                "1305031229.5287 1 1 2 1 0 0 0\n1305031229.7 2.25 1.5 2 1 0 0 0\n"
                                "1305031230 -7 1.5 2 1 0 0 0\n");
@@ -512,7 +513,7 @@ TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
   EXPECT_NE(err_.find("3 poses of " + poses.string() + ", exactly as they are: of the camera"),
             std::string::npos)
       << err_;
-  EXPECT_NE(err_.find("3 of 3 poses stand outside of the scene"), std::string::npos)
+  EXPECT_NE(err_.find("3 of 3 poses are outside the scene"), std::string::npos)
       << err_ << "2 m above all there is";
   EXPECT_NE(err_.find("every camera looks straight up or down"), std::string::npos) << err_;
   std::istringstream truth(content(folder_ / "out/groundtruth.txt"));
@@ -522,11 +523,11 @@ TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_TRUE(lines[0].starts_with("1305031229.528700000 1 1 2 ")) << lines[0];
   EXPECT_TRUE(lines[1].starts_with("1305031229.700000000 2.25 1.5 2 ")) << lines[1];
-  expect_refused(render + " --motion auto:0", "stands in place of a motion");
+  expect_refused(render + " --motion auto:0", "takes the place of a motion");
   expect_refused("render " + mesh.string() + " --poses-of robot --motion auto --out x", "--poses");
   expect_refused("render " + mesh.string() + " --poses none.tum --out " + (folder_ / "x").string(),
                  "none.tum");
-  // A replay moves the poses, and says so.
+  // A replay changes the poses, and says so.
   const fs::path walk =
       write("walk.tum", "0 40 0 1 0.5 -0.5 0.5 -0.5\n1 40.5 0 1 0.5 -0.5 0.5 -0.5\n");
   ASSERT_EQ(run("render " + mesh.string() + " --robot " + robot_ + " --motion replay:" +
@@ -561,7 +562,7 @@ TEST_F(CommandLine, TheLightThatOneCommandBakedServesTheOthers) {
   };
   const auto convert = [&](const char* name) {
     EXPECT_EQ(run("scene convert " + room + " --out " + (folder_ / name).string()), 0) << err_;
-    return err_.find("light: ") != std::string::npos;  // its progress
+    return err_.find("light: ") != std::string::npos;  // progress of the baking
   };
   EXPECT_TRUE(convert("a.glb"));
   EXPECT_EQ(lights(), 1U);
@@ -598,7 +599,7 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
     write(out + "/" + name, "mine");
     write(out + "/" + name + ".bak", "mine");
     expect_refused(command + " --out " + f + out,
-                   out + "/" + name.substr(0, name.find('/')) + ": is there already");
+                   out + "/" + name.substr(0, name.find('/')) + ": already exists");
     EXPECT_EQ(content(folder_ / out / name), "mine");
     EXPECT_EQ(content(folder_ / out / (name + ".bak")), "mine");
     EXPECT_FALSE(fs::exists(folder_ / out / ".modelhouse"));
@@ -616,26 +617,26 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   refuses_beside(suite, "table.txt");
   refuses_beside(suite, "results.json");
   refuses_beside(suite, "blank_corridor-plain-pepper-0/truth.tum");
-  // A quick look has a folder of its own.
+  // A run of only a few frames has its own folder.
   fs::create_directories(folder_ / "out/model_house-first-5");
   write("out/model_house-first-5/table.txt", "mine");
   const fs::path here = fs::current_path();
   fs::current_path(folder_);
   expect_refused("bench model_house --frames 5",
-                 "out/model_house-first-5/table.txt: is there already");
+                 "out/model_house-first-5/table.txt: already exists");
   fs::current_path(here);
-  // A scene of ScanNet's, which conversion would replace.
+  // A ScanNet scene that the conversion would replace.
   write("scene0000_00.txt", "mine");
   fs::create_directory(folder_ / "scene0000_00");
   write("scene0000_00/scene0000_00_vh_clean_2.ply", "mine");
-  expect_refused("scene convert " + m + " --out " + f + "scene0000_00", "is there already");
+  expect_refused("scene convert " + m + " --out " + f + "scene0000_00", "already exists");
   EXPECT_EQ(content(folder_ / "scene0000_00/scene0000_00_vh_clean_2.ply"), "mine");
-  // What is read.
+  // The command's own input.
   ASSERT_EQ(run("scene convert " + m + " --out " + f + "m.glb"), 0) << err_;
   const std::string glb = content(folder_ / "m.glb");
   expect_refused("scene convert " + f + "m.glb --out " + f + "./m.glb", "is read by this command");
   EXPECT_EQ(content(folder_ / "m.glb"), glb);
-  // So is what a scene names: a mesh that was placed, a texture, the folder of a scan.
+  // So are the files that a scene names: a placed mesh, a texture, the folder of a scan.
   const std::string placed = write("placed.yaml", "objects: [{file: m.glb, name: m}]").string();
   expect_refused("scene convert " + placed + " --out " + f + "m.glb", "is read by this command");
   EXPECT_EQ(content(folder_ / "m.glb"), glb);
@@ -654,22 +655,23 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   expect_refused("scene convert " + f + "scan --out " + f + "scan", "is read by this command");
   EXPECT_EQ(content(folder_ / "scan/scan.txt"), edited);
   write("scan.labels.json", "mine");
-  expect_refused("scene convert " + m + " --out " + f + "scan.ply", "scan.labels.json: is there");
+  expect_refused("scene convert " + m + " --out " + f + "scan.ply",
+                 "scan.labels.json: already exists");
   EXPECT_FALSE(fs::exists(folder_ / "scan.ply"));
   EXPECT_EQ(content(folder_ / "scan.labels.json"), "mine");
   ASSERT_EQ(run("scene convert " + m + " --out " + f + "own.ply"), 0) << err_;
   ASSERT_EQ(run("scene convert " + m + " --out " + f + "own.ply"), 0) << err_;
-  // What a command wrote itself it writes again, and leaves what lies beside.
+  // A command overwrites its own earlier output, and leaves other files beside it alone.
   const std::string again = "scene convert " + m + " --out " + f + "converted";
   ASSERT_EQ(run(again), 0) << err_;
   write("converted/notes.txt", "mine");
   ASSERT_EQ(run(again), 0) << err_;
   EXPECT_EQ(content(folder_ / "converted/notes.txt"), "mine");
-  // The marker of another command does not count, nor does a file of that name that is not a
-  // marker.
+  // The marker of a different command does not count, and neither does a file of that name that is
+  // not a marker.
   expect_refused("render " + m + " --motion handheld:0 --frames 1 --format scannet --robot " +
                      robot_ + " --out " + f + "converted",
-                 "is there already");
+                 "already exists");
   write("converted/.modelhouse", "mine");
   expect_refused(again, "was not written by modelhouse");
 }
@@ -697,12 +699,12 @@ TEST_F(CommandLine, ASceneBecomesAScannetFolderAndIsReadBack) {
   expect_refused("slam scannet:" + write("a.sens", "text").string() + slam, "a.sens");
 }
 
-/// As the table of statistics prints a number.
+/// A number as the table of statistics prints it.
 std::string printed(double v) {
   return std::abs(v) >= 1000 ? fmt::format("{:.0f}", v) : fmt::format("{:.3g}", v);
 }
 
-// Five frames of two scenes are two and three, and the table says what the JSON says.
+// Five frames over two scenes are split into two and three, and the table agrees with the JSON.
 TEST_F(CommandLine, StatisticsOfScenesShareTheFramesAndPrintWhatTheyMeasured) {
   const fs::path mesh = write("m.obj",
                               "v 0 0 0\nv 9 0 0\nv 9 5 0\nv 0 5 0\nv 0 0 2\nv 9 0 2\n"
@@ -737,7 +739,7 @@ TEST_F(CommandLine, StatisticsOfScenesShareTheFramesAndPrintWhatTheyMeasured) {
         EXPECT_GE(value, last) << key;
         last = value;
       }
-      std::getline(lines, line);  // the real frames stand below
+      std::getline(lines, line);  // the row of the real frames is next
     }
   }
 }
@@ -768,7 +770,7 @@ TEST_F(CommandLine, ATourThatCannotBeDriven) {
   expect_refused("drive " + house_ + " " + tour.string() + " --robot " + robot_ + " --out " +
                      (folder_ / "out").string(),
                  "tour.yaml");
-  EXPECT_EQ(files_left(), 1u);  // tour.yaml itself
+  EXPECT_EQ(files_left(), 1u);  // only tour.yaml itself
 }
 
 TEST_F(CommandLine, APersonInTheWayStopsADriveAndIsSeenBySensors) {
@@ -809,7 +811,7 @@ TEST_F(CommandLine, ATourFasterThanTheRobotIsTold) {
                                               "waypoints: [{to: [3, 2]}]\n");
     ASSERT_EQ(run("drive " + mesh.string() + " " + tour.string() + " --robot " + robot_), 0)
         << err_;
-    EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' does: 0.55") !=
+    EXPECT_EQ(err_.find("t.yaml: speed_m_per_s 3 is more than robot 'pepper' can do: 0.55") !=
                   std::string::npos,
               reported)
         << err_;
@@ -822,7 +824,7 @@ TEST_F(CommandLine, WhatIsCarriedByHandHasNoRobotsSensors) {
   const std::string out = " --out " + (folder_ / "out").string();
   expect_refused(drive + out + " --sensors", "--sensors: motion 'handheld:0'");
   expect_refused(drive + out + " --pedestrian w.yaml", "--pedestrian: motion 'handheld:0'");
-  EXPECT_EQ(files_left(), 1U);  // the mesh
+  EXPECT_EQ(files_left(), 1U);  // only the mesh
   ASSERT_EQ(run(drive + " --json"), 0) << err_;
   EXPECT_TRUE(nlohmann::json::parse(out_)["peaks"].is_null()) << out_;
   ASSERT_EQ(run(drive), 0) << err_;
@@ -869,8 +871,8 @@ TEST_F(CommandLine, EvaluateShiftsStampsAndTellsBothSpansOfTime) {
             0)
       << err_;
   EXPECT_EQ(nlohmann::json::parse(out_)["pairs"], 3);
-  expect_refused(command + " --offset 1s", "--offset: '1s' is no time in seconds");
-  expect_refused(command + " --offset 9.2e9", "--offset: leads to stamps that are not");
+  expect_refused(command + " --offset 1s", "--offset: '1s' is not a time in seconds");
+  expect_refused(command + " --offset 9.2e9", "--offset: gives stamps that are not");
   expect_refused("evaluate --format kitti --offset 1 a b",
                  "--offset: KITTI's poses have no stamps");
 }
@@ -909,7 +911,7 @@ TEST_F(CommandLine, EvaluateKeepsItsDigitsInUtm) {
     ate[far ? 1 : 0] = nlohmann::json::parse(out_)["ape_translation_m"]["rmse"];
   }
   EXPECT_GT(ate[0], 0.005);
-  // A coordinate of 5e6 m has steps of 1e-9 m.
+  // Near 5e6 m, coordinates have a resolution of 1e-9 m.
   EXPECT_NEAR(ate[1], ate[0], 1e-8);
 }
 
@@ -938,7 +940,7 @@ TEST_F(CommandLine, EvaluatesKittiFilesByLine) {
     return "1 0 0 " + x + " 0 1 0 " + y + " 0 0 1 0\n";
   };
   const fs::path truth = write("t.kitti", line("0", "0") + line("1", "0") + line("1", "2"));
-  // By hand: laid over by the origin, errors 0, 0.3 and 0.4 m; rmse sqrt(0.25 / 3).
+  // By hand: aligned at the origin, the errors are 0, 0.3 and 0.4 m; rmse sqrt(0.25 / 3).
   const fs::path estimate = write("e.kitti", line("5", "5") + line("6.3", "5") + line("6.4", "7"));
   const std::string files = truth.string() + " " + estimate.string();
   ASSERT_EQ(run("evaluate --format kitti --align origin --rate 2 --delta 1s --json " + files), 0)
@@ -947,7 +949,7 @@ TEST_F(CommandLine, EvaluatesKittiFilesByLine) {
   EXPECT_EQ(json["pairs"], 3);
   EXPECT_NEAR(json["ape_translation_m"]["rmse"], std::sqrt(0.25 / 3), 1e-12);
   EXPECT_NEAR(json["ape_unaligned_m"]["min"], std::sqrt(50.0), 1e-12);
-  // Two steps of half a second: 0.4 m off over the one pair that is 1 s apart.
+  // Two steps of half a second make only one pair that is 1 s apart; it is 0.4 m off.
   EXPECT_EQ(json["rpe"][0]["translation_m"]["count"], 1);
   EXPECT_NEAR(json["rpe"][0]["translation_m"]["mean"], 0.4, 1e-12);
   expect_refused("evaluate --format kitti " + truth.string() + " " +
@@ -961,7 +963,7 @@ TEST_F(CommandLine, EvaluatesKittiFilesByLine) {
   expect_refused("evaluate --format euroc " + files, "--format");
 }
 
-// All figures of the oracle through the executable, as users meet it.
+// All figures computed by evo, through the executable as users run it.
 TEST_F(CommandLine, EvaluateGivesEvosOwnFigures) {
   const fs::path data = fs::path(MH_SOURCE_DIR) / ".." / "shared/data";
   const fs::path reference = data / "evo_reference/reference.json";
@@ -972,7 +974,7 @@ TEST_F(CommandLine, EvaluateGivesEvosOwnFigures) {
   std::size_t compared = 0;
   const auto expect_equal = [&](const nlohmann::json& ours, const std::string& name) {
     for (const auto& [field, expected] : evo.at(name).items()) {
-      // 1e-15 lets an exact zero be a rounding of ours.
+      // 1e-15 allows for a rounding error of ours where evo has an exact zero.
       const double value = expected;
       EXPECT_NEAR(ours.at(field).get<double>(), value, 1e-9 * std::abs(value) + 1e-15)
           << name << ' ' << field;
@@ -993,7 +995,7 @@ TEST_F(CommandLine, EvaluateGivesEvosOwnFigures) {
     expect_equal(ours["rpe"][1]["translation_m"], "rpe_trans_30frames_all_pairs");
     expect_equal(ours["rpe"][2]["translation_m"], "rpe_trans_0.2m_all_pairs");
   }
-  EXPECT_EQ(compared + 1, evo.size());  // every quantity, `pairs` apart
+  EXPECT_EQ(compared + 1, evo.size());  // every quantity except `pairs`
 }
 
 TEST_F(CommandLine, CheckRefusesABaselineThatIsNotOfItsSuite) {
@@ -1017,15 +1019,15 @@ TEST_F(CommandLine, CheckReplacesNoFileOfAnothers) {
   const fs::path mine = write("mine.json", R"({"format": "of another"})"),
                  xml = write("mine.xml", "<?xml version=\"1.0\"?>\n<testsuites/>\n");
   expect_refused(check + "--update --baseline " + mine.string(),
-                 "mine.json: is there already, and not from `modelhouse check --update`");
+                 "mine.json: already exists and was not written by `modelhouse check --update`");
   expect_refused(check + "--junit " + xml.string(),
-                 "mine.xml: is there already, and not from `modelhouse check --junit`");
+                 "mine.xml: already exists and was not written by `modelhouse check --junit`");
   EXPECT_EQ(content(mine), R"({"format": "of another"})");
   EXPECT_EQ(content(xml), "<?xml version=\"1.0\"?>\n<testsuites/>\n");
 }
 
 TEST_F(CommandLine, AMapWithAnEmptyGridSaysSo) {
-  // Eight frames from a robot's height see nothing below 0.15 m.
+  // Eight frames from the robot's camera height see nothing below 0.15 m.
   const std::string map =
       "map build scene:generated:bathroom:0 --tour auto:0 --level ideal "
       "--frames 8 --out " +
@@ -1104,9 +1106,9 @@ TEST_F(CommandLine, FilesOfOthersAreNotReplacedByObjectsAndPaths) {
       << err_;
   const std::string objects = "map objects " + map + "/map.ot --out ";
   write("file", "a thesis");
-  expect_refused(objects + file, "is there already, and not from `modelhouse map`");
+  expect_refused(objects + file, "already exists and was not written by `modelhouse map`");
   expect_refused("map plan " + map + "/map.ot --from 1 1 --to 1 1 --out " + file,
-                 "is there already, and not from `modelhouse map plan`");
+                 "already exists and was not written by `modelhouse map plan`");
   EXPECT_EQ(content(file), "a thesis");
   ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;
   ASSERT_EQ(run(objects + map + "/more.json"), 0) << err_;
@@ -1117,7 +1119,7 @@ TEST_F(CommandLine, FilesOfOthersAreNotReplacedByObjectsAndPaths) {
   EXPECT_FALSE(fs::exists(map + "/none.json"));
   expect_refused("map grid " + map + "/map.ot --out .", "names no file");
 
-  // A grid whose image another file of ours would replace.
+  // A grid whose image would be overwritten by another output file.
   std::string grid = content(map + "/grid.yaml");
   write("map/again.yaml", grid.substr(grid.find('\n') + 1));
   const std::string image = content(map + "/grid.pgm");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real detectors as a user meets them, with made networks on a small textured room.
+// Real detectors as a user sees them, with artificial networks on a small textured room.
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -29,7 +29,7 @@ class DetectorCommands : public testing::Test {
     for (int i = 0; i < kFrames; ++i) writer.add(testing_support::box_room_frame(i));
     writer.finish();
     testing_support::box_room_vocabulary()->save(path("words.mhvoc"));
-    // Its boxes are chairs wherever a cell's center is red enough.
+    // Its boxes are chairs wherever the center of a cell is red enough.
     write_atomically(
         path("chairs.onnx"),
         test::onnx_detection(320, 256, {.box = {0.5F, 0.5F, 1, 1}, .classes = {1, 0.1F}}));
@@ -91,7 +91,8 @@ TEST_F(DetectorCommands, FoundBoxesServeAsAFile) {
   EXPECT_EQ(slam("cached", cached), by_network);
   EXPECT_FALSE(fs::is_empty(path("cache")));
   EXPECT_EQ(slam("from_cache", cached), by_network);
-  // The file knows the best class of a box alone, and so must the network that it is compared with.
+  // The file holds only the best class of each box, so the network that it is compared with must
+  // output only that, too.
   write_atomically(path("sure.onnx"), test::onnx_detection(320, 256, {.box = {0.5F, 0.5F, 1, 1}}));
   const std::string sure =
       "--detector " + path("sure.onnx") + " --detector-settings " + path("two.yaml");
@@ -138,12 +139,12 @@ TEST_F(DetectorCommands, RefuseWhatWouldHaveNoEffect) {
   write_atomically(path("both.yaml"), "boxes: some.json\n");
   expect_refused("detector run " + image + " --detector " + path("chairs.onnx") +
                      " --detector-settings " + path("both.yaml") + " --out " + path("no"),
-                 "some.json) are both named: one of them says what is run");
+                 "some.json) are both given: name only one");
   write_atomically(path("head.yaml"), "head: yolov5\n");
   write_atomically(path("far.csv"), "500,-1,10,10,50,50,0.9,57\n");
   expect_refused("slam " + path("room") + " --detector " + path("far.csv") +
                      " --detector-settings " + path("head.yaml") + " --out " + path("no"),
-                 "far.csv: `head` is a setting of networks, and this holds boxes");
+                 "far.csv: `head` is a setting for networks, but this holds boxes");
   write_atomically(path("config.yaml"), "classes: two.names\nconfig: two.names\n");
   expect_refused("detector run " + image + " --detector " + path("chairs.onnx") +
                      " --detector-settings " + path("config.yaml") + " --out " + path("no"),
@@ -151,7 +152,7 @@ TEST_F(DetectorCommands, RefuseWhatWouldHaveNoEffect) {
   EXPECT_EQ(run("render generated:bathroom:0 --motion handheld:0 --frames 2 --detector " +
                 path("far.csv") + " --out " + path("no")),
             2);
-  EXPECT_NE(err_.find("none of its 1 frame is one of the sequence's 2, the first is '500': they "
+  EXPECT_NE(err_.find("none of its 1 frame is one of the sequence's 2, the first is '500': frames "
                       "are named by number from 1"),
             std::string::npos)
       << err_;
@@ -162,13 +163,13 @@ TEST_F(DetectorCommands, OverwriteNeitherInputsNorForeignFiles) {
   fs::create_directories(path("mine"));
   write_atomically(path("mine/000001.png"), "mine");
   expect_refused("detector run " + path("room") + " " + network() + " --out " + path("mine"),
-                 "000001.png: is there already");
+                 "000001.png: already exists");
   EXPECT_EQ(read_file(path("mine/000001.png")), "mine");
   const std::string image = path("room/rgb/" + list_folder(path("room/rgb"), "*.png").front());
   fs::copy_file(image, path("alone.png"));
   expect_refused("detector run " + path("alone.png") + " " + network() + " --out " +
                      fs::path(path("alone.png")).parent_path().string(),
-                 "alone.png: lies in the folder to write");
+                 "alone.png: is in the output folder");
   write_atomically(path("scene.yaml"), "mine");
   expect_refused("detector fit " + network() + " --scenes " + path("scene.yaml") + " --out " +
                      path("scene.yaml"),
@@ -182,7 +183,7 @@ TEST_F(DetectorCommands, OverwriteNeitherInputsNorForeignFiles) {
   write_atomically(path("named.yaml"), "network: " + path("chairs.onnx") + "\n");
   expect_refused("detector run " + path("room") + " --detector missing.onnx --detector-settings " +
                      path("named.yaml") + " --out " + path("none"),
-                 "one of them says what is run");
+                 "name only one");
 }
 
 TEST_F(DetectorCommands, AShorterRunLeavesNothingOfALongerOne) {
@@ -199,12 +200,12 @@ TEST_F(DetectorCommands, AShorterRunLeavesNothingOfALongerOne) {
   EXPECT_EQ(read_file(path("shorter/foreign.png")), "mine");
   EXPECT_EQ(read_file(path("shorter/000900.png")), "mine");
   write_atomically(path("shorter/000002.png"), "mine");
-  expect_refused(command + " --frames 3", "000002.png: is there already");
+  expect_refused(command + " --frames 3", "000002.png: already exists");
   EXPECT_EQ(read_file(path("shorter/000002.png")), "mine");
-  // Its own result is no input.
+  // Its own result is not accepted as input.
   expect_refused("detector run " + path("room") + " --detector " + path("shorter/detections.json") +
                      " --out " + path("shorter"),
-                 "detections.json: lies in the folder to write");
+                 "detections.json: is in the output folder");
 }
 
 TEST_F(DetectorCommands, AnInterruptedRunLeavesTheResultBeforeIt) {
@@ -212,7 +213,7 @@ TEST_F(DetectorCommands, AnInterruptedRunLeavesTheResultBeforeIt) {
       "detector run " + path("room") + " " + network() + " --frames 2 --out " + path("kept");
   ASSERT_EQ(run(command), 0) << err_;
   const std::string before = read_file(path("kept/detections.json"));
-  // One frame is fewer bytes than this limit, a run's images are more: writing fails midway.
+  // One frame has fewer bytes than this limit, the images of a run have more: writing fails midway.
   const std::string limited = "sh -c 'ulimit -f 1; " MH_EXECUTABLE " " + command + "'";
   EXPECT_EQ(std::system((limited + " >/dev/null 2>&1").c_str()) / 256, 3);
   EXPECT_EQ(read_file(path("kept/detections.json")), before);
@@ -238,7 +239,7 @@ TEST_F(DetectorCommands, NothingIsFittedToNothing) {
 
 TEST_F(DetectorCommands, RefuseInOneLine) {
   const std::string to = " --out " + path("refused");
-  expect_refused("detector run " + path("room") + to, "no detector is named");
+  expect_refused("detector run " + path("room") + to, "no detector is given");
   expect_refused("detector run " + path("room") + " --network " + path("two.names") + to,
                  "two.names");
   expect_refused("detector run " + path("room") + " --network " + path("chairs.onnx") + to,
@@ -246,7 +247,7 @@ TEST_F(DetectorCommands, RefuseInOneLine) {
   write_atomically(path("far.csv"), "1,-1,10,10,20,20,nan,1\n");
   expect_refused("slam " + path("room") + " --detector " + path("far.csv") + to, "far.csv:1: ");
   write_atomically(path("one.csv"), "1,-1,10,10,20,20,0.9,1\n");
-  expect_refused("detector score --network " + path("one.csv") + to, "a network is scored");
+  expect_refused("detector score --network " + path("one.csv") + to, "name a network");
   EXPECT_FALSE(fs::exists(path("refused")));
 }
 

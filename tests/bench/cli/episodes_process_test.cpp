@@ -73,7 +73,7 @@ TEST_F(EpisodeCommands, OneEpisodeIsTheOneThatTheSuiteScored) {
   EXPECT_NE(content(out("one") + "/log.txt").find("s  "), std::string::npos);
   EXPECT_TRUE(content(out("one") + "/strip.png").starts_with("\x89PNG"));
 
-  // Done once: the second time nothing is driven.
+  // A finished episode is not driven a second time.
   ASSERT_EQ(run(bench + out("all")), 0) << said();
   EXPECT_NE(said().find("1 run, 0 of them to do"), std::string::npos) << said();
   EXPECT_EQ(content(out("all") + "/results.json"), text);
@@ -165,13 +165,13 @@ TEST_F(EpisodeCommands, WhatCannotBeMeantIsOneClearError) {
   const std::string episode = "episode " + suite().string() + " --out " + out("none");
   refused(episode + " --system semantik", "'semantik' is not in");
   refused(episode + " --start x", "--start");
-  refused(episode + " --variant= --start 1", "'--variant=': the value is missing");
+  refused(episode + " --variant= --start 1", "'--variant=': its value is missing");
   refused(episode + " one two", "unexpected argument 'one'");
   refused("episode " + std::string(MH_SOURCE_DIR) + "/bench/suites/ci.yaml --out " + out("none"),
           "episodes");
   for (const std::string command : {"audit ", "bench --audit "})
-    refused(command + suite().string() + " --out " + out("none"), "an audit is of queries");
-  write_suite("toilet");  // a room without one: nothing is left there
+    refused(command + suite().string() + " --out " + out("none"), "an audit examines queries");
+  write_suite("toilet");  // a room without a toilet: no episode is left there
   refused("bench " + suite().string() + " --out " + out("none"), "toilet");
   EXPECT_FALSE(fs::exists(out("none")));
   write_suite("soaf");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The executable on files that no sound program wrote: each gives one line and exit code 2, or a
-// warning where it can be lived with; none a crash, a hang or a machine out of memory.
+// The executable on files that no correct program wrote: each gives one line and exit code 2, or a
+// warning if the file can still be used; none causes a crash, a hang or memory exhaustion.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -25,17 +25,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the build that users have; sanitizers take several times as much.
+// For the build that users have; sanitizers take several times as much.
 constexpr double kMostProcessor_s = 10.0, kMostMemory_gb = 5.0;
 constexpr int kMostWall_s = 120;  // other work may be running
 
 struct Outcome {
-  int code = -1;  ///< of its exit; -1 if a signal ended it
+  int code = -1;  ///< exit code; -1 if ended by a signal
   std::string said;
-  double processor_s = 0, memory_gb = 0;  ///< of it and its children, the largest
+  double processor_s = 0,
+         memory_gb = 0;  ///< time of the process and its children; memory of the largest one
 };
 
-/// One case with a folder of its own.
+/// One case, with its own folder.
 class Trial {
  public:
   explicit Trial(const HostileCase& c)
@@ -114,7 +115,7 @@ void expect_one_line_or_a_warning(const HostileCase& c, const Outcome& outcome) 
 
 void expect_it_of(const std::vector<HostileCase>& cases) {
   ASSERT_FALSE(cases.empty());
-  // Side by side: those that need the most end at their limits of time and memory (4 GB each).
+  // Run in parallel: the most demanding ones end at their limits of time and memory (4 GB each).
   constexpr std::size_t kAtOnce = 3;
   std::vector<Outcome> outcomes(cases.size());
   std::atomic<std::size_t> next = 0;

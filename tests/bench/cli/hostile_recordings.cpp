@@ -25,7 +25,7 @@ const std::string kCamera =
     "%YAML:1.0\nCamera.fx: 60\nCamera.fy: 60\nCamera.cx: 31.5\nCamera.cy: 23.5\nCamera.width: 64\n"
     "Camera.height: 48\nCamera.fps: 30\nCamera.bf: 40\nDepthMapFactor: 5000\n";
 
-/// A sequence of three blank frames, some of its files replaced.
+/// A TUM sequence of three blank frames, with some of its files replaced.
 HostileCase tum(const std::string& name, std::map<std::string, std::string> files,
                 const std::string& says) {
   HostileCase c{name, std::move(files), "slam {}" + kSlam, says};
@@ -64,7 +64,7 @@ void add_tum(std::vector<HostileCase>& cases) {
   cases.push_back(tum("tum_stamp_of_1e999", {{"rgb.txt", "1e999 rgb/1.png\n"}}, "1e999"));
   cases.push_back(
       tum("tum_truth_is_not_finite", {{"groundtruth.txt", "1.0 nan 0 0 0 0 0 1\n"}}, "not finite"));
-  cases.back().passes = true;  // without truth
+  cases.back().passes = true;  // runs without the truth
   std::string many_colors, many_depths;
   for (int i = 1; i <= 60'000; ++i) {
     many_colors += fmt::format("{}.0 rgb/1.png\n", i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes, worlds and what lies beside them.
+// Meshes, worlds and the files that belong to them.
 #include <array>
 #include <cmath>
 
@@ -46,9 +46,9 @@ void add_ply(std::vector<HostileCase>& cases) {
                         ply_header("binary_little_endian", "3", "18446744073709551615") + points,
                         "truncated"));
   cases.push_back(scene("ply_of_100_gigabytes", "a.ply+", triangle_ply(),
-                        "it has 107.4 GB, 4.3 GB is the most"));
+                        "it has 107.4 GB, at most 4.3 GB can be read"));
   cases.back().arguments.pop_back();
-  std::string obeyed = ascii;  // by a terminal
+  std::string obeyed = ascii;  // holds a sequence that a terminal would obey
   obeyed.replace(obeyed.find("property float z"), 16, "property \x1b[2J\xff z");
   cases.push_back(scene("ply_that_clears_the_screen", "a.ply", obeyed, "a.ply:6: '?[2J?'"));
   std::string lists = ascii;

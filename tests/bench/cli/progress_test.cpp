@@ -41,7 +41,8 @@ TEST(Progress, OffATerminalIsALineEveryTenthWhateverTheFigures) {
   std::rewind(file);
   ASSERT_EQ(std::fread(text.data(), 1, text.size(), file), text.size());
   std::fclose(file);
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 11) << text;  // the first and every tenth
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 11)
+      << text;  // one at the start and one for each tenth
   EXPECT_NE(text.find("slam: 30 %"), std::string::npos) << text;
   EXPECT_NE(text.find("slam: 100 %; 1000 tracked\n"), std::string::npos) << text;
 }
@@ -52,9 +53,9 @@ TEST(Progress, PreparationsDoNotMakeTheTimeToGoLonger) {
   {
     Progress progress("bench", file);
     progress.share(0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // light is baked, say
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));  // such as baking light
     progress.share(0.101);
-    progress.share(0.501);  // at once: as much again takes no second
+    progress.share(0.501);  // right after it: at this rate, the rest takes less than a second
     progress.share(0.6, "", 95);
     progress.share(0.7, "", std::nullopt);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `modelhouse slam` as a user meets it, on a small textured room.
+// `modelhouse slam` as a user sees it, on a small textured room.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -97,7 +97,7 @@ TEST_F(SlamCommand, MapsAFolderAndSaysWhatCameOfIt) {
   EXPECT_EQ(load_settings(folder_ / "a/settings.yaml").camera,
             load_settings(folder_ / "room/camera.yaml").camera);
 
-  // tum:FOLDER is the same source; twice the same run, and once by its own settings.
+  // tum:FOLDER is the same source: the same run again, now with its own settings file.
   ASSERT_EQ(run("tum:" + path("room") + " --out " + path("b") + " --save-map " + path("b.mhmap") +
                 " --settings " + path("a/settings.yaml")),
             0)
@@ -133,11 +133,11 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
 
   const std::string again = path("room") + " --out " + path("no") + " --map ";
   expect_refused(again + path("whole.mhmap") + " --resume",
-                 "nothing is left to go on with: it ends at 1.633333317 s");
+                 "nothing is left to resume: it ends at 1.633333317 s");
   EXPECT_NE(err_.find("whole.mhmap"), std::string::npos) << err_;
   EXPECT_NE(run(again + path("whole.mhmap") + " --resume --localize"), 0);
 
-  // The map's settings apply: differing requested ones are reported.
+  // The map's settings apply: requested ones that differ are reported.
   std::string other = format_settings(load_settings(folder_ / "room/camera.yaml"));
   other.replace(other.find("count: 1000"), 11, "count: 1500");
   write_atomically(folder_ / "other.yaml", other);
@@ -145,7 +145,7 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
                 " --resume --frames 2 --settings " + path("other.yaml")),
             0)
       << err_;
-  EXPECT_NE(err_.find("other.yaml: the map's own settings count: features.count: 1000\n"),
+  EXPECT_NE(err_.find("other.yaml: the map's own settings are used: features.count: 1000\n"),
             std::string::npos)
       << err_;
 }
@@ -155,7 +155,7 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
                 path("mapped.mhmap")),
             0)
       << err_;
-  // A thousand inliers are more than any frame has: nothing is found.
+  // No frame has a thousand inliers: nothing is localized.
   const std::string camera = format_settings(load_settings(folder_ / "room/camera.yaml"));
   write_atomically(folder_ / "strict.yaml", camera.substr(0, camera.find("features:")) +
                                                 "relocalize:\n  min_inliers: 1000\n");
@@ -169,9 +169,9 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
   };
   EXPECT_EQ(localized("mapped.mhmap", "by_map", ""), 5);
   EXPECT_EQ(localized("mapped.mhmap", "strictly", " --settings " + path("strict.yaml")), 0);
-  EXPECT_EQ(err_.find("the map's own settings count"), std::string::npos) << err_;
+  EXPECT_EQ(err_.find("the map's own settings are used"), std::string::npos) << err_;
   EXPECT_EQ(load_settings(folder_ / "strictly/settings.yaml").slam.relocalize.min_inliers, 1000);
-  // What the file is silent about stays the map's.
+  // Settings that the file does not mention stay those of the map.
   EXPECT_EQ(
       run(path("room") + " --map " + path("mapped.mhmap") + " --resume --save-map " +
           path("strict.mhmap") + " --out " + path("on") + " --settings " + path("strict.yaml")),
@@ -181,8 +181,8 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
 }
 
 TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
-  // Candidates are chosen by labels only, and a map made with gamma 0 has none: they are weighted
-  // again.
+  // Candidates are chosen only by labels, and a map made with gamma 0 has none: the labels are
+  // weighted anew.
   std::string settings = format_settings(load_settings(folder_ / "room/camera.yaml"));
   settings.replace(settings.find("overlap: augmented"), 18, "overlap: labels");
   write_atomically(folder_ / "labels.yaml", settings);
@@ -240,10 +240,11 @@ TEST_F(SlamCommand, FindsBadFilesBeforeTheWork) {
   refused_at_once(" --truth " + path("nowhere.txt"), "nowhere.txt: cannot be read: no such file");
   refused_at_once(" --truth " + path("room/camera.yaml"), "camera.yaml:");
   refused_at_once(" --save-map " + path("room"), "room: cannot be written: it is a folder");
-  refused_at_once(" --save-map " + path("no/../no/summary.json"), "will hold a result of its own");
+  refused_at_once(" --save-map " + path("no/../no/summary.json"), "is the name of another result");
   fs::create_directories(folder_ / "taken/frames.csv");
-  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: is there already");
-  refused_at_once(" --save-map " + path("words.mhvoc/map"), "words.mhvoc: cannot be made a folder");
+  expect_refused(path("room") + " --out " + path("taken"), "frames.csv: already exists");
+  refused_at_once(" --save-map " + path("words.mhvoc/map"),
+                  "words.mhvoc: cannot be created as a folder");
 }
 
 TEST_F(SlamCommand, WithoutDepthNothingIsMappedAndThatIsReported) {
@@ -256,11 +257,11 @@ TEST_F(SlamCommand, WithoutDepthNothingIsMappedAndThatIsReported) {
   writer.finish();
   expect_refused(path("flat") + " --out " + path("no"),
                  "nothing could be mapped: none of 5 frames showed 100 keypoints with depth to "
-                 "begin with (the first image has no depth)");
+                 "start with (the first image has no depth)");
   EXPECT_FALSE(fs::exists(folder_ / "no/summary.json"));
 }
 
-// One runner: what `bench` makes of a recording, `slam` makes, to the bit.
+// Both commands use one runner: on a recording, `slam` gives the same as `bench`, to the bit.
 TEST_F(SlamCommand, RunsTheProtocolOfTheBench) {
   const auto by_bench = [&](const std::string& name, const std::string& protocol) {
     const fs::path suite = folder_ / (name + ".yaml"), out = folder_ / (name + "_suite");

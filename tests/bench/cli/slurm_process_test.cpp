@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `modelhouse bench --slurm` against a real controller and a real worker of Slurm on this machine.
+// `modelhouse bench --slurm` against a real Slurm controller and a real worker on this machine.
 #include <arpa/inet.h>
 #include <pwd.h>
 #include <signal.h>
@@ -34,7 +34,7 @@ using mh::test::code_of;
 using mh::test::content;
 using namespace std::chrono_literals;
 
-/// A folder whose name has a blank, as those of users may.
+/// A folder whose name contains a space, as a user's might.
 const fs::path& test_folder() {
   static const struct Folder {
     fs::path path = fs::temp_directory_path() / ("mh slurm " + std::to_string(getpid()));
@@ -44,7 +44,7 @@ const fs::path& test_folder() {
   return folder.path;
 }
 
-/// By the shell, with the outputs in files `stdout` and `stderr`.
+/// Runs `modelhouse ARGUMENTS` in a shell, with its outputs in the files `stdout` and `stderr`.
 int run(const std::string& arguments) {
   const std::string folder = "'" + test_folder().string() + "'/";
   return code_of(std::system(
@@ -66,7 +66,8 @@ fs::path folder_of(const std::string& out) {
   return test_folder() / out;
 }
 
-/// With a cache of its own, of the light that other tests have baked: every run has to map.
+/// A bench command whose cache holds only the light that other tests have baked: every run has to
+/// map.
 std::string bench(const std::string& out, const std::string& more) {
   const fs::path cache = test_folder() / ("cache of " + out);
   std::error_code there_or_none;
@@ -89,7 +90,7 @@ std::string tables(const std::string& out) {
 /// A child process that dies with this one.
 class Daemon {
  public:
-  /// @param user  whose rights it takes; nullptr: ours
+  /// @param user  user to run as; nullptr: ours
   explicit Daemon(const std::vector<std::string>& words, const passwd* user = nullptr) {
     process_ = fork();
     if (process_ != 0) return;
@@ -117,7 +118,7 @@ class Daemon {
   pid_t process_ = -1;
 };
 
-/// A port that nobody listens at.
+/// A port on which nothing listens.
 int free_port() {
   const int file = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -134,7 +135,7 @@ bool succeeds(const std::string& command) {
   return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
 }
 
-/// Why there can be no cluster on this machine; empty: there can.
+/// Why no cluster can run on this machine; empty if one can.
 std::string why_no_cluster() {
   for (const char* program : {"munged", "slurmctld", "slurmd", "sbatch"})
     if (!succeeds(std::string("command -v ") + program))
@@ -144,7 +145,7 @@ std::string why_no_cluster() {
   return "";
 }
 
-/// A controller and a worker of two processors, with a key, sockets, ports and files of their own.
+/// A controller and a worker with two processors and their own key, sockets, ports and files.
 class Cluster {
  public:
   Cluster() : folder_(fs::temp_directory_path() / ("mh_cluster_" + std::to_string(getpid()))) {
@@ -162,8 +163,8 @@ class Cluster {
     fs::permissions(key, fs::perms(0400));
     for (const fs::path& path : {folder_ / "munge", key})
       EXPECT_EQ(chown(path.c_str(), munge->pw_uid, munge->pw_gid), 0);
-    // Nothing is requeued for its exit code alone, as by default; cred_expire: a requeued task
-    // starts at once and not after two minutes.
+    // As by default, nothing is requeued for its exit code alone; cred_expire: a requeued task
+    // starts at once instead of after two minutes.
     std::ofstream(folder_ / "slurm.conf")
         << "ClusterName=modelhouse\nSlurmctldHost=localhost\nSlurmUser=root\nSlurmdUser=root\n"
         << "SlurmctldPort=" << free_port() << "\nSlurmdPort=" << free_port()
@@ -213,7 +214,8 @@ class Cluster {
   std::vector<std::unique_ptr<Daemon>> daemons_;
 };
 
-/// The first process whose command line starts with `begin` and holds all `parts`; 0: none.
+/// The first process whose command line starts with `begin` and contains all `parts`; 0 if none
+/// does.
 pid_t process_of(const std::string& begin, const std::vector<std::string>& parts) {
   std::error_code gone;
   for (const auto& entry : fs::directory_iterator("/proc", gone)) {
@@ -227,7 +229,7 @@ pid_t process_of(const std::string& begin, const std::vector<std::string>& parts
   return 0;
 }
 
-/// The process that started another one; 0 if that has ended.
+/// The parent of a process; 0 if the process has ended.
 pid_t parent_of(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");
   pid_t parent = 0;
@@ -236,18 +238,18 @@ pid_t parent_of(pid_t process) {
   return parent;
 }
 
-/// How many runs of a results file are finished, read while others write it.
+/// Number of finished runs in a results file, which others may be writing.
 int finished_in(const fs::path& folder) {
   try {
     SQLite::Database db((folder / "results.sqlite").string());
     db.setBusyTimeout(1000);
     return db.execAndGet("SELECT COUNT(*) FROM runs").getInt();
   } catch (const SQLite::Exception&) {
-    return 0;  // not there yet
+    return 0;  // the file does not exist yet
   }
 }
 
-/// Calls `kill_it` once `share` has finished a run, while `arguments` are at work; the code of it.
+/// Runs `arguments` and calls `kill_it` once `share` has finished a run. @returns the exit code
 template <class Kill>
 int run_and_kill(const std::string& arguments, const fs::path& share, Kill&& kill_it) {
   int code = -1;
@@ -290,7 +292,7 @@ TEST(SlurmProcess, AWorkerThatIsKilledGoesOnAndNoByteChanges) {
   EXPECT_EQ(count_of(log, ", restart 1"), 1) << log;
   EXPECT_EQ(count_of(log, "24 runs, 6 of them to do"), 1) << log << "the second time it had fewer";
 
-  // All is finished: nothing is submitted.
+  // Everything is finished: nothing is submitted.
   EXPECT_EQ(run(bench("four shares", suite + "--slurm 4")), 0) << errors();
   EXPECT_NE(errors().find(", 0 unfinished"), std::string::npos) << errors();
   EXPECT_EQ(errors().find("is submitted"), std::string::npos) << errors();
@@ -303,7 +305,7 @@ TEST(SlurmProcess, AWorkerThatIsKilledGoesOnAndNoByteChanges) {
     EXPECT_TRUE(fs::exists(out / entry.path().filename()) || entry.is_directory()) << entry.path();
 }
 
-// Slurm takes a batch script that is killed for a failure and requeues nothing.
+// Slurm treats a killed batch script as a failure and requeues nothing.
 TEST(SlurmProcess, AShareWhoseScriptIsKilledIsNamedAndTheSameCommandFinishesIt) {
   if (const std::string why = why_no_cluster(); !why.empty()) GTEST_SKIP() << why;
   const Cluster cluster;
@@ -319,7 +321,7 @@ TEST(SlurmProcess, AShareWhoseScriptIsKilledIsNamedAndTheSameCommandFinishesIt) 
   };
   const fs::path out = folder_of("two shares");
   EXPECT_EQ(run_and_kill(command, out / "slurm/1", kill_script), 3) << errors() << cluster.log();
-  EXPECT_NE(errors().find("missing: of share 1 of 2"), std::string::npos) << errors();
+  EXPECT_NE(errors().find("missing, from share 1 of 2"), std::string::npos) << errors();
   EXPECT_NE(content(out / "table.txt").find("missing"), std::string::npos);
   EXPECT_EQ(run(command), 0) << errors() << cluster.log();
   EXPECT_NE(errors().find(", 1 unfinished"), std::string::npos) << errors();

@@ -10,23 +10,24 @@
 
 #include "source_dir.hpp"
 
-// What tests of the program as a user meets it have in common.
+// Shared by tests of the program as a user sees it.
 
 namespace mh::test {
 
-/// What a file holds; "" if it is not there.
+/// Content of a file; "" if it does not exist.
 inline std::string content(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
   return text.str();
 }
 
-/// Exit code of a program that ended, or minus the signal that ended it.
+/// Exit code of a program, or minus the signal that ended it.
 inline int code_of(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
-/// Writes Pepper with a picture of a quarter of the pixels: rendered in a quarter of the time.
+/// Writes a Pepper whose images have a quarter of the pixels, so that they render in a quarter of
+/// the time.
 inline std::string write_small_pepper(const std::filesystem::path& file) {
   const std::filesystem::path whole = MH_SOURCE_DIR "/robots/pepper/pepper.yaml";
   std::string text = content(whole);

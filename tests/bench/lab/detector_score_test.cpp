@@ -10,7 +10,8 @@ namespace {
 
 constexpr ClassId kChair = 5, kTable = 7, kDesk = 14, kBed = 4;
 
-/// An image of 200 x 100 px: a chair of 40 x 40 px, a table of 60 x 30 px, a desk of 40 x 50 px.
+/// An image of 200 x 100 px with a chair of 40 x 40 px, a table of 60 x 30 px and a desk of 40 x 50
+/// px.
 RenderedFrame room() {
   RenderedFrame frame;
   frame.classes = Grid2d<ClassId>(200, 100, 1);
@@ -40,8 +41,8 @@ DetectedBox box(float left, float top, float width, float height, ClassId id, fl
 
 TEST(DetectorJudge, CountsWhatBecomesOfObjectsAndDetections) {
   DetectorJudge judge(0.5);
-  // Right; a chair where the table stands; a table on the desk, which COCO has not; badly placed;
-  // and one that is not sure enough.
+  // A correct box; a chair box on the table; a table box on the desk, which is not a COCO class; a
+  // badly placed box; and one with too low a score.
   const auto missed =
       judge.add(room(), {box(10, 10, 40, 40, kChair, 0.9F), box(60, 10, 60, 30, kChair, 0.8F),
                          box(150, 10, 40, 50, kTable, 0.7F), box(30, 10, 40, 40, kChair, 0.6F),
@@ -58,9 +59,9 @@ TEST(DetectorJudge, CountsWhatBecomesOfObjectsAndDetections) {
   EXPECT_DOUBLE_EQ(score.dials.confusion, 0.5);
   EXPECT_DOUBLE_EQ(score.dials.false_alarms, 1);
   EXPECT_DOUBLE_EQ(score.dials.box_sigma, 0);
-  ASSERT_EQ(score.classes.size(), 2U);  // the desk is none of COCO's
+  ASSERT_EQ(score.classes.size(), 2U);  // the desk is not a COCO class
   EXPECT_DOUBLE_EQ(score.classes[0].precision.ap, 1);
-  EXPECT_DOUBLE_EQ(score.classes[1].precision.ap, 0.5);  // after the table on the desk
+  EXPECT_DOUBLE_EQ(score.classes[1].precision.ap, 0.5);  // ranked after the table box on the desk
 }
 
 TEST(DetectorJudge, MeasuresHowSidesStray) {
@@ -69,7 +70,7 @@ TEST(DetectorJudge, MeasuresHowSidesStray) {
   ASSERT_EQ(missed.size(), 1U);
   EXPECT_EQ(missed[0].class_id, kTable);
   const DetectorScore score = judge.score();
-  EXPECT_NEAR(score.dials.box_sigma, 0.1 / 2, 1e-6);  // one of four sides, by 4 of 40 px
+  EXPECT_NEAR(score.dials.box_sigma, 0.1 / 2, 1e-6);  // one of four sides is off by 4 of 40 px
   EXPECT_DOUBLE_EQ(score.dials.recall_medium, 0.5);
 }
 
@@ -77,7 +78,7 @@ TEST(DetectorJudge, ComparesLabelsWithExactClasses) {
   RenderedFrame frame = room();
   Grid2d<float> depth_m(200, 100, 3.0F);
   for (int y = 10; y < 50; ++y)
-    for (int x = 10; x < 50; ++x) depth_m(x, y) = 2.0F;  // the chair, before the wall
+    for (int x = 10; x < 50; ++x) depth_m(x, y) = 2.0F;  // the chair is in front of the wall
   DetectorJudge judge(0.5);
   judge.add(frame, {box(5, 5, 50, 50, kChair, 0.9F), box(60, 10, 60, 30, kChair, 0.8F)}, depth_m);
   const DetectorScore score = judge.score();

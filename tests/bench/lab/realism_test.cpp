@@ -38,14 +38,14 @@ TEST(MeasureImage, OfARampHasItsGradient) {
       ramp.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(x % 80 * 3);
   const ImageStatistics s = measure_image(ramp);
   EXPECT_DOUBLE_EQ(s[kMedian], 3.0);  // gray levels per pixel: Sobel / 8
-  EXPECT_EQ(s[kFast20], 0);           // straight edges have no corner
+  EXPECT_EQ(s[kFast20], 0);           // straight edges have no corners
 }
 
 TEST(MeasureImage, CountsCornersOfSquaresAndBlankCells) {
   cv::Mat squares(480, 640, CV_8UC1, cv::Scalar(60));
   for (int k = 0; k < 5; ++k)
     cv::rectangle(squares, cv::Rect(60 + 100 * k, 200, 40, 40), cv::Scalar(200), cv::FILLED);
-  cv::GaussianBlur(squares, squares, {5, 5}, 1.0);  // one pixel of each corner stands out
+  cv::GaussianBlur(squares, squares, {5, 5}, 1.0);  // leaves a single corner pixel at each corner
   const ImageStatistics s = measure_image(squares);
   EXPECT_EQ(s[kFast20], 20);
   EXPECT_EQ(s[kFast20], s[kFast7]);
@@ -53,7 +53,7 @@ TEST(MeasureImage, CountsCornersOfSquaresAndBlankCells) {
   EXPECT_LT(s[kBlank], 1.0);
 }
 
-/// Noise whose power falls with frequency^-3: amplitude with its 1.5th power, random phases.
+/// Noise whose power falls with frequency^-3: amplitudes with its power of 1.5, random phases.
 cv::Mat power_law_noise() {
   const RandomStream random(3);
   cv::Mat spectrum(480, 640, CV_32FC2);

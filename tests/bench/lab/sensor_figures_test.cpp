@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `modelhouse sensors plot`: each line is a published formula, each row of dots was measured on the
-// model. The one must lie on the other, or the image shows what the model does not do.
+// `modelhouse sensors plot`: each line is a published formula, each series of dots was measured on
+// the model. The dots must lie on the line, or the plot shows something that the model does not do.
 #include "bench/lab/figures.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace mh {
 namespace {
 
-/// All plots, made once: that takes some seconds.
+/// All plots, made only once since that takes some seconds.
 const std::vector<Plot>& all_plots() {
   static const std::vector<Plot> plots = [] {
     std::vector<Plot> all;
@@ -27,7 +27,7 @@ const std::vector<Plot>& all_plots() {
   return plots;
 }
 
-/// A line's value between its points; that of its end beyond.
+/// A line's value, interpolated between its points; beyond an end, the value at that end.
 double value_at(const Series& line, double x) {
   const auto& p = line.points;
   if (x <= p.front().x) return p.front().y;
@@ -37,7 +37,8 @@ double value_at(const Series& line, double x) {
   return p.back().y;
 }
 
-/// The largest distance of a dot from the line before it, as a share of the line's range from zero.
+/// The largest distance of a dot from its line (the series before it), relative to the line's
+/// largest absolute value.
 double largest_departure(const Plot& plot) {
   double largest = 0;
   for (std::size_t s = 1; s < plot.series.size(); ++s) {
@@ -51,7 +52,8 @@ double largest_departure(const Plot& plot) {
   return largest;
 }
 
-// Shares of the range: what so many random numbers leave open, and whole pixels and steps.
+// Relative to the range: sampling error of the random numbers, and rounding to whole pixels and
+// steps.
 const std::map<std::string, double> kTolerance = {{"Depth noise along the axis", 0.02},
                                                   {"Depth noise on leaning walls, 2 m", 0.03},
                                                   {"Ragged edges", 0.015},
@@ -72,7 +74,8 @@ TEST(SensorFigures, WhatWasMeasuredLiesOnWhatWasPublished) {
   for (const Plot& plot : all_plots()) {
     seen.insert(plot.title);
     if (plot.title == "Detector: how well boxes lie") {
-      // One figure is published: of the boxes that lie better than 0.5, so many better than 0.75.
+      // One figure is published: the share of the boxes with an IoU above 0.5 whose IoU is above
+      // 0.75.
       const auto& dots = plot.series[1].points;
       EXPECT_EQ(dots[0].x, 0.5);
       EXPECT_EQ(dots[0].y, 1.0);
@@ -89,7 +92,7 @@ TEST(SensorFigures, WhatWasMeasuredLiesOnWhatWasPublished) {
   EXPECT_EQ(seen.size(), kTolerance.size() + 1);
 }
 
-// The ends of each line, worked by hand from the source that it names.
+// The ends of each line, computed by hand from the source that it cites.
 TEST(SensorFigures, LinesBeginAndEndWhereTheirFormulasDo) {
   std::map<std::string, std::array<double, 4>> ends;  // x, y of the first point and the last
   for (const Plot& plot : all_plots()) {

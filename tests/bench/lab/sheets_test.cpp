@@ -12,7 +12,7 @@ namespace {
 
 constexpr Rgb8 kBelow = {90, 150, 210}, kAbove = {10, 20, 30};
 
-/// One color for views that look down, another for those that look up.
+/// One color for views that look down, another one for views that look up.
 class DownOrUp : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -23,14 +23,14 @@ class DownOrUp : public Renderer {
   }
 };
 
-// Without any factor a tile shows what the renderer drew: what stands on the floor, so that the
+// Before any effect is applied, a tile shows the rendered image; objects stand on the floor, so the
 // view looks down.
 TEST(SensorSheets, BeginWithWhatTheRendererDrawsOfAViewThatLooksDown) {
   Scene scene;
   scene.rooms.push_back({"room", {{0, 0}, {4, 0}, {4, 4}, {0, 4}}});
   const SensorSheets sheets = draw_sensor_sheets(scene, std::make_shared<DownOrUp>());
   const cv::Vec3b drawn(kBelow.b, kBelow.g, kBelow.r);
-  const cv::Point first_tile(224, 240), first_frame(84, 135);  // their middles
+  const cv::Point first_tile(224, 240), first_frame(84, 135);  // centers of the tile and the frame
   EXPECT_EQ(sheets.color.at<cv::Vec3b>(first_tile), drawn);
   EXPECT_EQ(sheets.frames.at<cv::Vec3b>(first_frame), drawn);
 }

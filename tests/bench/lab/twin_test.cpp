@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-/// Frames in memory with a truth of some of them.
+/// Frames in memory, with ground truth for some of them.
 class Recorded : public Sequence {
  public:
   Recorded(std::vector<RgbdFrame> frames, const Camera& camera, Trajectory truth)
@@ -32,7 +32,7 @@ class Recorded : public Sequence {
 
 constexpr Stamp kSecond_ns = 1'000'000'000;
 
-/// Blocks of random gray, 2 m away, displaced by some pixels to the right.
+/// Blocks of random gray, 2 m away, shifted to the right by some pixels.
 RgbdFrame blocks(const Camera& camera, int right_px, float depth_m, Stamp stamp_ns) {
   RgbdFrame frame{stamp_ns,
                   Grid2d<Rgb8>(camera.width_px, camera.height_px),
@@ -82,9 +82,10 @@ Features at(std::vector<std::pair<float, std::uint64_t>> keypoints) {
 }
 
 TEST(Agreement, CountsWhatBecomesOfEachKeypoint) {
-  const std::uint64_t all = ~0ULL;  // 64 bits away from 0
-  // The first finds its like at its place; the second has a neighbor of another look there, and its
-  // like 10 px on; the third has its like too far away; the fourth has nothing near.
+  const std::uint64_t all = ~0ULL;  // differs from 0 in all 64 bits
+  // The first keypoint finds its match in place; the second has a neighbor with a different
+  // descriptor there and its match 10 px away; the match of the third is too far away; the fourth
+  // has nothing nearby.
   const Features first = at({{100, 0}, {200, 0}, {300, 0}, {500, 0}});
   const Features other = at({{102, 0}, {202, all}, {210, 0}, {325, 0}});
   const KeypointAgreement found = agreement(first, other);

@@ -115,10 +115,10 @@ TEST_F(ImageList, FaultsAreNamed) {
   EXPECT_EQ(fault_of("# nothing\n"), list + ": names no image");
   write_atomically(folder_ / "text.png", "no image");
   EXPECT_EQ(fault_of("text.png"),
-            (folder_ / "text.png").string() + ": is not an image, or a damaged one");
+            (folder_ / "text.png").string() + ": is not an image, or is damaged");
 }
 
-// A plane 2 m before the camera, seen from two places.
+// A plane 2 m in front of the camera, seen from two places.
 TEST(Overlap, IsTheShareThatTheOtherImageShows) {
   const Camera camera;
   PlacedView a;
@@ -128,17 +128,17 @@ TEST(Overlap, IsTheShareThatTheOtherImageShows) {
   // Half an image to the side: 320 px at 2 m.
   b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {320 * 2.0 / camera.fx_px, 0, 0});
   EXPECT_NEAR(overlap(a, b, camera), 0.5, 0.02);
-  b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {0, 0, 5});  // behind it
+  b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {0, 0, 5});  // behind the plane
   EXPECT_DOUBLE_EQ(overlap(a, b, camera), 0.0);
   b.world_from_camera = a.world_from_camera;
-  b.depth_m = Grid2d<float>(80, 60, 1.0F);  // something stands before the plane
+  b.depth_m = Grid2d<float>(80, 60, 1.0F);  // something is in front of the plane
   EXPECT_DOUBLE_EQ(overlap(a, b, camera), 0.0);
   EXPECT_DOUBLE_EQ(overlap(b, a, camera), 1.0);
   a.depth_m = Grid2d<float>(80, 60, 0.0F);
   EXPECT_DOUBLE_EQ(overlap(a, b, camera), 0.0);
 }
 
-// Views of three places, two at a time, with descriptors of their place alone.
+// Views of three places, two views each, with descriptors that depend only on the place.
 TEST(ScoreVocabulary, FindsViewsOfOnePlaceByTheirWords) {
   const Camera camera;
   std::vector<PlacedView> views;
@@ -164,14 +164,15 @@ TEST(ScoreVocabulary, FindsViewsOfOnePlaceByTheirWords) {
   EXPECT_DOUBLE_EQ(score.precision, 1.0);
   EXPECT_DOUBLE_EQ(score.average_precision, 1.0);
   EXPECT_DOUBLE_EQ(score.chance, 1.0 / 5.0);
-  // Half of the keypoints have a label: 25 against 50 words of weight ln 3, as each lies in 2 of 6.
+  // Half of the keypoints have a label: 25 labels against 50 words of weight ln 3, as each word
+  // occurs in 2 of 6 views.
   ASSERT_TRUE(score.label_mass);
   EXPECT_NEAR(*score.label_mass, 25 / (25 + 50 * std::log(3.0)), 1e-6);
-  // Who asks from elsewhere alone, or about too near a time, has no true neighbor.
+  // If neighbors must be 35 s apart, no query has a true neighbor.
   VocabularyScoreConfig long_ago;
   long_ago.min_gap_s = 35;
   EXPECT_THROW(score_vocabulary(vocabulary, views, {}, camera, long_ago), InputError);
-  // Words of another place mislead.
+  // Words of a different place mislead the retrieval.
   std::swap(views[0].features, views[1].features);
   EXPECT_LT(score_vocabulary(vocabulary, views, {}, camera, {}).precision, 0.5);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node browse.mjs NODE_MODULES URL [SCREENSHOTS]: the page of `modelhouse live` in a browser: keys drive, the
-// picture moves, a kidnapped robot is lost and finds itself, the console stays empty.
+// node browse.mjs NODE_MODULES URL [SCREENSHOTS]: tests the page of `modelhouse live` in a browser: keys drive, the
+// picture moves, a kidnapped robot gets lost and relocalizes, the console stays empty.
 import { createRequire } from "node:module";
 
 const [modules, url, shots] = process.argv.slice(2);

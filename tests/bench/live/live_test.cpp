@@ -42,7 +42,7 @@ std::unique_ptr<LiveDrive> made_drive() {
       load_sensor_config(MH_SOURCE_DIR "/sim/sensors/levels/ideal.yaml"), vocabulary, 3);
 }
 
-/// Holds a command for some steps. @returns the last state
+/// Repeats a command for some steps. @returns the last state
 Json held(LiveDrive& drive, const std::string& command, int steps) {
   Json state;
   for (int i = 0; i < steps; ++i) {
@@ -76,7 +76,7 @@ TEST(LiveDrive, MapsWhileItIsDrivenAndStopsWithoutADriver) {
 
 TEST(LiveDrive, AKidnappedRobotIsLostAndFindsItself) {
   const auto drive = made_drive();
-  held(*drive, R"({"drive": [0, 0, 0.8]})", 140);  // all around
+  held(*drive, R"({"drive": [0, 0, 0.8]})", 140);  // a full turn
   EXPECT_EQ(drive->take(R"({"do": "kidnap"})"), "");
   const Json dark = held(*drive, "", 3);
   EXPECT_EQ(dark.at("light"), false);
@@ -243,13 +243,13 @@ TEST_F(LiveServing, AHostileClientHarmsNobody) {
   Viewer large(server->port());
   large.read();
   boost::system::error_code no_matter;
-  large.socket.write(asio::buffer(std::string(1'000'000, 'x')), no_matter);  // too long
+  large.socket.write(asio::buffer(std::string(1'000'000, 'x')), no_matter);  // too long a message
   EXPECT_THROW(
       {
         while (true) large.read();
       },
       boost::system::system_error);
-  Viewer slow(server->port());  // never reads on
+  Viewer slow(server->port());  // reads nothing more
   asio::io_context io;
   std::vector<asio::ip::tcp::socket> many;
   for (int i = 0; i < 100; ++i) {

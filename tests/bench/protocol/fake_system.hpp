@@ -12,9 +12,9 @@
 
 namespace mh {
 
-/// A system that follows a script instead of looking: frame i carries stamp i, and the script says
-/// whether the n-th showing of frame i (n = 1, 2, ...) is tracked. Its answers to queries are the
-/// script's too.
+/// A system that follows a script instead of looking at images: frame i has timestamp i, and the
+/// script says whether the n-th showing of frame i (n = 1, 2, ...) is tracked. It also scripts the
+/// answers to queries.
 class FakeSystem : public System {
  public:
   using Tracks = std::function<bool(Stamp frame, int showing)>;
@@ -50,13 +50,13 @@ class FakeSystem : public System {
     return {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.01 * static_cast<double>(stamp), 0, 0)};
   }
 
-  /// On which attempt (1, 2, ...) a query is answered; 0 = never. Default: the first.
+  /// The attempt (1, 2, ...) that answers a query; 0 = none. Default: the first.
   std::function<int(Stamp frame)> answers_at = [](Stamp) { return 1; };
-  /// Told the stream of every frame that a session is shown.
+  /// Called with the random stream of every frame shown to a session.
   std::function<void(RandomStream)> on_query = [](RandomStream) {};
-  /// Changes what is reported of the n-th showing of a test frame (n = 1, 2, ...).
+  /// Changes the report on the n-th showing of a test frame (n = 1, 2, ...).
   std::function<void(int attempt, SystemReport& report)> on_report = [](int, SystemReport&) {};
-  /// How many blank frames are still believed to be tracked.
+  /// Number of blank frames that are still reported as tracked.
   int believes_blanks = 0;
 
   std::vector<Stamp> fed;
@@ -90,7 +90,7 @@ class FakeSession : public RelocalizationSession {
     system_.on_report(attempts_, report);
     if (!found) return report;
     report.status = TrackStatus::kRelocalized;
-    // A pose that depends on the draws and on nothing else: what the permutation law needs.
+    // A pose that depends only on the random draws: the permutation test needs that.
     const double wobble = 1e-3 * stream.uniform(0);
     report.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, wobble, 0)) *
                                FakeSystem::pose(frame.stamp_ns);
@@ -106,7 +106,7 @@ inline std::unique_ptr<RelocalizationSession> FakeSystem::open_session() const {
   return std::make_unique<FakeSession>(*this);
 }
 
-/// Frames of 2 x 2 pixels whose stamp is their index; color encodes the noise stream.
+/// Frames of 2 x 2 pixels whose timestamp is their index; their color encodes the noise stream.
 inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
   RgbdFrame frame;
   frame.stamp_ns = static_cast<Stamp>(index);
@@ -115,14 +115,14 @@ inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
   return frame;
 }
 
-/// Of their size.
+/// A camera for these frames.
 inline Camera fake_camera() {
   Camera camera;
   camera.width_px = camera.height_px = 2;
   return camera;
 }
 
-/// So many of them, in order.
+/// `count` of these frames, in order.
 inline MadeSequence fake_frames(std::size_t count) {
   return {count, fake_frame, fake_camera()};
 }

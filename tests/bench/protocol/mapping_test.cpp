@@ -40,7 +40,7 @@ TEST(MapSequence, DropsTheOffendingFrameAfterFiveFailedRestarts) {
   EXPECT_EQ(std::count(system.fed.begin(), system.fed.end(), 80), 6);
   EXPECT_EQ(system.trajectory().size(), 115u);  // completeness 115 / 116
   EXPECT_FALSE(outcome.gave_up);
-  EXPECT_EQ(system.fed[79], 30);  // after the failure at 80 the feed stands at 80 - 50
+  EXPECT_EQ(system.fed[79], 30);  // after the failure at 80, the feed goes back to 80 - 50
 }
 
 TEST(MapSequence, AFrameThatIsTrackedOnTheThirdShowingCostsTwoRestarts) {
@@ -52,7 +52,7 @@ TEST(MapSequence, AFrameThatIsTrackedOnTheThirdShowingCostsTwoRestarts) {
 }
 
 TEST(MapSequence, LostFramesOnTheWayBackAreNoFailures) {
-  // After the failure at 80 the system finds its place again only at frame 75.
+  // After the failure at 80, the system does not track again until frame 75.
   FakeSystem system([](Stamp frame, int showing) {
     if (frame == 80) return showing >= 2;
     return showing == 1 || frame >= 75;
@@ -64,13 +64,13 @@ TEST(MapSequence, LostFramesOnTheWayBackAreNoFailures) {
 }
 
 TEST(MapSequence, CountsAnewAfterTheTroubleIsPassed) {
-  // Two troubles of four restarts each: none reaches six failures.
+  // Frame 70 is tracked at its fifth showing, frame 100 would be at its ninth.
   FakeSystem system([](Stamp frame, int showing) {
     return (frame != 70 && frame != 100) || showing >= (frame == 70 ? 5 : 9);
   });
   const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
-  // Frame 100 is shown for the first time when 70 is passed; it fails eight times: six failures
-  // drop it. Frame 70 costs four restarts and stays.
+  // Frame 100 is not shown until 70 is passed; its sixth failure drops it. Frame 70 costs four
+  // restarts and is kept.
   EXPECT_EQ(outcome.dropped, std::vector<std::size_t>{100});
   EXPECT_EQ(outcome.restarts, 4 + 6);
 }
@@ -82,12 +82,13 @@ TEST(MapSequence, TheOtherReadingOfResetForgetsTheMap) {
   const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), config, RandomStream(1));
   EXPECT_EQ(system.resets, 1);
   EXPECT_EQ(outcome.dropped.size(), 1u);
-  EXPECT_EQ(system.trajectory().size(), 86u);  // what was fed after the reset, counted above
+  EXPECT_EQ(system.trajectory().size(), 86u);  // the frames fed after the reset, as counted above
 }
 
-// By hand, beside the counter reading above: the calls are the same 415, since both go back 50. But
-// at the drop frames 0 to 80 are forgotten; fed again are 30 to 119 without 59, 80, 89 and 119, so
-// that 86 of 116 frames have a pose in the end and frame 30 begins the new map.
+// By hand, in addition to the count above: there are again 415 calls, since the feed goes back by
+// 50 in either case. But the drop forgets frames 0 to 80; frames 30 to 119 without 59, 80, 89 and
+// 119 are fed again, so that 86 of 116 frames have a pose in the end and frame 30 begins the new
+// map.
 TEST(MapSequence, ResettingTheMapCostsWhatLiesBeforeTheRewind) {
   FakeSystem system([](Stamp frame, int) { return frame != 80; });
   ProtocolConfig config;
@@ -102,7 +103,7 @@ TEST(MapSequence, ResettingTheMapCostsWhatLiesBeforeTheRewind) {
 }
 
 // By hand: frame 10 fails twice, and the feed cannot go back beyond frame 0: 11 calls, 11 calls,
-// then all of 0 to 119 but the four test frames: 22 + 116 = 138.
+// then all of 0 to 119 except the four test frames: 22 + 116 = 138.
 TEST(MapSequence, GoesBackToTheStartAtMost) {
   FakeSystem system([](Stamp frame, int showing) { return frame != 10 || showing >= 3; });
   const MappingOutcome outcome = map_sequence(system, fake_frames(kCount), {}, RandomStream(1));
@@ -112,7 +113,7 @@ TEST(MapSequence, GoesBackToTheStartAtMost) {
   EXPECT_EQ(system.fed[11], 0);
 }
 
-// By hand: without patience the first failure at 80 drops it. 0 to 80 without two test frames = 79
+// By hand: without restarts, the first failure at 80 drops it. 0 to 80 without two test frames = 79
 // calls, then 30 to 119 without 59, 80, 89, 119 = 86: 165 in all.
 TEST(MapSequence, WithoutRestartsTheFirstFailureDropsTheFrame) {
   FakeSystem system([](Stamp frame, int) { return frame != 80; });
@@ -126,9 +127,9 @@ TEST(MapSequence, WithoutRestartsTheFirstFailureDropsTheFrame) {
 }
 
 // By hand, with rewinds of 5: 80 and 81 are never tracked. 0 to 80 without 29, 59 = 79 calls; five
-// times 75 to 80 = 30; the drop of 80 and 75 to 81 without it = 6, where 81 fails for the first
-// time; five times 76 to 81 without 80 = 25; the drop of 81 and 76 to 119 without 80, 81, 89, 119 =
-// 40. Together 79 + 30 + 6 + 25 + 40 = 180; failures 6 + 6.
+// times 75 to 80 = 30; after the drop of 80, 75 to 81 without it = 6, where 81 fails for the first
+// time; five times 76 to 81 without 80 = 25; after the drop of 81, 76 to 119 without 80, 81, 89,
+// 119 = 40. Together 79 + 30 + 6 + 25 + 40 = 180; failures 6 + 6.
 TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
   FakeSystem system([](Stamp frame, int) { return frame != 80 && frame != 81; });
   ProtocolConfig config;
@@ -141,9 +142,6 @@ TEST(MapSequence, TwoOffendingFramesInARowAreDroppedOneAfterTheOther) {
   EXPECT_EQ(system.trajectory().size(), 114u);
 }
 
-// Frames 80 to 99 are never tracked. 415 calls would drop the first of them (see above); of these
-// 86 go on after 80. A hopeless spell shows 81 to 99 without 89 once: 79 + 5 * 50 calls up to the
-// sixth failure, then 30 to 119 without 59, 80, 89, 119 = 86.
 TEST(MapSequence, FramesBringTheReadingsSinceTheFrameBefore) {
   MadeSequence frames = fake_frames(kCount);
   for (Stamp at = 0; at < static_cast<Stamp>(kCount); ++at) frames.readings.push_back({at, {}, {}});
@@ -161,6 +159,8 @@ TEST(MapSequence, FramesBringTheReadingsSinceTheFrameBefore) {
   EXPECT_EQ(stamps(79), std::vector<Stamp>{30});
 }
 
+// Frames 80 to 99 are never tracked. By hand: 79 + 5 * 50 calls up to the sixth failure of 80 (see
+// above), then 30 to 119 without 59, 80, 89, 119 = 86, which shows 81 to 99 without 89 once: 415.
 TEST(MapSequence, AHopelessSpellIsShownOnce) {
   FakeSystem system([](Stamp frame, int) { return frame < 80 || frame > 99; });
   ProtocolConfig config;
@@ -200,7 +200,7 @@ TEST(MapSequence, AFeedThatContinuesShowsEachFrameOnceAndHoldsNoneOut) {
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 7);
   EXPECT_EQ(outcome.failures, 1) << "ten lost frames in a row are one failure";
   EXPECT_EQ(outcome.restarts + system.rewinds, 0);
-  // A frame's draws are those of a feed from the start.
+  // Each frame gets the same random draws as in a feed from the start.
   FakeSystem whole([](Stamp, int) { return true; });
   map_sequence(whole, fake_frames(kCount), live_feed(), RandomStream(1));
   EXPECT_EQ(std::vector(whole.streams.begin() + 7, whole.streams.end()), system.streams);

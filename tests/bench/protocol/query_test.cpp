@@ -39,7 +39,7 @@ TEST(Query, StopsAtTheFirstPoseThatComesBack) {
   EXPECT_EQ(answer.candidates.c2, 4);
 }
 
-/// Noise and draws of two queries of five attempts each, none of which is answered.
+/// Noise and random streams of two queries with five attempts each, all unanswered.
 struct Streams {
   std::set<std::uint64_t> noise, draws;
 };
@@ -64,7 +64,7 @@ Streams streams_of(Attempts attempts) {
 TEST(Query, AttemptsRepeatTheSameFrameAndOnlyTheDrawsDiffer) {
   const Streams seen = streams_of(ProtocolConfig{}.attempts);
   EXPECT_EQ(seen.noise.size(), 2u);        // one for each query
-  EXPECT_EQ(seen.draws.size(), 10u + 2u);  // and a blank frame for each
+  EXPECT_EQ(seen.draws.size(), 10u + 2u);  // and one for each query's blank frame
 }
 
 TEST(Query, WithNewNoiseEachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
@@ -104,7 +104,7 @@ TEST(Query, CandidatesAreThoseOfTheFirstAttemptAndPairsAreSummed) {
   EXPECT_EQ(answer.candidates.final, 11);
   ASSERT_TRUE(answer.matches);
   EXPECT_EQ((*answer.matches)[2].compared, 1 + 2 + 3);
-  // If the first reports none, none are known.
+  // If the first attempt reports none, none are known.
   system.on_report = [](int attempt, SystemReport& report) {
     if (attempt == 1) report.candidates = {};
   };
@@ -115,7 +115,7 @@ TEST(Query, TheDigestOfMatchingIsOfEveryAttempt) {
   FakeSystem system = mapped();
   system.answers_at = [](Stamp) { return 3; };
   std::set<std::uint64_t> seen;
-  for (const int changed : {0, 1, 2, 3}) {  // 0: none
+  for (const int changed : {0, 1, 2, 3}) {  // 0: no attempt is changed
     system.on_report = [&](int attempt, SystemReport& report) {
       if (attempt != changed) return;
       report.matches.emplace();
@@ -132,7 +132,8 @@ TEST(Query, TheDigestsOfPosesAndImagesAreOfEveryAttempt) {
   ProtocolConfig new_noise;
   new_noise.attempts = Attempts::kNewNoise;
   std::set<std::uint64_t> poses, images;
-  for (const int changed : {0, 1, 2}) {  // 0: none; a pose of a lost system is one, too
+  for (const int changed :
+       {0, 1, 2}) {  // 0: no attempt is changed; the pose of a lost system counts, too
     system.on_report = [&](int attempt, SystemReport& report) {
       if (attempt == changed) report.world_from_camera = SE3();
     };
@@ -177,11 +178,11 @@ TEST(Query, PermutingTheQueriesChangesNothing) {
   EXPECT_EQ(forwards, ask(order));
   std::rotate(order.begin(), order.begin() + 3, order.end());
   EXPECT_EQ(forwards, ask(order));
-  // Not vacuous: different queries do get different answers.
+  // The test means something: different queries do get different answers.
   EXPECT_NE(forwards.at(29), forwards.at(59));
 }
 
-/// A true pose beside its drifted estimate: the whole map is turned and moved by `drift`.
+/// A pose 1 m above the origin's plane, with this heading.
 SE3 at(double x, double y, double yaw) {
   return {Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
           Eigen::Vector3d(x, y, 1.0)};
@@ -231,7 +232,7 @@ TEST(NearestMapped, OfEquallyNearFramesTheEarlierIsTakenAndBeforeIsAsNearAsAfter
   const auto in_time = [&](Stamp stamp_ns) {
     return nearest_mapped(truth, truth, {stamp_ns, SE3()}, NearestBy::kTime)->stamp_ns;
   };
-  // Exactly on a frame, exactly between two, a nanosecond to either side, before all, after all.
+  // Exactly at a frame, exactly between two, a nanosecond to either side, before all, after all.
   for (const auto& [asked, expected] : std::map<Stamp, Stamp>{{-5, 100},
                                                               {0, 100},
                                                               {100, 100},
@@ -244,7 +245,7 @@ TEST(NearestMapped, OfEquallyNearFramesTheEarlierIsTakenAndBeforeIsAsNearAsAfter
                                                               {400, 400},
                                                               {9000, 400}})
     EXPECT_EQ(in_time(asked), expected) << asked;
-  // Three stand 1 m away.
+  // Three of the frames are 1 m away.
   EXPECT_EQ(nearest_mapped(truth, truth, {250, at(0, 0, 0)}, NearestBy::kPlace)->stamp_ns, 100);
 }
 
@@ -265,7 +266,7 @@ TEST(InterpolatedPose, LiesBetweenItsNeighborsInTime) {
 
 TEST(FindAnchor, ComparesWithWhatTheProtocolAsksFor) {
   constexpr Stamp kMs = 1'000'000;
-  // The robot really speeds up: half way in time it was at 0.2 m. The map is 10 m off as a whole.
+  // The robot speeds up: halfway in time it had moved only 0.2 m. The map as a whole is 10 m off.
   const Trajectory truth = {{0, at(0, 0, 0)}, {50 * kMs, at(0.2, 0, 0)}, {100 * kMs, at(1, 0, 0)}};
   const Trajectory estimate = {{0, at(10, 0, 0)}, {100 * kMs, at(11, 0, 0)}};
   const auto expected = [&](NearestBy by, QueryTruth what) {
@@ -297,10 +298,10 @@ TEST(Score, ADriftedMapIsRightWhereItIsRightLocally) {
   EXPECT_GT(s.aligned_distance_m.value(), 1.0);  // no global alignment undoes the drift here
 }
 
-// Worked by hand. The anchor's estimate stands at (10, 0) and looks along y; really it stood at the
-// origin and looked along x. From there the query lies 2 m ahead: (10, 2) in the map. The answer
-// is 0.12 m beside that and 0.16 m above. The alignment moves everything by -9 in x: the answer
-// comes to (1.12, 2), which is sqrt(0.88^2 + 2^2 + 0.16^2) from the true (2, 0).
+// Worked out by hand. The anchor's estimate is at (10, 0) and looks along y; in truth it was at the
+// origin and looked along x. From there the query is 2 m ahead: (10, 2) in the map. The answer is
+// 0.12 m to the side of that and 0.16 m above. The alignment shifts everything by -9 in x: the
+// answer moves to (1.12, 2), which is sqrt(0.88^2 + 2^2 + 0.16^2) from the true (2, 0).
 TEST(Score, DistanceAngleAndAlignedDistanceAreThoseWorkedByHand) {
   const double right_angle = std::numbers::pi / 2;
   const Anchor anchor{at(10, 0, right_angle), at(0, 0, 0), 0};
@@ -316,7 +317,8 @@ TEST(Score, DistanceAngleAndAlignedDistanceAreThoseWorkedByHand) {
   EXPECT_TRUE(s.correct);
 }
 
-// The largest map alone is aligned with the truth: an answer in another has a local distance only.
+// Only the largest map is aligned with the truth: an answer in another map has only a local
+// distance.
 TEST(Score, OnlyAnswersInTheLargestMapHaveAnAlignedDistance) {
   RunResult run;
   run.alignment.truth_from_estimate = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(-9, 0, 0));
@@ -404,7 +406,7 @@ TEST(Score, WithoutATruthAnAnswerIsASuccessAndNothingElse) {
   const QueryScore s = score(answer, unknown, std::nullopt, SE3(), config);
   EXPECT_TRUE(s.success && !s.correct && !s.false_positive && !is_judged(s));
   EXPECT_FALSE(s.distance_m || s.angle_deg || s.aligned_distance_m);
-  // The paper's own way needs none.
+  // The paper's own method needs no truth.
   config.truth = QueryTruth::kInterpolated;
   const auto anchor = find_anchor(estimate, {}, unknown, NearestBy::kTime, config);
   const QueryScore judged = score(answer, unknown, anchor, SE3(), config);
@@ -426,7 +428,7 @@ TEST(QueryScore, APlaceIsInTheMapWhereAFrameWasMapped) {
     return TimedPose{stamp, {so3_exp({0, 0, turn}), Eigen::Vector3d(x, 0, 0)}};
   };
   const Trajectory truth{at(0, 0, 0), at(10, 5, 0), at(20, 10, 1)};
-  // The map is where it likes; what counts is which frames are in it.
+  // The map may lie anywhere; only which frames it contains matters.
   const Trajectory estimate{at(0, 70, 2), at(20, 90, 2)};
   const auto is = [&](const TimedPose& query) {
     return is_in_map(estimate, truth, query).value_or(false);
@@ -443,7 +445,7 @@ TEST(QueryScore, APlaceIsInTheMapWhereAFrameWasMapped) {
 TEST(QueryScore, SuccessInTheMapIsAmongThoseWhosePlaceIsThere) {
   std::vector<QueryScore> queries(5);
   queries[0].in_map = queries[1].in_map = queries[2].in_map = true;
-  queries[3].in_map = false;  // the fifth: unknown
+  queries[3].in_map = false;  // the fifth stays unknown
   queries[0].success = queries[3].success = queries[4].success = true;
   const QuerySummary s = summarize(queries);
   EXPECT_DOUBLE_EQ(s.in_map.value(), 0.75);

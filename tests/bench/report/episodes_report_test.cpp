@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table and JSON of made-up episodes of which every cell is known.
+// Table and JSON of made-up episodes; every cell is known.
 #include "bench/report/episodes_report.hpp"
 
 #include <initializer_list>
@@ -79,12 +79,12 @@ Made two_places() {
       run_of(made.suite, 1, 0,
              {failed(0, "wrong_arrival"), failed(1, "never_relocalized"),
               failed(2, "stuck", 1, 0.12)}),
-      // Of the third start in the hall this system has no episode.
+      // This system has no episode from the third start in the hall.
       run_of(made.suite, 1, 1, {succeeded(0, 21, 0.25), failed(1, "no_path")})};
   return made;
 }
 
-/// The lines of a text, each with single blanks.
+/// The lines of a text, with single spaces between words.
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -103,16 +103,17 @@ TEST(EpisodesTable, EachCellStandsUnderItsHeading) {
       (std::vector<std::string>{
           "", "made up: 3 kidnappings in 2 environments, the same for each system", "",
           "variant system success 95 % located median s SPL collided worst m/s wrong arrivals",
-          // SPL 1.3 over six episodes, not over two successes; the worst contact is the second.
+          // SPL: 1.3 over six episodes, not over two successes; the worst contact is the second
+          // one.
           "as_mapped semantic 2/6 10-70 % 5 30.0 0.22 2 0.30 1 "
           "1 never_relocalized, 2 stuck, 1 wrong_arrival",
           "as_mapped plain 3/5 23-88 % 4 21.0 0.35 0 0.00 0 1 no_path, 1 time_out",
           "dim semantic 0/1 0-79 % 1 - 0.00 0 0.00 0 1 time_out",
           "dim plain 0/0 0-100 % 0 - 0.00 0 0.00 0", "",
-          // 0 - 1 + 1 - 1 + 0 of five; too few places for an interval.
+          // (0 - 1 + 1 - 1 + 0) / 5; too few places for an interval.
           "success, as_mapped: semantic - plain: -0.200 (-inf to +inf), 5 pairs, p 1.000, Holm "
           "1.000",
-          // 0.3 - 1 + 0.5 - 0.25 + 0 of five.
+          // (0.3 - 1 + 0.5 - 0.25 + 0) / 5.
           "SPL, as_mapped: semantic - plain: -0.090 (-inf to +inf), 5 pairs, p 1.000, Holm 1.000",
           "", "success, dim: semantic - plain: +0.000 (-inf to +inf), 0 pairs, p 1.000, Holm 1.000",
           "SPL, dim: semantic - plain: +0.000 (-inf to +inf), 0 pairs, p 1.000, Holm 1.000"}));
@@ -152,8 +153,9 @@ TEST(EpisodesJson, HoldsWhatTheTableHolds) {
   EXPECT_EQ(last["episodes"][1]["located_s"], nullptr);
 }
 
-// Six blocks of two starts: success differs alike in all (p 2/64), SPL in five one way and in one
-// the other (14/64). Of two comparisons the smaller p counts twice.
+// Six blocks of two starts: success differs in the same direction in all of them (p 2/64), SPL in
+// one direction in five blocks and in the other direction in one (14/64). The smaller p of the two
+// comparisons counts twice.
 TEST(EpisodesTable, StartsOfOnePlaceAreComparedInBlocksAndCorrectedByHolm) {
   const Suite suite = suite_of({"kitchen"}, 12, {{}});
   std::vector<EpisodeScore> first, second;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables, JSON, CSV and LaTeX of made-up results, every cell of which is known and unlike every
-// other: no two of them can be swapped unseen.
+// Tables, JSON, CSV and LaTeX of made-up results; every cell is known and different from all
+// others, so that no two of them can be swapped without a failure.
 #include <unistd.h>
 
 #include <filesystem>
@@ -23,10 +23,10 @@ namespace {
 using Cells = std::vector<std::string>;
 namespace fs = std::filesystem;
 
-// Worked by hand. Held out, of 8 queries: 6 answered, 5 correct, 1 false; distances' mean
+// Worked out by hand. Held out, 8 queries: 6 answered, 5 correct, 1 false; mean of the distances
 // 1.2 / 6 = 0.2, median (0.03 + 0.04) / 2 = 0.035; attempts 18 / 8 = 2.25; candidates 32 / 8 = 4,
-// three queries of eight with one. Second tour, of 5: 3 answered, 2 correct, 1 false; mean 0.24,
-// median 0.07; attempts 16 / 5 = 3.2; candidates 12 / 5 = 2.4, one query of five with one.
+// three of eight queries have one. Second tour, 5 queries: 3 answered, 2 correct, 1 false; mean
+// 0.24, median 0.07; attempts 16 / 5 = 3.2; candidates 12 / 5 = 2.4, one of five queries has one.
 const MadeUpFigures kSemantic = {
     .completeness = 0.875,
     .ate_m = 0.0111,
@@ -68,8 +68,8 @@ const MadeUpFigures kSemantic = {
     .track_ms = {1, 2, 30},
     .relocalize_ms = {4, 5, 60}};
 
-// Held out, of 8: 5 answered, 2 correct, 3 false; mean 2.5 / 5 = 0.5, median 0.45; attempts
-// 22 / 8 = 2.75. Second tour, of 5: 4 answered, 1 correct, 3 false; mean 0.7, median 0.75.
+// Held out, 8 queries: 5 answered, 2 correct, 3 false; mean 2.5 / 5 = 0.5, median 0.45; attempts 22
+// / 8 = 2.75. Second tour, 5 queries: 4 answered, 1 correct, 3 false; mean 0.7, median 0.75.
 const MadeUpFigures kPlain = {.completeness = 0.625,
                               .ate_m = 0.0555,
                               .ate_deg = 0.25,
@@ -124,7 +124,7 @@ class Figures : public testing::Test {
   const std::vector<RunResult> runs_ = runs_of(suite_);
 };
 
-/// The cells of a line: two blanks or more part them.
+/// The cells of a line, which are separated by two or more spaces.
 Cells cells_of(const std::string& line) {
   static const std::regex kGap("  +");
   const std::string inside = std::regex_replace(line, std::regex("^ +| +$"), "");
@@ -132,7 +132,7 @@ Cells cells_of(const std::string& line) {
           std::sregex_token_iterator()};
 }
 
-/// Below a line whose cells these are, the cells of the next line that begins with a name.
+/// The cells of the next line that begins with `name`, below the line whose cells are `heading`.
 Cells below(const std::string& text, const Cells& heading, const std::string& name) {
   std::istringstream lines(text);
   bool found = false;
@@ -236,8 +236,8 @@ TEST_F(Figures, OfOthersStandBesideTheMeasuredAte) {
         << text;
 }
 
-// Of the queries that both answer the semantic system is nearer by 0.05, 0.12, 0.42, 0.81 and 0.9:
-// 2.3 / 5 = 0.46. It answers one of eight more, and three of eight more correctly.
+// On the queries that both answer, the semantic system is closer by 0.05, 0.12, 0.42, 0.81 and 0.9:
+// 2.3 / 5 = 0.46. It answers one more of eight, and three more of eight correctly.
 TEST_F(Figures, OfTheComparisonAreSemanticMinusPlain) {
   const std::string table = results_table(suite_, runs_);
   for (const char* figure :
@@ -257,8 +257,8 @@ TEST_F(Figures, OfTheComparisonAreSemanticMinusPlain) {
   EXPECT_NEAR(differences["distance where both answer, m, held_out, exact labels"], -0.46, 1e-12);
 }
 
-// Two rooms of the same figures but for the second one's plain system, which is as good as the
-// semantic one: its means lie half way.
+// Two rooms with the same figures, except that the plain system in the second room is as good as
+// the semantic one: its means are halfway between the two systems.
 TEST_F(Figures, OfTableOneAreMeansOverScenes) {
   const Suite two = made_up_suite(folder_, {"den", "nook"});
   std::vector<RunResult> runs = runs_of(two);
@@ -273,12 +273,13 @@ TEST_F(Figures, OfTableOneAreMeansOverScenes) {
   const Cells semantic = {"rooms",  "semantic", "2",      "0.0111", "0.00333", "87.50%", "75.00%",
                           "62.50%", "12.50%",   "0.2000", "60.00%", "40.00%",  "20.00%", "0.2400"};
   EXPECT_EQ(below(table, heading, "rooms"), semantic) << table;
-  // The plain system's line is the one below.
+  // The plain system's line is the next one.
   EXPECT_EQ(below(table, semantic, "rooms"),
             (Cells{"rooms", "plain", "2", "0.0333", "0.00555", "75.00%", "68.75%", "43.75%",
                    "25.00%", "0.3500", "70.00%", "30.00%", "40.00%", "0.4700"}))
       << table;
-  // -0.2 is of the second tour; each is over scenes: half of the first room's difference.
+  // The -0.2 is for the second tour; each figure is a mean over scenes: half of the difference in
+  // the first room.
   for (const char* figure : {"success, held_out, exact labels +\\+0\\.0625 ",
                              "pooled success, held_out, exact labels +\\+0\\.0625 ",
                              "pooled correct, second_tour, exact labels .*10 queries of 2 scenes",
@@ -301,14 +302,14 @@ TEST_F(Figures, OfTableOneAreMeansOverScenes) {
 TEST_F(Figures, OfTheTimesStandUnderTheirHeadings) {
   const std::string table = times_table(suite_, runs_);
   const Cells heading = {"wall time, ms per call: median (p95)", "track", "relocalize"};
-  // The 95th percentile of three is the last but one step of linear interpolation or the last.
+  // Only the median is compared: the 95th percentile of three values depends on the interpolation.
   EXPECT_EQ(below(table, heading, "den, semantic, exact labels")[1].substr(0, 4), "2.0 ") << table;
   EXPECT_EQ(below(table, heading, "den, semantic, exact labels")[2].substr(0, 4), "5.0 ") << table;
   EXPECT_EQ(below(table, heading, "den, plain")[1].substr(0, 4), "8.0 ") << table;
   EXPECT_EQ(below(table, heading, "den, plain")[2].substr(0, 5), "11.0 ") << table;
 }
 
-/// Numbers to 12 digits, so that 0.1 + 0.2 is 0.3.
+/// Rounds numbers to 12 digits, so that 0.1 + 0.2 equals 0.3.
 nlohmann::json rounded(const nlohmann::ordered_json& json) {
   nlohmann::json flat = nlohmann::json::parse(json.dump()).flatten();
   for (auto& value : flat)
@@ -355,7 +356,7 @@ TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
       "scored": 874.125})"));
   EXPECT_EQ(run["points"][0]["held_out"].size(), 8u);
   EXPECT_EQ(run["points"][0]["second_tour"].size(), 5u);
-  nlohmann::json query = run["points"][0]["held_out"][5];  // a false one
+  nlohmann::json query = run["points"][0]["held_out"][5];  // a false answer
   for (const char* pose : {"truth", "estimate"}) query.erase(pose);
   EXPECT_EQ(query, nlohmann::json::parse(R"({"frame": 179, "stamp_ns": 179, "success": true,
       "correct": false, "false_positive": true, "in_map": null, "map": 0, "stage": "verified", "attempts": 3, "blank_frames": 0,
@@ -365,7 +366,7 @@ TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
       "grade": {"mapped_m": null, "mapped_deg": null, "shown": null, "speed": null}})"));
 }
 
-/// The made-up results in a file, as the bench leaves them.
+/// A results file with the made-up results, as the bench writes it.
 Store stored(const fs::path& folder, const Suite& suite, const std::vector<RunResult>& runs) {
   Store store(folder / "r.sqlite");
   std::vector<std::pair<std::string, std::string>> plan;

@@ -26,7 +26,7 @@ TEST(GradedSpec, BinsContainTheirLowerEdge) {
   EXPECT_EQ(bin_of(edges, 7), 2u);
 }
 
-// Worked by hand from (p + z^2/2n +- z sqrt(p (1-p) / n + z^2/4n^2)) / (1 + z^2/n).
+// Computed by hand from (p + z^2/2n +- z sqrt(p (1-p) / n + z^2/4n^2)) / (1 + z^2/n).
 TEST(Wilson, IsTheScoreInterval) {
   const auto [low, high] = wilson(8, 10);
   EXPECT_NEAR(low, 0.4902, 1e-4);
@@ -47,7 +47,8 @@ class GradedCurves : public testing::Test {
   }
   ~GradedCurves() override { fs::remove_all(folder_); }
 
-  /// Eight queries, the first four near: so many of the near and the far ones are answered.
+  /// Eight queries, the first four of them near: `near` of the near ones and `far` of the far ones
+  /// are answered.
   RunResult run(const RunSpec& spec, int near, int far, double speed = 0) const {
     RunResult made = made_up_run(spec, {});
     made.points = {{}};
@@ -84,7 +85,8 @@ TEST_F(GradedCurves, AreOverTheSameQueriesOfAllScenes) {
   const std::vector<RunResult> all = runs();
   const std::vector<Row> rows = make_rows(suite_, all);
   const std::vector<GradedCurve> curves = graded_curves(suite_, rows);
-  ASSERT_EQ(curves.size(), 5u);  // distance, angle, shown; distance in each category
+  ASSERT_EQ(curves.size(),
+            5u);  // over distance, angle and share shown; over distance in each category
   const GradedCurve& distance = curves[0];
   EXPECT_EQ(distance.by, "distance");
   ASSERT_EQ(distance.bins.size(), 2u);

@@ -11,26 +11,27 @@
 
 namespace mh {
 
-/// Answers to the queries of one set: the first are correct, the next false, the rest unanswered.
+/// Answers to one set of queries: the first ones are correct, the next ones false, the rest
+/// unanswered.
 struct MadeUpAnswers {
   int correct = 0;
-  std::vector<double> distances_m;   ///< of those that were answered
-  double aligned_more_m = 0;         ///< how much farther they are after aligning
-  std::vector<int> attempts, final;  ///< of all
+  std::vector<double> distances_m;   ///< of the answered queries
+  double aligned_more_m = 0;         ///< how much larger they are after alignment
+  std::vector<int> attempts, final;  ///< of all queries
   int keyframes = 0, c1 = 0, c2 = 0, c3 = 0;
   double label_mass = 0, gamma = 0;
   std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
   RelocalizationStage unanswered = RelocalizationStage::kNone;
 };
 
-/// All figures of a run; no two numbers are equal.
+/// All figures of a run; no two of the numbers are equal.
 struct MadeUpFigures {
   double completeness = 0, ate_m = 0, ate_deg = 0, first_pose_m = 0, rpe_frame_m = 0,
          rpe_second_m = 0;
   int restarts = 0;
   std::size_t dropped = 0;
   MadeUpAnswers held_out, second_tour;
-  MatcherCounts pairs;  ///< of matching by the motion model, while mapping
+  MatcherCounts pairs;  ///< of matching with the motion model while mapping
   std::vector<double> track_ms, relocalize_ms;
 };
 
@@ -94,7 +95,7 @@ inline RunResult made_up_run(const RunSpec& spec, const MadeUpFigures& figures) 
   return run;
 }
 
-/// A suite of these environments that needs no files but its own.
+/// A suite of these environments that needs no files except its own.
 inline Suite made_up_suite(const std::filesystem::path& folder,
                            const std::vector<std::string>& environments) {
   const std::filesystem::path file = folder / "made_up.yaml";

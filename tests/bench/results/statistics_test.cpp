@@ -46,7 +46,7 @@ TEST(ComparePaired, AConstantDifferenceIsFoundAndHasNoSpread) {
 }
 
 TEST(ComparePaired, AnswersOfOneNeighborhoodCountLessThanTheirNumber) {
-  // Runs of ten equal values: hardly more information than a tenth as many queries.
+  // Blocks of ten equal values carry hardly more information than a tenth as many queries.
   std::vector<PairedDifference> runs, mixed;
   for (int i = 0; i < 200; ++i) {
     runs.push_back({(i / 10) % 2 == 0 ? 1.0 : -0.9, true});
@@ -59,14 +59,15 @@ TEST(ComparePaired, AnswersOfOneNeighborhoodCountLessThanTheirNumber) {
 
 TEST(ComparePaired, TooFewPairsDecideNothing) {
   std::vector<PairedDifference> few = all_equal_to(1, 3);
-  few.resize(40);  // the others are absent
+  few.resize(40);  // the others have no value
   const Comparison c = compare_paired(few, true, 1);
   EXPECT_EQ(c.pairs, 3u);
   EXPECT_EQ(verdict(c), Verdict::kUndecided);
 }
 
 TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
-  // Blocks of two queries: five of them give 2 of 32 sign patterns at the least, six 2 of 64.
+  // With blocks of two queries, p is at least 2 of 32 sign patterns for five blocks and 2 of 64 for
+  // six.
   const Comparison five = compare_paired(all_equal_to(1, 10), true, 1);
   EXPECT_DOUBLE_EQ(five.p, 2.0 / 32);
   EXPECT_TRUE(std::isinf(five.detectable)) << "too few to detect anything";
@@ -77,7 +78,7 @@ TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
 }
 
 TEST(ComparePaired, AnIntervalThatEndsAtZeroBesideALargePIsRecognized) {
-  // Two of 40 queries differ, in one way: two of four patterns are as far from 0.
+  // Two of 40 queries differ, in the same direction: two of four patterns are this far from 0.
   std::vector<PairedDifference> two = all_equal_to(0, 40);
   two[3].difference = two[30].difference = 1;
   const Comparison c = compare_paired(two, true, 1);
@@ -94,7 +95,7 @@ TEST(ComparePaired, AnIntervalThatEndsAtZeroBesideALargePIsRecognized) {
 }
 
 TEST(SignFlip, CountsThePatternsThatAreAsFarFromZero) {
-  // 2 + 1 - 1 = 2: of the eight sums +-2 +-1 +-1, six are 2 or 4 from zero.
+  // 2 + 1 - 1 = 2: six of the eight sums +-2 +-1 +-1 are 2 or 4 away from zero.
   EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>{2, 1, -1}, 1), 6.0 / 8);
   EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>{0.1, 0.2, 0.3}, 1), 2.0 / 8);
   EXPECT_EQ(sign_flip(std::vector<double>{0, 0}, 1), 1.0);
@@ -104,13 +105,14 @@ TEST(SignFlip, CountsThePatternsThatAreAsFarFromZero) {
 TEST(SignFlip, DrawsAgreeWithTheNormalDistributionWherePatternsAreTooMany) {
   std::vector<double> sums(100, 1.0);
   for (std::size_t i = 0; i < 40; ++i) sums[2 * i] = -1.0;  // 60 against 40: two sigmas
-  EXPECT_NEAR(sign_flip(sums, 1), std::erfc(1.9 / std::sqrt(2.0)), 0.005);  // half a step nearer
+  EXPECT_NEAR(sign_flip(sums, 1), std::erfc(1.9 / std::sqrt(2.0)),
+              0.005);  // continuity correction: half a step closer
   EXPECT_EQ(sign_flip(sums, 1), sign_flip(sums, 1));
   EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>(100, 1.0), 1), 1.0 / 20001);
 }
 
-/// The share of 500 made-up comparisons without any difference in which one is claimed at 5 %.
-/// @param carried  share of each query's noise that its predecessor had, too
+/// Simulates 500 comparisons without a difference. @returns the share that claims one at 5 %
+/// @param carried  share of each query's noise that is carried over from the query before it
 double false_claims(std::size_t n, double carried) {
   int claims = 0;
   constexpr int kTrials = 500;
@@ -140,11 +142,11 @@ TEST(ComparePaired, IsAFunctionOfItsSeed) {
 }
 
 TEST(Wilcoxon, AgreesWithCountingAllSigns) {
-  // Five differences of one sign: 2 of the 32 sign patterns are as extreme.
+  // Five differences of the same sign: 2 of the 32 sign patterns are as extreme.
   EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{1, 2, 3, 4, 5}), 2.0 / 32);
-  // Positive ranks 4 + 5 = 9 of 15: sums of at most 6 come from 13 subsets of {1 .. 5}.
+  // The positive ranks sum to 4 + 5 = 9 of 15: 13 subsets of {1 .. 5} have a sum of at most 6.
   EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{-1, -2, -3, 4, 5}), 2 * 13.0 / 32);
-  // Ties take middle ranks, zeros none: ranks 1.5, 1.5, 3, all positive.
+  // Ties get mean ranks, zeros get none: ranks 1.5, 1.5, 3, all positive.
   EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{1, 1, 2, 0}), 2.0 / 8);
   EXPECT_EQ(wilcoxon_signed_rank(std::vector<double>{0, 0}), 1.0);
   EXPECT_EQ(wilcoxon_signed_rank({}), 1.0);
@@ -152,7 +154,7 @@ TEST(Wilcoxon, AgreesWithCountingAllSigns) {
 }
 
 TEST(Wilcoxon, EqualSharesAreTiesHoweverTheyAreRounded) {
-  // Differences of shares of 23 queries: 1, -1, 2, -1, 3, 0 of them, in several roundings.
+  // Differences of shares of 23 queries: 1, -1, 2, -1, 3 and 0 queries, each rounded differently.
   const auto share = [](int more, int fewer) { return more / 23.0 - fewer / 23.0; };
   const std::vector<double> shares = {share(3, 2),   share(7, 8),   share(22, 20),
                                       share(10, 11), share(20, 17), 1.0 / 3 - (1 - 2.0 / 3)};
@@ -165,7 +167,7 @@ TEST(Wilcoxon, NearsTheNormalDistributionForManyScenes) {
   std::vector<double> d;
   for (int i = 1; i <= 200; ++i) d.push_back(i % 2 == 0 && i % 14 != 0 ? -i : i);
   double positive = 0;
-  for (const double x : d) positive += x > 0 ? x : 0;  // |d| are the ranks
+  for (const double x : d) positive += x > 0 ? x : 0;  // the ranks are |d|
   const double mean = 200 * 201 / 4.0, sd = std::sqrt(200 * 201 * 401 / 24.0);
   const double p = std::erfc((positive - 0.5 - mean) / sd / std::sqrt(2.0));
   EXPECT_NEAR(wilcoxon_signed_rank(d) / p, 1.0, 0.01);  // p = 0.083
@@ -184,8 +186,8 @@ TEST(CompareScenes, ScenesAreIndependentAndThoseWithoutAValueAreLeftOut) {
   EXPECT_EQ(same.low, full.low);
 }
 
-// Six scenes of thirty queries each: that none of 180 answers differed bounds the share of those
-// that would by 3 / 180. 3 / 6, as if a scene were one answer, bounds nothing.
+// Six scenes with thirty queries each: as none of 180 answers differs, the share of answers that
+// differ is bounded by 3 / 180. If each scene counted as one answer, 3 / 6 would bound nothing.
 TEST(CompareScenes, TheFloorOfWhatCanBeDetectedIsOfAnswersNotOfScenes) {
   const Comparison same = compare_scenes(all_equal_to(0, 6), 6 * 30, 1);
   EXPECT_DOUBLE_EQ(same.detectable, 3.0 / 180);
@@ -198,7 +200,7 @@ TEST(CompareScenes, TheFloorOfWhatCanBeDetectedIsOfAnswersNotOfScenes) {
   EXPECT_EQ(compare_scenes(all_equal_to(0, 6), 0, 1).detectable, 0) << "no shares, no floor";
 }
 
-/// Scenes of some pairs each, all of a scene's the same.
+/// Scenes with `pairs` pairs each; all pairs of a scene have the same value.
 std::vector<std::vector<PairedDifference>> scenes_of(const std::vector<double>& values,
                                                      std::size_t pairs) {
   std::vector<std::vector<PairedDifference>> scenes;
@@ -207,16 +209,17 @@ std::vector<std::vector<PairedDifference>> scenes_of(const std::vector<double>& 
 }
 
 TEST(CompareClusters, EachQueryCountsTheSameAndScenesAreDrawnAsWholes) {
-  // One large scene without a difference, nine small ones with one each: 9 of 90 + 9 queries.
+  // One large scene without a difference and nine small ones with one query each that differs: 9 of
+  // 90 + 9 queries.
   std::vector<std::vector<PairedDifference>> scenes = scenes_of(std::vector<double>(9, 1.0), 1);
   scenes.push_back(all_equal_to(0, 90));
-  scenes.back().resize(120);  // without a value: not counted
+  scenes.back().resize(120);  // the added ones have no value and do not count
   const Comparison c = compare_clusters(scenes, true, 1);
   EXPECT_DOUBLE_EQ(c.difference, 9.0 / 99);
   EXPECT_EQ(c.pairs, 99u);
   EXPECT_EQ(c.clusters, 10u);
-  EXPECT_DOUBLE_EQ(c.p, 2.0 / 512);  // nine sums of one sign, one of zero
-  // Without the large scene, which 35 % of the draws leave out, all differ.
+  EXPECT_DOUBLE_EQ(c.p, 2.0 / 512);  // nine scenes of one sign, one of zero
+  // Without the large scene, which 35 % of the resamplings leave out, all queries differ.
   EXPECT_DOUBLE_EQ(c.high, 1.0);
 }
 
@@ -231,17 +234,17 @@ TEST(CompareClusters, QueriesOfOneSceneSayLittleMoreThanOne) {
 }
 
 TEST(CompareClusters, ScenesWithoutAnyPairDoNotCount) {
-  // Three scenes decide nothing, however many others have no pair.
+  // Three scenes decide nothing, no matter how many other scenes have no pair.
   std::vector<std::vector<PairedDifference>> scenes = scenes_of({1, 1, 1}, 2);
   scenes.emplace_back();
-  scenes.emplace_back(5);  // queries that only one of the two has a value for
+  scenes.emplace_back(5);  // queries for which only one of the two systems has a value
   const Comparison three = compare_clusters(scenes, true, 1);
   EXPECT_EQ(three.clusters, 3u);
   EXPECT_EQ(three.pairs, 6u);
   EXPECT_EQ(three.p, 1);
   EXPECT_TRUE(std::isinf(three.high) && std::isinf(three.detectable));
 
-  // Nor do they lower p or what is detectable among enough.
+  // If there are enough scenes, those without a pair change neither p nor what is detectable.
   scenes = scenes_of({1, 1, 0, 1, 1, 1}, 3);
   const Comparison six = compare_clusters(scenes, true, 1);
   scenes.insert(scenes.begin() + 2, 4, std::vector<PairedDifference>(2));
@@ -262,7 +265,7 @@ TEST(CompareClusters, FewScenesDecideNothing) {
   EXPECT_EQ(compare_clusters(scenes_of({1, 0}, 0), true, 1).p, 1);
 }
 
-// Scenes whose queries all share half of their noise, and no difference between the systems.
+// Scenes whose queries share half of their noise; the systems do not differ.
 TEST(CompareClusters, ClaimsWhereNothingDiffersStayNearFivePercent) {
   for (const std::size_t count : {6u, 12u, 60u}) {
     int claims = 0;
@@ -287,7 +290,7 @@ TEST(Holm, CorrectsByRankAndStaysMonotone) {
   holm(family);
   EXPECT_DOUBLE_EQ(family[1].p_holm, 0.03);  // 3 * 0.01
   EXPECT_DOUBLE_EQ(family[2].p_holm, 0.06);  // 2 * 0.03
-  EXPECT_DOUBLE_EQ(family[0].p_holm, 0.06);  // 1 * 0.04, but not below the one before
+  EXPECT_DOUBLE_EQ(family[0].p_holm, 0.06);  // 1 * 0.04, but not below the previous one
 }
 
 TEST(Holm, CountsNeitherWhatHasNoPairsNorWhatStandsBesideTheFamily) {

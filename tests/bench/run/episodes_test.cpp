@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kidnappings from start to end, in a small room.
+// Kidnapping episodes from start to end in a small room.
 #include "bench/run/one/ask_episodes.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ systems: )" + systems + "\n" +
                      fs::path(root) / "small.yaml");
 }
 
-/// The first run of a suite, and its world.
+/// The first run of a suite and its world.
 struct Place {
   explicit Place(const Suite& suite) : spec(expand(suite).front()) {}
   RunSpec spec;
@@ -70,7 +70,7 @@ TEST(Episodes, WhatHasEndedIsNotRepeated) {
   const RunResult again = run("0a");
   EXPECT_EQ(text(again), text(once));
   EXPECT_TRUE(again.times.relocalize_ms.empty()) << "it was kidnapped again";
-  const RunResult other = run("0b");  // of another run
+  const RunResult other = run("0b");  // of a different run
   EXPECT_EQ(text(other), text(once));
   EXPECT_FALSE(other.times.relocalize_ms.empty());
 }
@@ -115,7 +115,7 @@ TEST(Episodes, AProgramThatEndsEarlyOrBadlyIsReported) {
   const std::string ended =
       outside_error("[{name: broken, protocol: conversation, command: 'exit 7'}]");
   EXPECT_NE(ended.find("exited with code 7"), std::string::npos) << ended;
-  // Lost in every frame, and not content with that in the end.
+  // Lost in every frame, and ends with an error code.
   const std::string sulked = outside_error(R"y([{name: sulking, protocol: conversation, command: "
     sed -u -E 's/^.\"id\":([0-9]+),\"do\":\"hello.*/{\"id\":\\1,\"protocol\":1}/; t;
     s/^.\"id\":([0-9]+),\"do\":\"(freeze|rewind|reset).*/{\"id\":\\1}/; t;
@@ -159,7 +159,7 @@ TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {
   const Place place(small_suite());
   const auto system = make_system(place.spec, place.world, {});
   const std::vector<EpisodeScore> scores = ask_episodes(
-      place.spec, place.world, *system, {}, SE3(), RandomStream(0), {});  // it tracked no frame
+      place.spec, place.world, *system, {}, SE3(), RandomStream(0), {});  // it has tracked no frame
   ASSERT_EQ(scores.size(), 2U);
   EXPECT_FALSE(scores[0].success);
   EXPECT_EQ(scores[0].reason, "no_map");
@@ -231,7 +231,7 @@ TEST(GoalsNamed, AnUnknownNameGetsASuggestion) {
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("desk"), std::string::npos) << error.what();
   }
-  EXPECT_THROW(goals_named(map, "toilet"), InputError);  // not in this map
+  EXPECT_THROW(goals_named(map, "toilet"), InputError);  // the map has none
 }
 
 TEST(GoalsNamed, TheBestScoredComesFirst) {

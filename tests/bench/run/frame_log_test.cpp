@@ -11,7 +11,7 @@
 namespace mh {
 namespace {
 
-/// Three frames, a second apart.
+/// Three frames, one second apart.
 class ThreeFrames : public Sequence {
  public:
   const Camera& camera() const override { return camera_; }

@@ -67,7 +67,7 @@ struct Feed {
   std::function<void()> after_frame = [] {};
 };
 
-/// What `modelhouse slam` does with a sequence, and what came of it.
+/// What `modelhouse slam` does with a sequence, and the results.
 struct SlamRun {
   MappingOutcome mapping;
   Trajectory trajectory;
@@ -101,7 +101,7 @@ SlamRun run_slam(SlamState& state, const Sequence& sequence, const Feed& feed = 
     run.trajectory = std::move(found.trajectory);
   } else {
     World world;
-    world.mapping = {std::shared_ptr<const Sequence>(), &sequence};  // owned by the caller
+    world.mapping = {std::shared_ptr<const Sequence>(), &sequence};  // the caller owns it
     RunResult result = run_one(
         spec, world,
         {.system = [&](const RunSpec&, const World&) { return make_builtin_system(state, ours); },
@@ -119,7 +119,7 @@ SlamRun run(SlamState& state, std::vector<RgbdFrame> offered, const Feed& feed =
   return run_slam(state, *frames_in_memory(BoxRoom::camera(), std::move(offered)), feed);
 }
 
-/// Prepares a map for continuing with another sequence.
+/// Prepares a map for continuing with a different sequence.
 void begin_another_sequence(SlamState& state) {
   rewind(state);
   state.tracked_frames.clear();
@@ -172,7 +172,7 @@ TEST_F(Folder, AFrameThatCannotBeReadOrIsOfAnotherSizeIsSkippedAndCounted) {
   const auto images = load_tum_folder(folder_);
   std::ofstream(images[10].color) << "no image";
   fs::remove(images[12].depth);
-  // An image of a quarter of the size in place of another.
+  // One image is replaced by one of a quarter of its size.
   Camera small = BoxRoom::camera();
   small.width_px /= 2;
   small.height_px /= 2;
@@ -250,8 +250,9 @@ TEST(OneSequence, StampsThatRepeatOrGoBackAreSkippedAndCounted) {
   const SlamRun result = run(state, offered);
   EXPECT_EQ(result.mapping.skipped.count, 2);
   EXPECT_EQ(result.log.tracked, 28);
-  EXPECT_NE(result.mapping.skipped.reasons[0].find("does not increase"), std::string::npos);
-  // What was fed is what the trajectory has, though a stamp came twice; by localization, too.
+  EXPECT_NE(result.mapping.skipped.reasons[0].find("is out of order"), std::string::npos);
+  // The trajectory has exactly the fed frames although a timestamp occurred twice; the same holds
+  // for localization.
   EXPECT_EQ(result.trajectory.size(), 28U);
   rewind(state);
   const SlamRun found = run(state, offered, {.localize = true});
@@ -261,7 +262,8 @@ TEST(OneSequence, StampsThatRepeatOrGoBackAreSkippedAndCounted) {
 
 TEST(OneSequence, ASmallMapIsGivenUpWhenTrackingIsLost) {
   std::vector<RgbdFrame> offered = frames(0, 3);
-  for (const RgbdFrame& frame : frames(120, 140)) offered.push_back(frame);  // the other side
+  for (const RgbdFrame& frame : frames(120, 140))
+    offered.push_back(frame);  // from the opposite side of the room
   SlamState kept = start(), anew = start();
   const SlamRun stays = run(kept, offered, {.small_map = 0});
   EXPECT_EQ(stays.log.tracked, 3);
@@ -275,7 +277,7 @@ TEST(OneSequence, ASmallMapIsGivenUpWhenTrackingIsLost) {
   EXPECT_NE(starts.csv.find("\n0.033333333,lost,"), std::string::npos)
       << "frames.csv says the same: " << starts.csv.substr(0, 300);
 
-  // Where the lost frame itself can begin no map, a later one does.
+  // If the lost frame itself cannot begin a map, a later one does.
   offered[3] = plain(0, 0.0F, 120);
   offered[4] = plain(0, 0.0F, 121);
   SlamState later = start();
@@ -383,7 +385,7 @@ TEST(Observers, ATracedPairIsWhatTheMapSaysOfIt) {
   EXPECT_GE(checked, 15);
 }
 
-/// 200 real frames of a Kinect with a distorted lens and a rolling shutter.
+/// 200 real frames from a Kinect with lens distortion and a rolling shutter.
 class TumFr1Rpy : public testing::Test {
  protected:
   void SetUp() override {
@@ -400,7 +402,8 @@ class TumFr1Rpy : public testing::Test {
   SlamState state;
 };
 
-// The original ORB-SLAM2 tracks all of them at 0.0257 m; without the readout time it is 0.0164 m.
+// The original ORB-SLAM2 tracks all of them with an ATE of 0.0257 m; without the readout time ours
+// is 0.0164 m.
 TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
   const SlamRun result = run_slam(state, *sequence);
   EXPECT_EQ(result.log.tracked, 200);
@@ -410,8 +413,8 @@ TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
   EXPECT_EQ(score.pairs, 200U);
 }
 
-// Each query starts lost and is independent. The expected pose is from SLAM that continues from the
-// map.
+// Each query starts lost and is independent of the others. The expected pose comes from SLAM that
+// continues from the map.
 TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
   const RandomStream stream(0);
   state.camera.disparity_sigma_px = 0.1;

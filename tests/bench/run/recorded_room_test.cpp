@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated tour and the recording that is written of it are the same to a run.
+// For a run, a simulated tour and a recording of it are the same.
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ World built(const RunSpec& spec) {
   return build_world(spec, 1, Cache(MH_TEST_CACHE), [](std::string_view) {});
 }
 
-/// What a recording changes of a frame: a file of 16 bits rounds depth, and an image of classes
-/// does not tell objects of one class apart.
+/// How a recording changes a frame: depth is rounded to a 16-bit file, and an image of classes does
+/// not distinguish objects of the same class.
 void as_recorded(RgbdFrame& frame) {
   for (float& depth_m : frame.depth_m)
     depth_m = static_cast<float>(depth_units(depth_m) / kDepthPerMeter);

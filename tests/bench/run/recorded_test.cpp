@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings as environments of suites: mapped, asked about and kept as a scene is.
+// Recordings as environments of suites: mapped, queried and stored like scenes.
 #include <unistd.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ ExactFrame exact_frame(int i) {
   return frame;
 }
 
-/// Frames first .. last - 1 of a turn in the box room, as the bench finds them.
+/// Writes frames first .. last - 1 of a turn in the box room as a recording for the bench.
 void record(const fs::path& folder, const std::string& layout, int first, int last) {
   const auto writer = make_sequence_writer(layout, folder, BoxRoom::camera());
   for (int i = first; i < last; ++i)
@@ -115,7 +115,7 @@ class Recorded : public testing::Test {
                                          vocabulary());
             }};
   }
-  /// The run's environment, system and labels.
+  /// A suite of the run's environment, system and labels.
   Suite suite() const {
     Suite all;
     all.environments = {spec_.environment};
@@ -223,12 +223,13 @@ TEST_F(Recorded, WithoutATruthAnswersAreSuccessesAndNothingElseIsSaid) {
   EXPECT_FALSE(summarize(loaded.points.front().held_out).correct);
   EXPECT_TRUE(std::isnan(loaded.place.mapping.length_m));
 
-  // The paper's way needs no truth: between the estimates before and after.
+  // The paper's method needs no ground truth: the query is interpolated between the estimates
+  // before and after it.
   spec_.protocol.truth = QueryTruth::kInterpolated;
   EXPECT_EQ(summarize(run().points.front().held_out).correct, 1.0);
 }
 
-// A tracking system reports the ground truth at its own rate; it is stored as reported.
+// A tracking system reports ground truth at its own rate; it is stored as reported.
 TEST_F(Recorded, ATruthOfOtherMomentsIsAskedBetweenThem) {
   record(room(), "tum", 0, 60);
   Trajectory truth;
@@ -264,7 +265,8 @@ TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
   write(files[10].color, "no image");
   fs::remove(files[12].depth);
   write(files[29].color, "no image");  // a test frame
-  // The second half of another size; then a stamp that repeats and one that goes back.
+  // From frame 60 on, images of a different size; then a timestamp that repeats and one that goes
+  // back.
   Camera small = BoxRoom::camera();
   small.width_px /= 2;
   TumWriter other(folder_ / "small", small);
@@ -285,7 +287,7 @@ TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
   const RunResult result = run();
   EXPECT_EQ(result.mapping.skipped.count, 9U);
   EXPECT_EQ(result.mapping.skipped.reasons.size(), SkippedFrames::kReasonsKept);
-  // Where the recording lies is no part of a result.
+  // The recording's location is not part of a result.
   EXPECT_TRUE(result.mapping.skipped.reasons[0].starts_with(
       "rgb/" + files[10].color.filename().string() + ": "))
       << result.mapping.skipped.reasons[0];
@@ -296,7 +298,7 @@ TEST_F(Recorded, FramesThatCannotBeUsedAreSkippedAndCounted) {
   EXPECT_EQ(store.load("key", spec_).mapping.skipped, result.mapping.skipped);
   const std::string table = results_table(suite(), std::span(&result, 1));
   EXPECT_NE(table.find("room: 9 frames skipped, the first: "), std::string::npos) << table;
-  EXPECT_NE(table.find("differ in RANSAC's draws alone"), std::string::npos);
+  EXPECT_NE(table.find("differ only in RANSAC's draws"), std::string::npos);
 }
 
 TEST_F(Recorded, AFrameShownTwiceIsNotAskedAboutAsIfItWereNew) {
@@ -306,12 +308,12 @@ TEST_F(Recorded, AFrameShownTwiceIsNotAskedAboutAsIfItWereNew) {
   int frame = 0;
   for (std::string line; std::getline(lines, line);) {
     doubled += line + "\n";
-    if (line[0] != '#' && ++frame == 29) doubled += line + "\n";  // index 28 becomes 29, too
+    if (line[0] != '#' && ++frame == 29) doubled += line + "\n";  // index 28 also becomes index 29
   }
   write(room() / "rgb.txt", doubled);
   const RunResult result = run();
   EXPECT_EQ(result.mapping.skipped.count, 1U);
-  ASSERT_EQ(result.points.front().held_out.size(), 1U);  // of 29 and 59
+  ASSERT_EQ(result.points.front().held_out.size(), 1U);  // one of 29 and 59
   EXPECT_EQ(result.points.front().held_out[0].answer.index, 59U);
 }
 
@@ -329,7 +331,7 @@ TEST_F(Recorded, AClockThatIsWrongAtFirstCostsOnlyThoseFrames) {
   spec_.labels = LabelMode::kNone;
   const RunResult result = run();
   EXPECT_EQ(result.mapping.skipped.count, 12U);
-  EXPECT_EQ(result.trajectory.tracked, 46U);  // of 48, 2 are held out
+  EXPECT_EQ(result.trajectory.tracked, 46U);  // of 48, two of which are held out
 }
 
 TEST_F(Recorded, WhatARecordingLacksIsPartOfItsResults) {
@@ -340,14 +342,14 @@ TEST_F(Recorded, WhatARecordingLacksIsPartOfItsResults) {
   }
   spec_.environment.sequence = "scannet:" + room().string();
   const RunResult result = run();
-  const std::string note = "pose: 10 of 60 poses are of no image (the first is 50)";
+  const std::string note = "pose: 10 of 60 poses belong to no image (the first is 50)";
   EXPECT_TRUE(std::ranges::find(result.place.notes, note) != result.place.notes.end());
   const std::string table = results_table(suite(), std::span(&result, 1));
   EXPECT_NE(table.find("  room: " + note + "\n"), std::string::npos) << table;
 }
 
-// Only a system that sees labels loses the frame. Queries are paired by their frame, not by their
-// place in the list.
+// Only systems that see labels lose the frame. Queries are paired by frame, not by position in the
+// list.
 TEST_F(Recorded, AFrameWithADamagedLabelImageIsSkippedForTheSystemsThatSeeIt) {
   record(room(), "tum", 0, 125);
   write(load_tum_folder(room())[29].classes, "no image");  // the first test frame
@@ -484,12 +486,12 @@ TEST_F(Recorded, WhatCannotBeRunIsToldBeforeAnythingIsWritten) {
   for (int i = 0; i < 3; ++i) writer.add(static_cast<std::size_t>(i), exact_frame(20 + i));
   writer.finish();
   suite.environments[0].queries = "tum:" + (folder_ / "other").string();
-  expect_told("was taken with another camera than");
+  expect_told("was recorded with a different camera from");
   suite.environments[0].queries.reset();
   fs::remove(room() / "label.txt");
   expect_told("holds no labels");
   suite.labels = {LabelMode::kNone};
-  // A settings file is the calibration alone.
+  // A settings file contributes only the calibration.
   std::string settings = read_file(room() / "camera.yaml");
   settings.replace(settings.find("nFeatures: 1000"), 15, "nFeatures: 1700");
   write(folder_ / "settings.yaml", settings);
@@ -498,7 +500,7 @@ TEST_F(Recorded, WhatCannotBeRunIsToldBeforeAnythingIsWritten) {
   expect_told("rgb");
   const auto is_warned = [&] {
     return std::ranges::any_of(said, [](const std::string& line) {
-      return line.find("where they are meant: features.count: 1700") != std::string::npos;
+      return line.find("under `slam:`): features.count: 1700") != std::string::npos;
     });
   };
   EXPECT_TRUE(is_warned());
@@ -541,11 +543,10 @@ TEST_F(Recorded, ACutRecordingSaysSo) {
   EXPECT_FALSE(world().cut);
 }
 
-// ---- keys
-// ----------------------------------------------------------------------------------------
+// ---- keys ------------------------------------------------------------------------------------
 
-/// Each file below a folder with one byte changed, in turn: the key is another, or nothing can be
-/// read any more. What is not part of the recording changes nothing.
+/// Changes single bytes of each file below a folder: the key must change, or reading must fail.
+/// Files for which `counts` is false must not change the key.
 void expect_all_count(const fs::path& folder, const std::function<std::string()>& key,
                       const std::function<bool(const fs::path&)>& counts) {
   const std::string before = key();
@@ -581,9 +582,9 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
         return !name.starts_with("instance") && name != "associations.txt" &&
                name != "camera_info.yaml" && file.filename() != ".modelhouse";
       });
-  // What a run is built of is what its key was made of.
+  // The key is made from exactly the inputs that a run is built from.
   EXPECT_EQ(run_key(spec_, world().inputs), key());
-  // Where it lies is not part of it.
+  // The location is not part of it.
   const std::string before = key();
   fs::create_directories(folder_ / "elsewhere");
   fs::rename(room(), folder_ / "elsewhere" / "room");
@@ -617,7 +618,7 @@ TEST_F(Recorded, AFileThatChangesUnderARunLeavesNeitherAMapNorAResult) {
 
 TEST_F(Recorded, WhatItsLinksLeadToIsHiddenFromAProgramAndSoAreOtherRunsFolders) {
   record(folder_ / "kept", "tum", 0, 4);
-  fs::remove(folder_ / "kept" / ".modelhouse");  // nothing says that it is a recording
+  fs::remove(folder_ / "kept" / ".modelhouse");  // no marker shows that it is a recording
   fs::create_directories(room());
   for (const auto& entry : fs::directory_iterator(folder_ / "kept"))
     fs::create_symlink(entry.path(), room() / entry.path().filename());
@@ -653,7 +654,7 @@ TEST_F(Recorded, AnImageThatAppearsUnderARunLeavesNeitherAMapNorAResult) {
   EXPECT_NO_THROW(run_one(spec_, place, plain));
 }
 
-// Others' images are put in their place for a moment, in which some frames are read.
+// Other images temporarily replace the folder's images, and some frames are read from them.
 TEST_F(Recorded, AFolderThatIsAnotherForAMomentLeavesNoResult) {
   record(room(), "tum", 0, 40);
   const fs::path other = folder_ / "other";
@@ -689,7 +690,8 @@ TEST_F(Recorded, AFolderThatIsAnotherForAMomentLeavesNoResult) {
   }
 }
 
-// The key of a run is made of all that lies there before anything runs, and of what the run read.
+// The key of a run covers everything that exists before anything runs, including all that the run
+// reads.
 TEST_F(Recorded, TheKeyIsTheSameWhetherLabelsAreLeftOutOrNot) {
   write(folder_ / "classes.yaml", "1: chair\n");
   spec_.environment.classes = folder_ / "classes.yaml";
@@ -723,17 +725,18 @@ TEST_F(Recorded, ACopyUnderAnotherNameIsRefused) {
     }
   };
   expect_refused("'room' and 'copy' are equal in every byte");
-  // Nor is it another place with other words in its lists, or other names.
+  // A copy with different words in its lists or different file names is not a different place,
+  // either.
   const fs::path list = folder_ / "copy" / "rgb.txt";
   write(list, read_file(list) + "# another\n");
   fs::rename(folder_ / "copy" / "rgb", folder_ / "copy" / "images");
   write(list, std::regex_replace(read_file(list), std::regex("rgb/"), "images/"));
   expect_refused("'room' and 'copy' have the same images");
-  // Nor do its own frames query it.
+  // A recording must not be queried with its own frames.
   Suite own = suite();
   own.environments[0].queries = two.environments[1].sequence;
   EXPECT_THROW(plan_runs(own, reader, [](std::string_view) {}), InputError);
-  fs::remove(folder_ / "copy" / "label.txt");  // which a run need not see
+  fs::remove(folder_ / "copy" / "label.txt");  // a run need not see the labels
   reader = InputReader();
   EXPECT_THROW(plan_runs(own, reader, [](std::string_view) {}), InputError);
   fs::remove_all(folder_ / "copy");
@@ -769,7 +772,7 @@ TEST_F(Recorded, ANameThatNoFolderCanHaveIsRefusedBeforeAnythingRuns) {
   }
 }
 
-// A folder that is of two layouts is two recordings, whichever is looked at first.
+// A folder that fits two layouts is two recordings, no matter which one is read first.
 TEST_F(Recorded, OneFolderReadAsTwoLayoutsIsTwoRecordings) {
   record(room(), "tum", 0, 2);
   std::ofstream(room() / "x.gt.freiburg") << "0 0 0 0 0 0 0 1\n";

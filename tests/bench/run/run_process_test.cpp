@@ -20,8 +20,8 @@
 namespace mh {
 namespace {
 
-// A process that waits says nothing: whoever asks after it must not wait with it, for others run
-// beside it.
+// A process that is waiting prints nothing: asking for its output must not block, since other
+// processes run at the same time.
 TEST(RunProcess, OneThatSaysNothingHoldsNobodyUp) {
   const TemporaryFolder folder(std::filesystem::temp_directory_path());
   const std::string gate = folder.path() / "gate";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bench around a scripted system in a small make-believe world: no SLAM, no ray tracing.
+// The bench with a scripted system in a small artificial world: no SLAM, no ray tracing.
 #include "bench/run/one/run_one.hpp"
 
 #include <unistd.h>
@@ -37,7 +37,7 @@
 namespace mh {
 namespace {
 
-/// Images that are a function of the camera's place.
+/// Images that are a function of the camera's position.
 class FakeRenderer : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -52,8 +52,8 @@ class FakeRenderer : public Renderer {
   }
 };
 
-/// Reports poses that depend on every pixel it has seen and on its draws, and fails at one frame
-/// twice, so that restarts take part.
+/// Reports poses that depend on every pixel it has seen and on its random draws, and fails at frame
+/// 70 a given number of times, so that restarts are covered.
 class MixingSystem : public System {
  public:
   MixingSystem(bool looks_at_labels, int failures)
@@ -125,14 +125,14 @@ Trajectory straight_path(std::size_t frames) {
   return path;
 }
 
-/// What one run sees or says in the place of the truth.
+/// What is changed in one run: the frames it sees or what its system reports.
 struct Change {
   testing_support::FrameChange frame = {};
   std::function<void(std::size_t call, SystemReport&)> report = {};
 };
 using ChangeOfRun = std::function<Change(const RunSpec&)>;
 
-/// Says something else than another system.
+/// Changes the reports of another system.
 class ChangedSystem : public SystemView {
  public:
   ChangedSystem(std::unique_ptr<System> inner, const Change& change)
@@ -195,7 +195,7 @@ struct Place {
   }
 };
 
-/// Three points, whose queries one map answers.
+/// Three points whose queries are answered from one map.
 void vary_alpha(Suite& suite) {
   for (const double alpha : {0.5, 0.6, 0.7}) {
     SlamConfig point = suite.slam;
@@ -221,7 +221,7 @@ TEST(RunOne, PutsTheQueriesUnderEachPoint) {
   for (const PointResult& point : runs[0].points) EXPECT_EQ(point.held_out.size(), 5u);
 }
 
-// A piece of work is a frame or one query under one point: 150 + 3 (5 + 3).
+// A unit of work is one frame or one query under one point: 150 + 3 (5 + 3).
 TEST(RunOne, ReportsTheShareOfItsWorkThatIsDone) {
   Place place;
   vary_alpha(place.suite);
@@ -256,8 +256,8 @@ TEST(RunOne, CountsWhatHappened) {
   EXPECT_GT(run.volume->voxel_count(), 0u);
 }
 
-// It answers for the first 29 frames, twice as far from the start: a fifth of the 145 that are no
-// test frames. Nothing is asked of it.
+// It answers for the first 29 frames, with twice the distance from the start: a fifth of the 145
+// frames that are not test frames. No queries are asked.
 TEST(RunOne, AnOutsideProgramsTrajectoryIsScoredByWhatItWasOffered) {
   const TemporaryFolder folder(std::filesystem::temp_directory_path());
   Trajectory answer = straight_path(29);
@@ -352,7 +352,7 @@ TEST(Scenes, MeansAreOfMediansAndScenesArePaired) {
   place.suite.trials = 3;
   std::vector<RunResult> runs = place.run();
   ASSERT_EQ(runs.size(), 27u);
-  // Completeness of the plain system in the first scene: 0.2, 0.5, 0.9; elsewhere 1.
+  // Completeness of the plain system in the first scene: 0.2, 0.9, 0.5; everywhere else 1.
   int trial = 0;
   const double completeness[] = {0.2, 0.9, 0.5};
   for (RunResult& run : runs)
@@ -389,7 +389,7 @@ TEST(Scenes, NotInferiorNeedsTheWholeIntervalAboveTheMargin) {
 }
 
 TEST(Results, WhatIsUndeterminedIsNull) {
-  const Place place;  // its path is straight: no alignment by SE(3)
+  const Place place;  // its path is straight: no SE(3) alignment
   const std::vector<RunResult> runs = place.run();
   const auto row = results_json(place.suite, runs)["rows"][0];
   EXPECT_TRUE(row["trajectory"]["ate_rmse_m"].is_null());
@@ -454,13 +454,14 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
       place.suite.sweep.points.push_back(point);
     }
   std::vector<RunResult> runs = place.run();
-  // Of the semantic system's five held-out answers under each point 3, 4, 5, 4 are correct.
+  // Of the semantic system's five held-out answers, 3, 4, 5 and 4 are correct under the four
+  // points.
   const std::size_t correct[] = {3, 4, 5, 4};
   for (std::size_t p = 0; p < 4; ++p)
     for (std::size_t q = 0; q < 5; ++q) runs[0].points[p].held_out[q].correct = q < correct[p];
   const std::vector<Row> rows = make_rows(place.suite, runs);
   const std::vector<SweepResult> results = sweep_results(place.suite, rows);
-  ASSERT_EQ(results.size(), 2u);  // of the plain system those that differ in alpha
+  ASSERT_EQ(results.size(), 2u);  // for the plain system, only points that differ in alpha
   const auto best = best_point(place.suite, rows, results[0], QuerySet::kHeldOut);
   ASSERT_TRUE(best);
   EXPECT_EQ(best->point, 2u);
@@ -525,7 +526,7 @@ TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
   place.suite.labels = {LabelMode::kExact};
   std::vector<RunResult> runs = place.run();
   ASSERT_EQ(runs[0].spec.system.name, "semantic");
-  runs[0].points[0] = {};  // as of a program that answers with a trajectory alone
+  runs[0].points[0] = {};  // as if a program had answered with only a trajectory
   place.suite.environments.push_back(place.suite.environments[0]);
   place.suite.environments[1].name = "other";
   for (const std::size_t places : {1u, 2u}) {
@@ -545,7 +546,7 @@ TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
   }
 }
 
-/// The runs without those of a name's beginning, and these as failures.
+/// Splits off the runs whose names begin with one of `names`, as failures.
 std::pair<std::vector<RunResult>, std::vector<FailedRun>> with_failed(
     std::vector<RunResult> runs, const std::vector<std::string>& names) {
   std::vector<FailedRun> failed;
@@ -566,7 +567,7 @@ TEST(Results, FailedRunsAreToldInTheirRows) {
       place.run(), {"semantic-exact-fake-1", "plain-fake-0", "plain-fake-1", "plain-fake-2"});
   const std::string table = results_table(place.suite, runs, failed);
   for (const char* part : {"   2 of 3 trials, 1 failed\n", "   failed: 3 of 3 trials\n",
-                           "failed, so that the figures above are without 4 runs:\n",
+                           "failed, so the figures above do not include 4 runs:\n",
                            "  semantic-exact-fake-1: ended by signal 11\n"})
     EXPECT_NE(table.find(part), std::string::npos) << part << table;
   EXPECT_EQ(table.find("semantic minus plain"), std::string::npos) << "with what? " << table;
@@ -580,7 +581,7 @@ TEST(Results, FailedRunsAreToldInTheirRows) {
   EXPECT_EQ(json["rows"][1]["trials"], 0);
   EXPECT_TRUE(json["rows"][1]["trajectory"].is_null());
   EXPECT_TRUE(json["rows"][1]["held_out"].is_null());
-  // Nothing at all is left.
+  // No run is left.
   const std::string nothing = results_table(place.suite, {}, failed);
   EXPECT_NE(nothing.find("   failed: 3 of 3 trials\n"), std::string::npos) << nothing;
 }
@@ -591,7 +592,7 @@ TEST(Results, RunsThatNobodyHasMadeYetAreTold) {
   const std::vector<std::string> missing = {runs.back().spec.name};
   runs.pop_back();
   const std::string table = results_table(place.suite, runs, {}, missing);
-  EXPECT_TRUE(table.ends_with("\nmissing, so that the figures above are without 1 run:\n  " +
+  EXPECT_TRUE(table.ends_with("\nmissing, so the figures above do not include 1 run:\n  " +
                               missing[0] + "\n"))
       << table;
   EXPECT_EQ(results_json(place.suite, runs, {}, missing)["missing"][0], missing[0]);
@@ -614,7 +615,7 @@ TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
   RunResult run = place.run()[0];
   const auto drawn = [&] { return draw_topdown(place.world, run, QuerySet::kSecondTour); };
   const auto ink = [](const cv::Mat& part) {
-    return cv::countNonZero(part.reshape(1) != 255);  // on white
+    return cv::countNonZero(part.reshape(1) != 255);  // on a white background
   };
   QueryScore& q = run.points[0].second_tour[0];
   q.correct = false;
@@ -624,12 +625,12 @@ TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
   q.answer.world_from_camera = SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 8, 1));
   const cv::Mat far = drawn();
   ASSERT_EQ(near.size(), far.size());
-  constexpr int kText = 80;  // title and subtitle; the plan begins below
+  constexpr int kText = 80;  // title and subtitle; the plan begins below them
   EXPECT_EQ(cv::norm(near.rowRange(0, kText), far.rowRange(0, kText)), 0) << "drawn over the title";
   EXPECT_GT(cv::norm(near, far), 0);
   place.world.simulated->robot.name = std::string(200, 'w');
   EXPECT_EQ(ink(drawn().rowRange(0, kText).colRange(1180, 1200)), 0) << "cut at the edge";
-  // Of a program that answers with a trajectory alone nothing was asked.
+  // A program that answers with only a trajectory was asked no queries.
   run.points[0].second_tour.clear();
   EXPECT_GT(cv::norm(drawn().rowRange(0, kText), far.rowRange(0, kText)), 0);
 }
@@ -666,14 +667,14 @@ TEST(Topdown, FailuresLieOnTopHeadingsShowAndThePathsCanBeTold) {
       SE3(Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level,
           here.translation());
   EXPECT_GT(cv::norm(image, drawn(answered, turned)), 0) << "no heading";
-  run.estimate = place.world.simulated->mapping.camera;  // a path that is just right
+  run.estimate = place.world.simulated->mapping.camera;  // a path without error
   run.alignment.dock_from_estimate = SE3();
   const cv::Mat both = drawn(answered, failed);
   EXPECT_GT(pixels_of(both, {165, 205, 150}), 50) << "the true path is hidden";
   EXPECT_GT(pixels_of(both, {10, 84, 196}), 50) << "the estimated path is hidden";
 }
 
-// A fence of 1 m: it is drawn as furniture once it reaches 0.4 m above the floor, and as a wall
+// A fence 1 m wide: it is drawn as furniture once it reaches 0.4 m above the floor, and as a wall
 // once it reaches 1.2 m.
 TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
   Place place;
@@ -694,15 +695,15 @@ TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
     const double line = cv::norm(none, furniture);
     EXPECT_GT(line, 300);
     EXPECT_GT(cv::norm(furniture, wall), line);
-    // But for where the fence's two triangles meet.
+    // The last two may differ where the fence's two triangles meet.
     EXPECT_EQ(cv::norm(none, drawn(0.39)), 0);
     EXPECT_LT(cv::norm(furniture, drawn(1.19)), 0.1 * line);
     EXPECT_LT(cv::norm(wall, drawn(2.5)), 0.1 * line);
   }
 }
 
-// What the legend says of the two paths is the farthest in the plane, whichever way; height does
-// not count. Its first line stands 84 to 54 px above the image's lower edge.
+// The legend shows the largest distance between the two paths in the plane, in any direction;
+// height does not count. Its first line is 84 to 54 px above the lower edge of the image.
 TEST(Topdown, TheLegendTellsHowFarThePathsAreApart) {
   Place place;
   RunResult run = place.run()[0];
@@ -791,7 +792,7 @@ TEST(Results, OfTwoSystemsTheSameTrialsAreCompared) {
   place.suite.labels = {LabelMode::kExact};
   place.suite.trials = 2;
   std::vector<RunResult> all = place.run();
-  const auto bent = [](double by) {  // a path with a corner: it determines an alignment
+  const auto bent = [](double by) {  // a path with a corner, which determines the alignment
     Trajectory path = straight_path(40);
     for (std::size_t i = 20; i < path.size(); ++i)
       path[i].world_from_camera =
@@ -920,7 +921,7 @@ TEST(Results, WhatHasNoPairsIsUnknownAndTheFamilyIsCorrectOrWhatTheSuiteNamesAnd
   Place place;
   std::vector<RunResult> runs = place.run();
   const auto family = [&] {
-    std::map<std::string, bool> counted;  // by what; whether it has a corrected p
+    std::map<std::string, bool> counted;  // by comparison: whether it has a corrected p
     const auto json = results_json(place.suite, runs);
     for (const auto& c : json["comparisons"]) counted[c["what"]] = !c["p_holm"].is_null();
     return counted;

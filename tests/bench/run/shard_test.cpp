@@ -33,7 +33,7 @@ TEST(Shard, OfAnythingElseIsRefused) {
     EXPECT_THROW(parse_shard(text), InputError) << text;
 }
 
-/// Runs that see the images of places, `runs` of each.
+/// `runs` runs for each of `places` places whose images they see.
 std::vector<PredictedCost> runs_in(int places, int runs, double images_s, double own_s) {
   std::vector<PredictedCost> all;
   for (int place = 0; place < places; ++place)
@@ -41,7 +41,7 @@ std::vector<PredictedCost> runs_in(int places, int runs, double images_s, double
   return all;
 }
 
-/// Places with random numbers of runs of random costs.
+/// Places with random numbers of runs and random costs.
 std::vector<PredictedCost> random_runs(std::mt19937& random) {
   std::vector<PredictedCost> all;
   for (int place = 0; place < 4; ++place) {
@@ -60,7 +60,8 @@ double cost_s(const std::vector<PredictedCost>& runs, std::size_t begin, std::si
   return sum_s;
 }
 
-/// The least sum of eighth powers over all splits of the runs from `begin`, by trying them all.
+/// The smallest sum of eighth powers over all splits of the runs from `begin` on, by exhaustive
+/// search.
 double least_sum(const std::vector<PredictedCost>& runs, std::size_t begin, std::size_t parts) {
   if (parts == 0) return begin == runs.size() ? 0 : std::numeric_limits<double>::infinity();
   double least = std::numeric_limits<double>::infinity();
@@ -121,18 +122,18 @@ TEST(Shares, OfEqualRunsHaveEqualNumbers) {
 TEST(Shares, KeepRunsOfTheSameImagesTogetherWhereTheyCan) {
   EXPECT_EQ(sizes(split_runs(runs_in(4, 6, 50, 10), 2)), (std::vector<std::size_t>{12, 12}));
   EXPECT_EQ(sizes(split_runs(runs_in(4, 6, 50, 10), 4)), (std::vector<std::size_t>{6, 6, 6, 6}));
-  // Seven runs of the first place cost as much as one and the images of the second.
+  // Seven runs at the first place cost as much as one run and the images of the second place.
   std::vector<PredictedCost> uneven = runs_in(2, 7, 60, 10);
   uneven.resize(8);
   EXPECT_EQ(sizes(split_runs(uneven, 2)), (std::vector<std::size_t>{7, 1}));
-  // More shares than places: a place is split, and its images are made twice.
+  // With more shares than places, a place is split, and its images are made twice.
   const std::vector<PredictedShare> split = split_runs(runs_in(1, 8, 50, 10), 2);
   EXPECT_EQ(sizes(split), (std::vector<std::size_t>{4, 4}));
   EXPECT_DOUBLE_EQ(split[0].predicted_s, 90);
   EXPECT_DOUBLE_EQ(split[1].predicted_s, 90);
 }
 
-/// A run of 20 queries at most that maps along the tour.
+/// A run with at most 20 queries that maps along the tour.
 RunSpec run_along(const std::string& tour) {
   RunSpec run;
   run.environment = {.name = tour,
@@ -163,7 +164,7 @@ TEST(Shares, FollowTheLengthsOfTheTours) {
   EXPECT_GT(predicted_cost(recorded).own_s, 0);
 }
 
-/// The most expensive share over the least expensive one.
+/// Cost of the most expensive share divided by that of the least expensive one.
 double imbalance(const std::vector<std::string>& tours, int runs_of_each, std::size_t parts) {
   std::vector<RunSpec> runs;
   for (const std::string& tour : tours)
@@ -173,7 +174,6 @@ double imbalance(const std::vector<std::string>& tours, int runs_of_each, std::s
   return most.predicted_s / least.predicted_s;
 }
 
-// Where the runs allow it: images cost as much as four runs, and shares are whole runs.
 TEST(PredictedCost, ImagesAreThoseOfThePlaceWhateverTheLabels) {
   const RunSpec exact = run_along("handheld:3");
   RunSpec dose = exact;
@@ -182,6 +182,8 @@ TEST(PredictedCost, ImagesAreThoseOfThePlaceWhateverTheLabels) {
   dose.level = "another.yaml";
   EXPECT_NE(images_of(dose), images_of(exact));
 }
+// Only for numbers that the runs allow: images cost as much as four runs, and a share consists of
+// whole runs.
 
 TEST(Shares, OfTwentyFourRunsDifferByLessThanATenth) {
   for (const std::size_t parts : {2, 3, 4, 6, 8, 12})

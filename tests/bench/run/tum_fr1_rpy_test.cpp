@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// 200 real frames of a Kinect as an environment of a suite, the example odometry beside our system.
+// 200 real Kinect frames as an environment of a suite, with the example odometry next to our
+// system.
 #include <unistd.h>
 
 #include <filesystem>
@@ -19,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a system answered, to the bit.
+/// Expects the same answers of a system, to the bit.
 void expect_same(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(digest(a.estimate), digest(b.estimate));
   const std::vector<QueryScore>&x = a.points.front().held_out, &y = b.points.front().held_out;
@@ -63,7 +64,7 @@ class TumFr1RpySuite : public testing::Test {
   fs::path folder_;
 };
 
-// The original ORB-SLAM2 tracks all of them at 0.0257 m.
+// The original ORB-SLAM2 tracks all of them with an ATE of 0.0257 m.
 TEST_F(TumFr1RpySuite, AllFramesAreMappedAsWellAsBySlam) {
   const Suite all = suite("[plain]", "protocol: {test_interval: 0}\n");
   const std::vector<RunSpec> specs = expand(all);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `verify` compares, field by field, in results that were made up
-// (tests/bench/run/run_test.cpp has it find differences of whole runs).
+// What `verify` compares, field by field, in made-up results (tests/bench/run/run_test.cpp covers
+// differences between whole runs).
 #include "bench/run/verify.hpp"
 
 #include <algorithm>
@@ -27,7 +27,8 @@
 namespace mh {
 namespace {
 
-/// One mapped frame after a restart, two queries of each set under each of two points.
+/// A run with two mapped frames, the second after a restart, and two queries of each set under each
+/// of two points.
 RunResult some_run() {
   RunResult run;
   run.spec.name = "run";
@@ -91,7 +92,7 @@ TEST(FirstDifference, NamesWhateverDiffersInAQuery) {
             "run: held_out: frame 0: order differs");
 }
 
-// The cause comes before its consequences.
+// A cause is reported before its consequences.
 TEST(FirstDifference, IsTheFirstInTheOrderInWhichThingsHappen) {
   const auto later = [](RunResult& r) {
     r.map_digest = 1;
@@ -215,11 +216,11 @@ TEST(DigestOfATrajectory, SeesStampsPlacesTurnsAndOrder) {
   EXPECT_NE(digest(std::optional(there)), digest(std::optional(turned)));
 }
 
-constexpr const char* kPlay = "MH_TEST_PLAY";  // what a played run does, by the environment
+constexpr const char* kPlay = "MH_TEST_PLAY";  // environment variable: what a played run does
 
-/// Plays the part of `modelhouse run-one`: puts a result that was made up into the store. "alike":
-/// always the same; "apart": the pose of frame 4 differs where several runs go side by side;
-/// "fail": none.
+/// Plays the part of `modelhouse run-one`: puts a made-up result into the store. "alike": always
+/// the same result; "apart": the pose of frame 4 differs if several runs are executed in parallel;
+/// "fail": no result.
 int play_a_run(const std::filesystem::path& file) {
   const std::string play = std::getenv(kPlay);
   if (play == "fail") return 1;
@@ -232,7 +233,7 @@ int play_a_run(const std::filesystem::path& file) {
   return 0;
 }
 
-/// A suite of two trials in a room that is shipped.
+/// A suite of two trials in a shipped room.
 Suite played_suite(const std::filesystem::path& folder) {
   const std::string root = MH_SOURCE_DIR "/bench/scenarios/";
   std::ofstream(folder / "suite.yaml")
@@ -296,7 +297,7 @@ TEST(Verify, ARunThatFailedIsNoVerification) {
 }  // namespace
 }  // namespace mh
 
-// The bench starts its own executable for each run; here that is this one.
+// The bench starts its own executable for each run; in this test that is this program.
 int main(int argc, char** argv) {
   if (argc > 2 && std::string_view(argv[1]) == "run-one") return mh::play_a_run(argv[2]);
   testing::InitGoogleTest(&argc, argv);

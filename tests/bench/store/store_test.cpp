@@ -34,8 +34,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A run with one of everything: a tracked and an untracked frame, an answered and an unanswered
-/// query, unknown scores, numbers that decimal text would round.
+/// A run that contains everything once: a tracked and an untracked frame, an answered and an
+/// unanswered query, unknown scores, numbers that decimal text would round.
 RunResult some_run(const std::string& name, double shift_m = 0.0) {
   const auto pose = [&](double x) {
     return SE3(Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3), Eigen::Vector3d(x / 3.0 + shift_m, 0.1, 2));
@@ -131,7 +131,7 @@ class StoreFile : public testing::Test {
     return s;
   }
 
-  /// A suite of one run that a store's text of it gives again.
+  /// A suite of one system that can be read back from a store's text of it.
   Suite whole_suite() const {
     const fs::path file = folder_ / "suite.yaml";
     std::ofstream(file) << "environments: [{category: room, scene: r.yaml, mapping_tour: t.yaml}]\n"
@@ -139,7 +139,7 @@ class StoreFile : public testing::Test {
                            "systems: [plain]\nlabels: [exact]\ntrials: 3\n";
     return parse_suite(read_file(file), file, {}, false);
   }
-  /// A finished run, a failed one and one that is missing.
+  /// A finished run, a failed one and a missing one.
   void write_results(const fs::path& file) const {
     const Suite s = whole_suite();
     const auto specs = expand(s);
@@ -150,7 +150,7 @@ class StoreFile : public testing::Test {
     store.put("k0", run, {.wall_s = 2, .max_rss_mb = 12});
     store.put_failure("k1", some_run(specs[1].name).spec, "ended by signal 11", {});
   }
-  /// What a user gets of a file: its exports and what the table is made of.
+  /// What a user gets from a file: its exports and the data of the table.
   static std::string exports(const fs::path& file) {
     const Store store = Store::open_to_read(file);
     const Suite planned = store.planned_suite();
@@ -158,7 +158,7 @@ class StoreFile : public testing::Test {
     return export_json(store) + export_csv(store) + export_latex(store) +
            results_json(planned, results.runs, results.failed, results.missing).dump();
   }
-  /// A pool whose runs are this shell script.
+  /// A pool whose runs execute this shell script.
   PoolOptions pool_of(const std::string& script) const {
     const fs::path program = folder_ / "program";
     std::ofstream(program) << "#!/bin/sh\n" << script;
@@ -179,7 +179,8 @@ class StoreFile : public testing::Test {
   fs::path folder_;
 };
 
-// What patterns found and what --set gave stands in the results: they are read where no scan is.
+// What patterns matched and what --set gave is part of the results: they can be read on machines
+// without the scans.
 TEST_F(StoreFile, ASuiteOfRecordingsIsReadBackWhereTheRecordingsAreNot) {
   for (const char* name : {"scene0000_00", "scene0001_00"}) {
     fs::create_directories(folder_ / "scans" / name / "color");
@@ -256,15 +257,15 @@ TEST_F(StoreFile, AChangedValueOfAnyTableIsNamed) {
 
 TEST_F(StoreFile, ALostRowOfAnyTableIsNamed) {
   const fs::path file = folder_ / "r.sqlite";
-  for (const auto& [table, named] :
-       std::map<std::string, std::string>{{"plan", "its table 'plan' has 0 of 3 rows"},
-                                          {"runs", "are of a run that its table 'runs' has lost"},
-                                          {"points", "run '"},
-                                          {"metrics", "run '"},
-                                          {"calls", "run '"},
-                                          {"frames", "run '"},
-                                          {"queries", "run '"},
-                                          {"times", "run '"}}) {
+  for (const auto& [table, named] : std::map<std::string, std::string>{
+           {"plan", "its table 'plan' has 0 of 3 rows"},
+           {"runs", "belong to a run that its table 'runs' has lost"},
+           {"points", "run '"},
+           {"metrics", "run '"},
+           {"calls", "run '"},
+           {"frames", "run '"},
+           {"queries", "run '"},
+           {"times", "run '"}}) {
     fs::remove(file);
     write_results(file);
     SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("DELETE FROM " + table);
@@ -279,7 +280,7 @@ TEST_F(StoreFile, ALostRowOfAnyTableIsNamed) {
   }
 }
 
-/// As a user who is not root, while it lives; root may write everywhere.
+/// Runs as a user other than root during its lifetime; root may write everywhere.
 class AsNobody {
  public:
   AsNobody() { failed_ = geteuid() == 0 && seteuid(65534) != 0; }
@@ -312,7 +313,7 @@ TEST_F(StoreFile, AFileThatMayOnlyBeReadIsExportedAndMerged) {
   EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), {}), 1) << "nothing beside";
   EXPECT_EQ(read_file(file), bytes);
 
-  // The same, left by a process that was killed: part of it stands in the log.
+  // The same file left by a process that was killed: part of it is in the write-ahead log.
   for (const char* name : {"all.sqlite", "all.sqlite-wal", "all.sqlite-shm"})
     fs::remove(folder_ / name);
   fs::permissions(file.parent_path(), fs::perms::all);
@@ -372,7 +373,7 @@ TEST_F(StoreFile, ARunComesBackAsItWas) {
   EXPECT_EQ(p.held_out[1].answer.stage, RelocalizationStage::kPnp);
   EXPECT_EQ(p.second_tour.size(), 1u);
   EXPECT_EQ(once.times.track_ms, run.times.track_ms);
-  // Rotations go through quaternions: they come back to the last place but one.
+  // Rotations are converted to quaternions, which changes at most their last digit.
   EXPECT_LT(
       (once.estimate[0].world_from_camera.rotation() - run.estimate[0].world_from_camera.rotation())
           .cwiseAbs()
@@ -389,8 +390,8 @@ TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
   EXPECT_TRUE(store.claim("k")) << "its claim was kept";
 }
 
-// Those codes are ours only with an error that we reported: a library in the process may end it
-// too.
+// These exit codes have our meaning only with an error that we reported: a library in the process
+// may exit with them, too.
 TEST_F(StoreFile, AnExitCodeWithoutAnErrorOfOursIsAFailureOfTheRunAlone) {
   for (const int code : {kBadInputCode, kDiskFullCode, kInputChangedCode}) {
     Store store(folder_ / fmt::format("{}.sqlite", code));
@@ -422,9 +423,8 @@ TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
                                             "a: failed: bad input: x.ply: no floor"}));
 }
 
-// Four runs: one that another process has finished meanwhile, one that failed there, one that comes
-// well to its end and one that does not. Each is counted once, and the share is that of the
-// settled.
+// Four runs: one that another process has finished meanwhile, one that failed there, one that
+// succeeds and one that does not. Each is counted once, and the share is that of the settled ones.
 TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   Store store(folder_ / "r.sqlite");
   store.put("done", some_run("a"), {});
@@ -454,9 +454,9 @@ TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   EXPECT_EQ(store.error("badly"), "exited with code 1");
 }
 
-// Eight runs of two environments, planned trial by trial: those that see the same images follow one
-// another, and the images go when the last one is over, whether it succeeded or not; the same for
-// the frames of a trial.
+// Eight runs of two environments, planned trial by trial: runs that see the same images follow one
+// another, and the images are removed when the last of these runs is over, successful or not; the
+// same holds for the frames of a trial.
 TEST_F(StoreFile, RunsThatSeeTheSameImagesFollowOneAnother) {
   Store store(folder_ / "r.sqlite");
   std::vector<std::string> events;
@@ -497,7 +497,7 @@ TEST_F(StoreFile, TwoAtATimeAreAtImagesOfTheirOwnAsLongAsThereAreTwo) {
   for (const char* key : {"a1", "a2", "b1", "b2"})
     jobs.push_back({some_run(key).spec, key, std::string(1, key[0])});
   run_pending(store, jobs, options);
-  // a2 joins a1 only when there is nothing else to do.
+  // a2 runs at the same time as a1 only if there is nothing else to do.
   EXPECT_EQ(started, (std::vector<std::string>{"a1", "b1", "b2", "a2"}));
 }
 
@@ -541,7 +541,7 @@ TEST_F(StoreFile, ADamagedOrForeignFileIsRefusedWithAdvice) {
   fs::remove(file);
   SQLite::Database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
       .exec("CREATE TABLE cats (name TEXT)");
-  EXPECT_NE(error_of_opening(file).find("no results file"), std::string::npos);
+  EXPECT_NE(error_of_opening(file).find("not a results file"), std::string::npos);
   fs::remove(file);
   {
     Store store(file);
@@ -573,8 +573,7 @@ TEST_F(StoreFile, AClaimOfADeadProcessIsTakenOver) {
   Store store(file);
   ASSERT_TRUE(store.claim("k"));
   SQLite::Database raw(file.string(), SQLite::OPEN_READWRITE);
-  raw.exec(
-      "UPDATE claims SET started = started - 1");  // the number lives on, another process has it
+  raw.exec("UPDATE claims SET started = started - 1");  // its number is in use by another process
   EXPECT_TRUE(store.claim("k"));
   raw.exec("UPDATE claims SET host = 'elsewhere'");
   EXPECT_FALSE(store.claim("k")) << "it may live: it showed itself just now";
@@ -681,7 +680,8 @@ TEST_F(StoreFile, MergingRefusesRunsOfOtherSettings) {
     a.merge(b.file());
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("run 'x' was made with other settings"), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("run 'x' was made with settings, input or code different"),
+              std::string::npos)
         << e.what();
   }
 }

@@ -38,7 +38,7 @@ class CacheFolder : public testing::Test {
   int made_ = 0;
 };
 
-/// Every file below a folder and what it holds; of a link, what it names.
+/// Every file below a folder with its content; for a link, the path it points to.
 std::map<std::string, std::string> files_below(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -127,8 +127,8 @@ TEST_F(CacheFolder, TouchesNothingButItsOwnEntries) {
   };
   { get(Cache(folder_), "aa1"); }
   const std::string entry_of_old = read_file(entry("aa1"));
-  // Beside the cache's folder, within it, behind links from it; with names that an entry has, and
-  // with what an entry holds.
+  // Files next to the cache's folder, inside it and behind links in it; with names like those of
+  // entries, and with contents like those of entries.
   put(folder_ / "notes.txt", std::string(9000, 'n'));
   put(folder_ / "photographs" / "cat.jpg", "\xff\xd8" + std::string(9000, 'c'));
   put(folder_ / "light" / "aa9", entry_of_old);
@@ -171,7 +171,7 @@ TEST_F(CacheFolder, AFolderOfItsNameThatIsSomebodyElsesIsLeftAlone) {
   EXPECT_EQ(get(Cache(folder_, 1), "aa1"), "light");
   EXPECT_EQ(files_below(folder_).size(), 1u);
   EXPECT_EQ(read_file(own() / "diary.txt"), "dear diary");
-  // A link to a whole cache elsewhere is not a cache either.
+  // A link to a whole cache elsewhere is not a cache, either.
   const fs::path elsewhere = folder_.string() + "_elsewhere";
   get(Cache(elsewhere), "aa1");
   fs::remove_all(own());

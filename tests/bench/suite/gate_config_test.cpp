@@ -47,7 +47,7 @@ std::string gate_digest(const std::filesystem::path& suite) {
   return gate_suite_digest(load_suite(suite), inputs);
 }
 
-/// A suite over a scene of one triangle.
+/// A suite whose scene is a single triangle.
 class GateDigest : public testing::Test {
  protected:
   GateDigest()
@@ -120,8 +120,8 @@ TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   EXPECT_NE(digest("graded: {distance_m: [0, 2], angle_deg: [0, 30]}"), graded);
 }
 
-// Digest and keys of the runs come from one reading: a file that changes between them is seen by
-// the runs.
+// The digest and the keys of the runs come from one reading: if a file changes after it, the runs
+// detect that.
 TEST_F(GateDigest, IsOfTheFilesAsTheyWereRead) {
   const std::string before = digest();
   const Suite suite = load_suite(folder_ / "suite.yaml");
@@ -143,7 +143,7 @@ TEST_F(GateDigest, LeavesOutWhatAChangeMayChange) {
   EXPECT_EQ(digest(), before);
 }
 
-// Else `modelhouse check ci` would refuse to compare: with a new suite comes a new baseline.
+// Otherwise `modelhouse check ci` would refuse to compare: a new suite needs a new baseline.
 TEST(Baseline, OfTheShippedSuiteIsThatOfTheSuiteAsItIsShipped) {
   const std::filesystem::path suites = MH_SOURCE_DIR "/bench/suites";
   EXPECT_EQ(load_baseline(suites / "ci.baseline.json").suite_digest,

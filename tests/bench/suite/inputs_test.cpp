@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The law of keys: whatever was read, or looked for and not found, is in the key of every result
-// that depends on it. For each kind of scene a folder is made, every file of it is changed, hidden
-// and carried elsewhere.
+// The rule for keys: whatever was read, or looked for and not found, is in the key of every result
+// that depends on it. For each kind of scene a folder is made, and every file in it is changed,
+// hidden and moved elsewhere.
 #include "bench/suite/inputs.hpp"
 
 #include <algorithm>
@@ -113,7 +113,7 @@ void put_labeled_ply(const fs::path& folder) {
   fs::remove_all(folder / "source");
 }
 
-// ---- what is made of them --------------------------------------------------------------------
+// ---- scenes made from them -------------------------------------------------------------------
 
 void put_scannet(const fs::path& folder) {
   const std::string head =
@@ -168,9 +168,9 @@ void put_gazebo(const fs::path& folder) {
 
 struct Kind {
   const char* name;
-  const char* scene;                          ///< in its folder
-  std::function<void(const fs::path&)> make;  ///< puts it into a folder
-  std::set<std::string> read = {};            ///< files that must have been read, at least
+  const char* scene;                          ///< inside its folder
+  std::function<void(const fs::path&)> make;  ///< puts the scene into a folder
+  std::set<std::string> read = {};            ///< files that must be read, at least
 };
 
 const std::vector<Kind>& kinds() {
@@ -219,7 +219,7 @@ const std::vector<Kind>& kinds() {
   return kAll;
 }
 
-/// A scene as it is loaded: what can be seen, the names, and what was read for it.
+/// A loaded scene: what can be seen, the names, and what was read for it.
 struct Loaded {
   std::uint64_t seen = 0;
   std::vector<std::string> names;
@@ -227,7 +227,7 @@ struct Loaded {
   std::string run_key, map_key;
 };
 
-/// nullopt where it cannot be loaded: then there is no result that could be old.
+/// nullopt if it cannot be loaded: then no result can be outdated.
 std::optional<Loaded> load(const fs::path& file) {
   Loaded loaded;
   const ReadScope scope;
@@ -269,7 +269,7 @@ class SceneKeys : public testing::TestWithParam<Kind> {
     return all;
   }
 
-  /// Where observations of a kind lie, within the folder, as they are called there.
+  /// Paths of all observations of a kind, relative to the folder.
   std::set<std::string> observed(const ReadRecord& record, FileObservation::Kind kind) const {
     std::set<std::string> paths;
     for (const FileObservation& o : record.observations) {
@@ -422,7 +422,7 @@ TEST_F(RunInputs, EachIsInItsKeys) {
     EXPECT_TRUE(change(file, "# more\n")) << file;
   EXPECT_TRUE(change("pepper.urdf", "<!-- more -->\n"));
   EXPECT_TRUE(change("here/wood.jpg", "x"));
-  // A map knows nothing of its queries.
+  // A map does not depend on its queries.
   EXPECT_FALSE(change("replay.tum", "# more\n"));
   EXPECT_FALSE(change("there/b.bin", "x"));
   EXPECT_EQ(run_key(spec_, inputs()), run);

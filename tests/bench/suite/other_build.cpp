@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes the place of bench/suite/code_version.cpp and bench/suite/fingerprint.cpp: a
-// build whose sources and compiler a test may change.
+// Replaces bench/suite/code_version.cpp and bench/suite/fingerprint.cpp: a build whose sources and
+// compiler a test may change.
 #include "tests/bench/suite/other_build.hpp"
 
 #include "bench/suite/code_version.hpp"

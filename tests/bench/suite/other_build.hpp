@@ -5,7 +5,7 @@
 
 namespace mh {
 
-/// What the program would say of itself, were it another build.
+/// What a different build of the program would report about itself.
 struct OtherBuild {
   std::string code = "1", commit = "a", compiler = "12.2";
 };

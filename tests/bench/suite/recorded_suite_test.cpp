@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings in suites: what their entries say, and what is refused.
+// Recordings in suites: what their entries mean, and which ones are refused.
 #include <unistd.h>
 
 #include <filesystem>
@@ -89,7 +89,7 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
   EXPECT_EQ(names, (std::vector<std::string>{"semantic-recorded-recorded-0", "semantic-recorded-0",
                                              "plain-recorded-0", "semantic-recorded-recorded-1",
                                              "semantic-recorded-1", "plain-recorded-1"}));
-  // A process of its own is given the same.
+  // A separate process gets the same.
   for (const RunSpec& spec : expand(suite)) {
     const RunSpec back = run_spec_from_json(to_json(spec));
     EXPECT_EQ(back.environment.sequence, e.sequence);
@@ -98,7 +98,7 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
     EXPECT_EQ(back.environment.classes, e.classes);
     EXPECT_EQ(back.labels, spec.labels);
   }
-  // A path whose layout shows needs no name before it.
+  // A path whose layout can be recognized needs no layout prefix.
   EXPECT_EQ(load("- {category: desk, sequence: desk}").environments[0].sequence,
             (folder_ / "desk").string());
   EXPECT_EQ(load("- {category: scan, count: 2, sequence: 'scannet:scans/scene000{i}_00'}")
@@ -124,14 +124,14 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
   for (const char* key : {"robot: robot.yaml", "mapping_tour: auto", "query_tour: auto",
                           "pedestrian: robot.yaml", "sensors: pepper.yaml", "up: y"})
     expect_in(error(fmt::format("- {{category: desk, sequence: 'tum:desk', {}}}", key)),
-              "is of a simulated scene: a recording brings its own");
+              "is for simulated scenes: a recording has its own");
   expect_in(error(kDesk, "[recorded]", "levels: [pepper.yaml]\n"),
             "levels: are settings of simulated sensors");
-  expect_in(error(kDesk, "[exact]"), "'exact' labels are drawn of a simulated scene");
+  expect_in(error(kDesk, "[exact]"), "'exact' labels are rendered from a simulated scene");
   expect_in(error("- {category: house, scene: house.yaml, robot: robot.yaml}", "[recorded]",
                   "levels: [pepper.yaml]\n"),
             "no environment is one");
-  expect_in(error("- {category: desk, sequence: 'tum:nowhere'}"), "is not there");
+  expect_in(error("- {category: desk, sequence: 'tum:nowhere'}"), "does not exist");
   expect_in(error("- {category: desk, sequence: scans}"), "name its layout: " + sequence_forms());
   expect_in(error("- {category: desk, name: \"a\\nplain 99\", sequence: 'tum:desk'}"),
             "cannot name a folder");
@@ -139,7 +139,7 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
             "suite.yaml:2: environments[0].sequence");
   expect_in(error("- {category: desk, sequence: 'tum:words'}"), "is not a folder");
   expect_in(error("- {category: desk, sequence: 'tum:desk', topics: 'color=/a'}"),
-            "topics: 'color=/a': a recording of layout 'tum' has none");
+            "topics: 'color=/a': a recording of layout 'tum' has no topics");
   expect_in(error(kDesk, "[recorded]", "", {.scene = folder_ / "house.yaml"}), "is a recording");
 }
 
@@ -148,25 +148,25 @@ TEST_F(RecordedSuite, ASecondRecordingThatIsNeverQueriedIsNoted) {
   EXPECT_TRUE(load(entry).notes.empty());
   const Suite unasked = load(entry, "[recorded]", "protocol: {test_interval: 0}\n");
   ASSERT_EQ(unasked.notes.size(), 1U);
-  expect_in(unasked.notes[0], "no frame is queried, not even of the second tour of 'desk'");
+  expect_in(unasked.notes[0], "no frame is queried, not even from the second tour of 'desk'");
 }
 
-// Statistics over scenes would count it twice.
+// Statistics over scenes would otherwise count it twice.
 TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
   fs::create_directory_symlink(folder_ / "desk", folder_ / "link");
   for (const char* other : {"tum:desk", "desk", "tum:desk/", "tum:scans/../desk", "tum:link"})
     expect_in(error(fmt::format("{}\n- {{category: table, sequence: '{}'}}", kDesk, other)),
-              "suite.yaml:3: environments[1]: 'table' is 'desk' once more");
+              "suite.yaml:3: environments[1]: 'table' repeats 'desk'");
   expect_in(error(std::string(kDesk) +
                   "\n- {category: table, sequence: 'tum:desk', settings: camera.yaml}"),
-            "'table' is 'desk' once more");
+            "'table' repeats 'desk'");
   expect_in(error("- {category: desk, count: 2, sequence: 'tum:desk'}"),
-            "'desk-1' is 'desk-0' once more");
+            "'desk-1' repeats 'desk-0'");
   expect_in(error("- {category: desk, sequence: 'tum:desk', queries: './desk'}"),
             "suite.yaml:2: environments[0].queries: is the recording that is mapped");
   expect_in(error("- {category: desk, sequence: 'tum:desk', queries: 'tum:link/'}"),
             "is the recording that is mapped");
-  // Queries of another recording make another environment.
+  // With queries from a different recording it is a different environment.
   EXPECT_EQ(load(std::string(kDesk) +
                  "\n- {category: table, sequence: 'tum:desk', queries: 'tum:desk_again'}")
                 .environments.size(),
@@ -176,7 +176,7 @@ TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
   expect_in(error(house + "\n- {category: home, scene: ./house.yaml, robot: robot.yaml, "
                           "mapping_tour: 'handheld:0'}",
                   "[exact]", "levels: [pepper.yaml]\n"),
-            "'home' is 'house' once more");
+            "'home' repeats 'house'");
 }
 
 TEST_F(RecordedSuite, MixedWithScenesEachTakesTheLabelsAndLevelsThatFitIt) {
@@ -210,7 +210,7 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
   const Suite with_half = load(entry, "[recorded]", "", set);
   ASSERT_EQ(with_half.notes.size(), 2U);
   expect_in(with_half.notes[0], "left out: 1 folder without a recording, the first: scene0009_00");
-  // Where the scans are not, their results are still read.
+  // The results can still be read where the scans do not exist.
   SuiteOverrides elsewhere = set;
   elsewhere.found = suite.found;
   fs::remove_all(folder_ / "scans");
@@ -221,13 +221,13 @@ TEST_F(RecordedSuite, APatternTakesTheCategoryOfEachScanAndCountsWhatItLeavesOut
 
   fs::create_directories(folder_ / "scans");
   fs::create_directory_symlink(folder_ / "nowhere", folder_ / "scans/scene0001_00");
-  expect_in(error(entry, "[recorded]", "", set), "scene0001_00' is a link to nothing");
+  expect_in(error(entry, "[recorded]", "", set), "scene0001_00' is a broken link");
   fs::remove_all(folder_ / "scans");
 
-  expect_in(error(entry), "'${scans}' is not set: --set scans=VALUE does");
+  expect_in(error(entry), "'${scans}' is not set: use --set scans=VALUE");
   expect_in(error(kDesk, "[recorded]", "", set), "--set scans: nothing in it is called ${scans}");
   expect_in(error(kDesk, "[recorded]", "", {.set = {{"features.count", "500"}}}),
-            "${features.count}; a setting of SLAM stands in the suite, under `slam:`");
+            "${features.count}; SLAM settings go into the suite, under `slam:`");
   expect_in(error(kDesk, "[recorded]", "slam: {features: {count: ${n}}}\n", {.set = {{"n", "5"}}}),
             "within { } or [ ], ${...} must be quoted");
   expect_in(error(entry, "[recorded]", "", set), "no recording matches");
@@ -240,7 +240,7 @@ TEST_F(RecordedSuite, APatternThatMayBeAbsentIsLeftOutWithANote) {
   ASSERT_EQ(suite.environments.size(), 1U);
   EXPECT_EQ(suite.environments[0].name, "desk");
   ASSERT_EQ(suite.notes.size(), 1U);
-  expect_in(suite.notes[0], "nowhere/rgbd_*: left out: not there");
+  expect_in(suite.notes[0], "nowhere/rgbd_*: left out: it does not exist");
   expect_in(error(absent), "nothing is left to run: ");
 }
 

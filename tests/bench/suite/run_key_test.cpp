@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 using Pointer = Json::json_pointer;
 namespace fs = std::filesystem;
 
-/// What a run would read if each of its sources were one file, of whatever content.
+/// What a run would read if each of its sources were a single file with arbitrary content.
 std::vector<InputDigest> inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of_program(spec.system);
   const auto add = [&](const std::string& name, const std::optional<fs::path>& source) {
@@ -70,7 +70,7 @@ std::string map_key_of(const RunSpec& spec) {
   return map_key(spec, inputs_of(spec));
 }
 
-/// A run's description with everything that may stand in one, and files of one content each.
+/// A run's description with every field that it may have, and files whose content is fixed.
 class RunKey : public testing::Test {
  protected:
   RunKey() {
@@ -140,14 +140,14 @@ class RunKey : public testing::Test {
   }
   ~RunKey() override { fs::remove_all(folder_); }
 
-  /// A file that holds its own name.
+  /// A file whose content is its own name.
   fs::path file(const std::string& name) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / name) << name;
     return folder_ / name;
   }
 
-  /// The description with another value at one place, one that can be read.
+  /// The description with a different, readable value at one place.
   RunSpec with_another(const RunSpec& spec, const Pointer& place) const {
     const Json json = to_json(spec);
     const Json& old = json[place];
@@ -185,14 +185,14 @@ class RunKey : public testing::Test {
         RunSpec read = run_spec_from_json(changed);
         if (to_json(read) != json) return read;
       } catch (const InputError&) {
-        // no word of that field
+        // not a word that this field accepts
       }
     }
     ADD_FAILURE() << "no other value for " << place.to_string();
     return spec;
   }
 
-  /// The places in a description whose value may change without another key.
+  /// The places in a description whose value may change without changing the key.
   template <class Key>
   std::set<std::string> free_places(const RunSpec& spec, Key key) const {
     std::set<std::string> free;
@@ -211,7 +211,7 @@ class RunKey : public testing::Test {
 const std::set<std::string> kNames = {"/name", "/environment/name", "/environment/category",
                                       "/labels/called", "/map_labels/called"};
 
-/// Gives every value another one, however deep, and optional ones and lists one that they lacked.
+/// Changes every value, at any depth; adds a value to empty optionals and lists.
 template <class T>
 void change(T& value) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -222,7 +222,7 @@ void change(T& value) {
     value += "other";
   } else if constexpr (std::is_enum_v<T>) {
     const auto all = words(value);
-    value = all[all.size() > 1 && all[0].second == value ? 1 : 0].second;  // one word: the only
+    value = all[all.size() > 1 && all[0].second == value ? 1 : 0].second;  // there may be only one
   } else if constexpr (kIsOptional<T>) {
     change(value.emplace());
   } else if constexpr (kIsVector<T>) {
@@ -315,7 +315,7 @@ TEST_F(RunKey, ChangesWithEveryFieldOfAnOutsideSystemButItsFolder) {
 
 TEST_F(RunKey, ChangesWithEveryFieldOfARecordingAndOfLabels) {
   std::set<std::string> free = kNames;
-  free.insert("/level");  // kRecordedLevel is the only one
+  free.insert("/level");  // kRecordedLevel is the only value
   EXPECT_EQ(free_places(recorded_, run_key_of), free);
   EXPECT_EQ(free_places(dosed_, run_key_of), kNames);
   EXPECT_EQ(free_places(detected_, run_key_of), kNames);
@@ -357,7 +357,7 @@ TEST_F(RunKey, ChangesWithAPointOrAnInputMoreAndWithWhatIsNotThere) {
   EXPECT_NE(run_key_of(changed), run_key_of(theirs_));
 }
 
-// One file in the stead of another: both are read, so each counts under its own name.
+// Two files trade places: both are read, so each counts under its own name.
 TEST_F(RunKey, TellsWhichFileIsWhich) {
   RunSpec changed = ours_;
   std::swap(changed.environment.query_tour, changed.environment.kidnapped_tour);

@@ -44,7 +44,7 @@ TEST(Shipped, AFileOfTheUsersGoesFirstAndAPathIsNoName) {
   fs::create_directories(folder);
   const fs::path here = fs::current_path();
   fs::current_path(folder);
-  fs::create_directory("ci");  // a folder of the name is not a suite
+  fs::create_directory("ci");  // a folder of that name is not a suite
   EXPECT_NE(find_shipped("ci", Shipped::kSuite), "ci");
   fs::copy_file(find_shipped("ci", Shipped::kSuite), "rooms");
   EXPECT_EQ(find_shipped("rooms", Shipped::kSuite), "rooms");

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with empty files for a suite to name, and the suite.
+/// A folder with the suite and files for it to name.
 class SuiteFile : public testing::Test {
  protected:
   SuiteFile() : folder_(fs::temp_directory_path() / ("mh_suite_" + std::to_string(getpid()))) {
@@ -87,7 +87,7 @@ TEST_F(SuiteFile, IsJudgedByCorrectAnswersUnlessItNamesSuccess) {
   EXPECT_EQ(load("measure: success\n").measure, Measure::kSuccess);
   EXPECT_NE(error("measure: sucess\n").find("'sucess' is not one of correct, success"),
             std::string::npos);
-  // Designs that were stated before measuring name success.
+  // Suites whose designs were fixed before measuring use success.
   for (const char* name : {"arms", "rules_verdict", "table1", "like_rooms"})
     EXPECT_EQ(load_suite(shipped_file(name, Shipped::kSuite)).measure, Measure::kSuccess) << name;
   EXPECT_EQ(load_suite(shipped_file("model_house", Shipped::kSuite)).measure, Measure::kCorrect);
@@ -116,7 +116,7 @@ TEST_F(SuiteFile, SensesAreOfARobotThatDrives) {
     by_hand("odometry");
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("'house' is mapped by hand"), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("'house' is a handheld scan"), std::string::npos)
         << e.what();
   }
 }
@@ -168,7 +168,7 @@ TEST_F(SuiteFile, ExpandsToOneRunPerSystemLabelsLevelTrialAndThePlainOnce) {
 TEST_F(SuiteFile, EveryKindOfLabelsReachesARunOfItsOwn) {
   const std::vector<RunSpec> runs =
       expand(load("", "[pepper.yaml]", "[exact, annotated, boxes, detector]"));
-  ASSERT_EQ(runs.size(), 5u);  // and the plain one
+  ASSERT_EQ(runs.size(), 5u);  // and one for the plain system
   for (const RunSpec& run : runs) EXPECT_EQ(run_spec_from_json(to_json(run)).labels, run.labels);
   EXPECT_EQ(runs[1].name, "semantic-annotated-pepper-0");
   EXPECT_EQ(runs[1].labels, LabelMode::kAnnotated);
@@ -243,7 +243,7 @@ TEST_F(SuiteFile, AMotionThatCannotBeIsNamedWithItsPlace) {
     load_suite(folder_ / "suite.yaml");
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("suite.yaml:2: environments[0].mapping_tour: hand-held "
+    EXPECT_NE(std::string(e.what()).find("suite.yaml:2: environments[0].mapping_tour: handheld "
                                          "motion: frames: 10 is outside 30 to 100000"),
               std::string::npos)
         << e.what();
@@ -371,7 +371,7 @@ TEST_F(SuiteFile, ASweepOverGammaOrMassThatWouldNotActIsRefused) {
       return error.what();
     }
   };
-  const std::string none = "semantics.label_mass: 0 is no mass";
+  const std::string none = "semantics.label_mass: 0 is not a mass";
   EXPECT_NE(message("map: fixed, semantics.label_mass: [0, 0.1]", "0").find(none),
             std::string::npos);
   EXPECT_EQ(message("map: fixed, semantics.label_mass: [0.01, 0.1]", "0"), "");
@@ -501,8 +501,8 @@ TEST_F(SuiteFile, ASweepTakesAnySetting) {
 }
 
 // Sobol's sequence by the recurrence of Joe and Kuo ("Constructing Sobol sequences with better
-// two-dimensional projections", 2008), in whole numbers and from their table's first rows; each
-// axis is shifted by bits of its own, which are those of point 0.
+// two-dimensional projections", 2008), in integers and from the first rows of their table; each
+// axis is shifted by its own bits, which are those of point 0.
 TEST(Sobol, IsTheSequenceOfJoeAndKuoShifted) {
   struct Row {
     unsigned s, a;
@@ -679,9 +679,9 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
                  "outside library 'vo' (libgone.so) cannot be loaded: no such file; has it been "
                  "built?");
   expect_refused("library: libvo.so, command: slam",
-                 "systems[0].command: is of a command: this is a library");
+                 "systems[0].command: is for a command, but this is a library");
   expect_refused("library: libvo.so, protocol: conversation",
-                 "systems[0].protocol: is of a command");
+                 "systems[0].protocol: is for a command");
   expect_refused("library: libvo.so, settings: gone.yaml",
                  "gone.yaml' cannot be read: no such file");
   expect_refused("library: ''", "library: is empty");
@@ -794,7 +794,7 @@ TEST(Sobol, EachDyadicIntervalHoldsItsShare) {
 }
 
 TEST(Sobol, TheFirstTwoDimensionsAreANet) {
-  // A (0, 6, 2)-net: each of the 64 boxes of 8 x 8 holds one of 64 points.
+  // A (0, 6, 2)-net: each cell of an 8 x 8 grid contains one of 64 points.
   std::vector<int> in(64);
   for (std::uint32_t i = 0; i < 64; ++i) {
     const auto p = sobol_point(i, 7);
@@ -817,7 +817,7 @@ TEST_F(SuiteFile, TakesDetectorsAsLabels) {
   EXPECT_EQ(runs[1].name, "semantic-nano-pepper-0");
   const RunSpec back = run_spec_from_json(to_json(runs[1]));
   EXPECT_EQ(back.labels, runs[1].labels);
-  // The key depends on the contents of the files and on the settings, not on names.
+  // The key depends on the contents of the files and on the settings, but not on names.
   const std::vector<InputDigest> inputs = {{"detector", 7, {}}};
   RunSpec other = runs[1];
   other.labels.called = "another";
@@ -852,8 +852,7 @@ TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
     const std::string text = error("", "[pepper.yaml]", labels);
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  says("[{network: a.onnx, boxes: b.json}]",
-       "b.json) are both named: one of them says what is run");
+  says("[{network: a.onnx, boxes: b.json}]", "b.json) are both given: name only one");
   says("[{fill: box}]", "names neither `network` nor `boxes`");
   says("[{network: a.onnx, fil: box}]", "fil");
   says("[{network: a.onnx, fill: boxes}]", "'boxes' is not one of box, foreground");
@@ -868,7 +867,7 @@ TEST_F(SuiteFile, RefusesDetectorsThatCannotBeMeant) {
 }
 
 TEST(ShippedSuites, AreWellFormed) {
-  // What users set; nobody has these files here, and suites are read without them, too.
+  // What users set; these files do not exist here, and suites can be read without them, too.
   const std::map<std::string, SuiteOverrides> of_users = {
       {"real_detector", {.set = {{"network", "/yolox_nano.onnx"}}}},
       {"bases_recorded", {.set = {{"mapped", "/mapped"}, {"queried", "/queried"}}}},
@@ -922,7 +921,7 @@ TEST_F(SuiteFile, RefusesBadGradedQueries) {
   EXPECT_NE(complaint("{distance_m: [0, 1]}").find("angle_deg"), std::string::npos);
   EXPECT_NE(complaint("{distance_m: [1], angle_deg: [0, 9]}").find("at least two"),
             std::string::npos);
-  EXPECT_NE(complaint("{distance_m: [0, 2, 1], angle_deg: [0, 9]}").find("edges must grow"),
+  EXPECT_NE(complaint("{distance_m: [0, 2, 1], angle_deg: [0, 9]}").find("edges must increase"),
             std::string::npos);
   EXPECT_NE(complaint("{distance_m: [0, 1], angle_deg: [0, 200]}").find("outside [0, 180]"),
             std::string::npos);

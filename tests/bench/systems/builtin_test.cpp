@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own system as the protocol drives it: what is frozen stays, and no query leaves a trace.
+// Our own system as driven by the protocol: what is frozen stays unchanged, and no query leaves a
+// trace.
 #include "bench/systems/builtin.hpp"
 
 #include <gtest/gtest.h>
@@ -24,11 +25,11 @@ RgbdFrame frame(std::size_t i) {
 
 SlamConfig settings() {
   SlamConfig config;
-  config.features.count = 500;  // the images are a quarter of the usual size
+  config.features.count = 500;  // the images have a quarter of the usual size
   return config;
 }
 
-/// A piece of a room, mapped and frozen.
+/// A part of a room, mapped and frozen.
 std::unique_ptr<System> frozen() {
   std::vector<std::vector<Descriptor>> images;
   for (std::size_t i = 0; i < 4; ++i)

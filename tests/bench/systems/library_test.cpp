@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Systems in shared libraries: a small one in C99 that does as its settings file says.
+// Systems in shared libraries: a small one in C99 that does what its settings file says.
 #include <unistd.h>
 
 #include <filesystem>
@@ -63,11 +63,11 @@ class LibrarySystems : public testing::Test {
     }
     return "no error";
   }
-  /// Of loading it.
+  /// The error of loading a library.
   std::string load_error(const std::string& name) const {
     return error_of([&] { make(library(name)); });
   }
-  /// Of mapping a frame, freezing and a query with one word of misbehavior.
+  /// The error of mapping a frame, freezing and querying with this misbehavior.
   std::string error(const std::string& word) const {
     return error_of([&] {
       const auto system = tiny(word);
@@ -155,7 +155,7 @@ TEST_F(LibrarySystems, PosesInAMapThatWasGivenUpAreVoid) {
   ASSERT_EQ(system->trajectory().size(), 1U);
   EXPECT_EQ(system->trajectory()[0].stamp_ns, 5);
   EXPECT_EQ(error("anew"),
-            "gave up a map that must not change any more, replying to relocalize (request 5)");
+            "dropped a map that must not change any more, replying to relocalize (request 5)");
 }
 
 TEST_F(LibrarySystems, MayTellTheFinishedTrajectory) {
@@ -184,8 +184,8 @@ TEST_F(LibrarySystems, ThatCannotBeLoadedSayWhy) {
   const std::string what = error_of([&] { make(text); });
   EXPECT_TRUE(what.starts_with("reported an error: \"cannot be loaded: ")) << what;
   EXPECT_EQ(what.find(folder_.string()), std::string::npos) << "the same in any folder: " << what;
-  EXPECT_EQ(error("null"),
-            hello(fmt::format("made no system: no vocabulary for {} classes", classes().size())));
+  EXPECT_EQ(error("null"), hello(fmt::format("created no system: no vocabulary for {} classes",
+                                             classes().size())));
   EXPECT_EQ(error("empty"), hello("left the function relocalize empty"));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outside programs that misbehave, as shell scripts: each fault is one OutsideError that names the
-// program, its command and what it did, and never the end of the bench.
+// Misbehaving outside programs, as shell scripts: each fault is one OutsideError that names the
+// program, its command and what it did, and none ends the bench.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -45,7 +45,7 @@ class OutsideFaults : public testing::Test {
     return p;
   }
 
-  /// The OutsideError of an action; it must name program and command.
+  /// The OutsideError of an action; it must name the program and the command.
   std::string error_of(const OutsideProgram& program, const std::function<void()>& action) {
     try {
       action();
@@ -67,7 +67,7 @@ class OutsideFaults : public testing::Test {
            std::string::npos;
   }
 
-  // Trajectory mode over three frames at 1, 2 and 3 s.
+  // The error in trajectory mode over three frames at 1, 2 and 3 s.
   std::string trajectory_error(OutsideProgram p) {
     return error_of(p, [&] { run(p); });
   }
@@ -85,7 +85,8 @@ class OutsideFaults : public testing::Test {
     return program(OutsideMode::kTrajectory, "printf '" + poses + "' > {trajectory}");
   }
 
-  // Conversation: `after_hello` runs once the greeting is over, with the request in $line.
+  // A program in conversation mode that runs `after_hello` after the greeting, with the request in
+  // $line.
   OutsideProgram says(const std::string& after_hello) const {
     return program(OutsideMode::kConversation,
                    R"(read -r line; echo '{"id":1,"protocol":1}'; read -r line; )" + after_hello);
@@ -101,13 +102,13 @@ class OutsideFaults : public testing::Test {
     return error_of(p, [&] { make_conversation_system(p, camera_, 0, folder_ / "log"); });
   }
 
-  /// An empty folder for the numbers of processes.
+  /// An empty folder for process ids.
   fs::path pids() const {
     fs::remove_all(folder_ / "pids");
     fs::create_directories(folder_ / "pids");
     return folder_ / "pids";
   }
-  /// How many of the processes that noted their numbers there do not end soon; forgets them.
+  /// Number of processes with an id in that folder that do not end soon; clears the folder.
   int left_running() const {
     int left = 0, all = 0;
     for (const std::string& name : names_in(folder_ / "pids")) {
@@ -130,7 +131,7 @@ class OutsideFaults : public testing::Test {
     return fs::exists(file);
   }
 
-  /// Whether a process is gone within seconds, or a zombie that some init has yet to bury.
+  /// Whether a process ends within seconds; a zombie that init has yet to reap counts as ended.
   static bool ends_soon(pid_t process) {
     for (int i = 0; i < 500; ++i) {
       std::string stat;
@@ -183,7 +184,7 @@ TEST_F(OutsideFaults, AFailureReadsTheSameInAnyFolder) {
   EXPECT_HOLDS(dataset, "(echo cannot open {trajectory} in");
   EXPECT_HOLDS(dataset, "it last wrote: cannot open trajectory.txt in .");
   EXPECT_EQ(trajectory_error(writes("what is this\\n")).find(folder_.string()), std::string::npos);
-  // Images lie in a folder whose name is drawn by chance.
+  // Images are in a folder with a random name.
   const std::string image =
       track_error(says(R"(echo "$line" | sed 's/.*"color":"//; s/".*//' >&2; exit 1)"));
   EXPECT_HOLDS(image, "it last wrote: color.ppm");
@@ -194,7 +195,7 @@ TEST_F(OutsideFaults, ATrajectoryThatIsNone) {
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 nan 0 0 0 0 0 1\\n")),
                "trajectory.txt:2: tx: 'nan' is not finite");
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2.5 0 0 0 0 0 0 1\\n")),
-               "wrote 1 of 2 poses at stamps of no frame, the first at 2.500000000");
+               "wrote 1 of 2 poses at stamps that match no frame, the first at 2.500000000");
   EXPECT_HOLDS(trajectory_error(writes("2.9995 0 0 0 0 0 0 1\\n3 0 0 0 0 0 0 1\\n")),
                "wrote two poses for the frame at 3.000000000");
   EXPECT_HOLDS(trajectory_error(writes("1 0 0 0 0 0 0 1\\n2 0 -1e200 0 0 0 0 1\\n")),
@@ -226,14 +227,14 @@ TEST_F(OutsideFaults, TimeAndMemoryAreLimited) {
   EXPECT_HOLDS(trajectory_error(sleeper), "was still running after 0.3 s");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 
-  // tail keeps the one line that never ends.
+  // tail stores the only line of its input, which never ends.
   OutsideProgram glutton = program(OutsideMode::kTrajectory, "tail /dev/zero; : {trajectory}");
   glutton.memory_limit_mb = 50;
   EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
 }
 
-/// Starts processes that nothing of a group or a session holds, that do not listen to SIGTERM, and
-/// whose parents are gone; notes their numbers in the folder PIDS when all of them run.
+/// Starts processes that no process group or session holds, that ignore SIGTERM, and whose parents
+/// are gone; writes their ids into the folder PIDS and waits until all of them run.
 const std::string kEscapes =
     "sleeper='trap \"\" TERM HUP INT; echo $$ > $PIDS/$$; while :; do sleep 60; done'; "
     "sh -c \"$sleeper\" & setsid sh -c \"$sleeper\" & (setsid sh -c \"$sleeper\" &) ; "
@@ -299,7 +300,7 @@ TEST_F(OutsideFaults, AProgramThatStopsItsWatcherIsEndedInTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
-// The next image cannot be written there, which is no full disk.
+// The next image cannot be written there, which must not be reported as a full disk.
 TEST_F(OutsideFaults, AProgramThatRemovesTheFolderOfItsImagesFailsUnlessItCannot) {
   const OutsideProgram p = says(
       R"sh(rm -rf "$(dirname "$(echo "$line" | sed 's/.*"color":"//; s/".*//')")"; )sh"
@@ -315,7 +316,7 @@ TEST_F(OutsideFaults, AProgramThatRemovesTheFolderOfItsImagesFailsUnlessItCannot
     EXPECT_HOLDS(error, "removed the folder of its images");
 }
 
-/// Replies to a track request after doing something to $color, the file of its image.
+/// Replies to a track request after doing something with $color, its image file.
 std::string with_image(const std::string& work) {
   return R"sh(color=$(echo "$line" | sed 's/.*"color":"//; s/".*//'); folder=$(dirname "$color"); )sh" +
          work +
@@ -341,7 +342,7 @@ TEST_F(OutsideFaults, NothingThatAProgramPutsInThePlaceOfAnImageIsOpened) {
       EXPECT_FALSE(fs::exists(fs::symlink_status(scratch + moved))) << scratch + moved << work;
     return error;
   };
-  EXPECT_HOLDS(after("rm $color; mkdir $color"), "put a folder in the place of its color.ppm");
+  EXPECT_HOLDS(after("rm $color; mkdir $color"), "replaced its color.ppm with a folder");
   EXPECT_EQ(after("rm $color"), "no error");
   EXPECT_EQ(after("rm $color; mkfifo $color"), "no error");
   EXPECT_EQ(after("ln -sf " + mine.string() + " $color"), "no error");
@@ -395,10 +396,10 @@ TEST_F(OutsideFaults, ATrajectoryIsAFileOfItsFolderOfABearableSize) {
         program(OutsideMode::kTrajectory, "cd $(dirname {trajectory}); " + command));
   };
   EXPECT_HOLDS(error("ln -s " + truth.string() + " {trajectory}"),
-               "made its trajectory a link out of its folder");
+               "made its trajectory a link to outside its folder");
   EXPECT_HOLDS(error("mv $PWD $PWD.moved; mkdir elsewhere; ln -s " + truth.string() +
                      " elsewhere/trajectory.txt; ln -s $PWD.moved/elsewhere $PWD"),
-               "made its trajectory a link out of its folder");
+               "made its trajectory a link to outside its folder");
   EXPECT_EQ(run(program(OutsideMode::kTrajectory,
                         "cd $(dirname {trajectory}); "
                         "echo 1 0 0 0 0 0 0 1 > mine; "
@@ -431,7 +432,7 @@ TEST_F(OutsideFaults, NothingIsWrittenThroughALinkOfAProgram) {
   EXPECT_EQ(read_file(mine), "mine");
   EXPECT_EQ(read_file(folder_ / "out" / "outside.log"), "said\n");
   EXPECT_HOLDS(read_file(folder_ / "out" / "outside" / ProgramFolder::kList), "trajectory.txt\n");
-  // A folder by that name, too, and rights that it denied: the next run replaces it all the same.
+  // A folder of that name, and folders without write permission, are replaced by the next run, too.
   const std::string locks =
       "cd $(dirname {trajectory}); echo 1 0 0 0 0 0 0 1 > {trajectory}; mkdir -p "
       ".modelhouse-files/a b; touch b/c; chmod 500 b; chmod 500 .";
@@ -448,7 +449,7 @@ TEST_F(OutsideFaults, ALogThatAProgramReplacesBlocksNobody) {
                "exited with code 3; it last wrote: last ? words");
 }
 
-// Where this machine allows no mount namespace, the log says so, and the program sees everything.
+// If this machine allows no mount namespace, the log says so, and the program sees everything.
 TEST_F(OutsideFaults, AProgramDoesNotSeeWhatIsHiddenFromIt) {
   const fs::path secret = folder_ / "secret", other = folder_ / "other.yaml";
   fs::create_directories(secret / "run");
@@ -500,12 +501,12 @@ TEST_F(OutsideFaults, AConversationSeesNoOthersImages) {
   const std::string said = read_file(log);
   if (said.starts_with("modelhouse: nothing is hidden")) GTEST_SKIP() << said;
   EXPECT_EQ(said.find("mh_of_another"), std::string::npos) << said;
-  EXPECT_HOLDS(said, "modelhouse-");  // its own folder, with what it is given
+  EXPECT_HOLDS(said, "modelhouse-");  // its own folder, which contains its inputs
   EXPECT_HOLDS(said, "Camera.fx");
   EXPECT_FALSE(fs::exists("/dev/shm/left"));
 }
 
-/// Notes the stamps of what it is shown.
+/// Records the timestamps of the frames that it is shown.
 class NotesStamps : public OutsideSystem {
  public:
   mutable std::vector<Stamp> stamps_ns;
@@ -523,7 +524,8 @@ class NotesStamps : public OutsideSystem {
   void fail(const std::string& what) const override { throw OutsideError(what); }
 };
 
-// Its own stamp, between two of mapped frames, would say where a held-out frame was taken.
+// A held-out frame's own timestamp lies between those of mapped frames and would reveal where it
+// was taken.
 TEST(OutsideSessions, BeginAfterTheMappingAndKeepTheirPace) {
   NotesStamps system;
   RgbdFrame frame;
@@ -553,7 +555,7 @@ TEST_F(OutsideFaults, WhatAProgramIsToldLiesBelowNoResults) {
 
 TEST_F(OutsideFaults, WhatIsSaidIsBounded) {
   const auto start = std::chrono::steady_clock::now();
-  // 3 GB, were it let.
+  // It would write 3 GB if it could.
   EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory,
                                         "yes 'all is well' | head -c 3000000000; : {trajectory}")),
                "wrote more than 64 MB to its log, the limit");
@@ -562,7 +564,8 @@ TEST_F(OutsideFaults, WhatIsSaidIsBounded) {
   EXPECT_HOLDS(track_error(says("yes >&2")), "wrote more than 64 MB to its log, the limit");
   EXPECT_LT(fs::file_size(folder_ / "log"), std::uintmax_t{65} << 20);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(120));
-  // Less than that is kept to the last byte, also what it wrote just before its end.
+  // A shorter log is kept to the last byte, including what was written just before the program's
+  // end.
   run(program(OutsideMode::kTrajectory,
               "yes 1234567 | head -c 8000000; echo 1 0 0 0 0 0 0 1 > {trajectory}"));
   EXPECT_EQ(fs::file_size(folder_ / "out" / "outside.log"), 8000000u);
@@ -599,14 +602,14 @@ TEST_F(OutsideFaults, ARunMeetsNothingOfAnEarlierOne) {
   const std::set<std::string> all = {"dataset", "edited", "map.bin", "trajectory.txt",
                                      ProgramFolder::kList};
   EXPECT_EQ(names_in(kept), all);
-  // In its place comes the next one, which has not seen it.
+  // The next run's files replace those of the first run, which it has not seen.
   std::ofstream(kept / "trajectory.txt", std::ios::app) << "# read by hand\n";
   fs::remove(kept / "trajectory.txt");
   const std::string second = look_about();
   EXPECT_EQ(second.find("map.bin"), std::string::npos) << second;
   EXPECT_EQ(names_in(kept), all);
   EXPECT_EQ(names_in(out), (std::set<std::string>{"outside", "outside.log", "truth.tum"}));
-  // What the program did not make stays where it is, and so does what somebody changed.
+  // Files that the program did not make stay where they are, and so do files that a user changed.
   const fs::path elsewhere = folder_ / "elsewhere";
   fs::create_directory(elsewhere);
   for (const char* file : {"map.bin", "rgb.txt", "photograph.jpg"})
@@ -645,11 +648,11 @@ TEST_F(OutsideFaults, AConversationIsGivenTimeToEndWell) {
 
 TEST_F(OutsideFaults, ConversationsThatDoNotBegin) {
   EXPECT_HOLDS(hello_error("exit 4"), "exited with code 4");
-  EXPECT_HOLDS(
-      hello_error("echo Welcome to my SLAM; sleep 60"),
-      "wrote what is not a line of JSON: 'Welcome to my SLAM', replying to hello (request 1)");
+  EXPECT_HOLDS(hello_error("echo Welcome to my SLAM; sleep 60"),
+               "wrote something that is not a line of JSON: 'Welcome to my SLAM', replying to "
+               "hello (request 1)");
   EXPECT_HOLDS(hello_error(R"(printf '{"id":1,"protocol":1}\0\n'; sleep 60)"),
-               "wrote what is not a line of JSON");
+               "wrote something that is not a line of JSON");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1}'; sleep 60)"), "named no \"protocol\": expected 1");
   EXPECT_HOLDS(hello_error(R"(echo '{"id":1,"protocol":2}'; sleep 60)"),
                "speaks protocol 2, not 1");
@@ -664,7 +667,7 @@ TEST_F(OutsideFaults, ConversationsThatBreakOff) {
   OutsideProgram silent = says("sleep 60");
   silent.reply_limit_s = 0.3;
   EXPECT_HOLDS(track_error(silent), "did not reply to track (request 2) within 0.3 s");
-  // Gone before it is asked: writing to it must not kill the bench by SIGPIPE.
+  // The program exits before the first question: writing to it must not kill the bench by SIGPIPE.
   const OutsideProgram short_lived =
       program(OutsideMode::kConversation, R"(read -r line; echo '{"id":1,"protocol":1}'; exit 0)");
   EXPECT_HOLDS(track_error(short_lived), "exited with code 0");
@@ -674,16 +677,18 @@ TEST_F(OutsideFaults, AnswersThatAreNone) {
   const auto replies = [&](const std::string& json) {
     return track_error(says("echo '" + json + "'; sleep 60"));
   };
-  EXPECT_HOLDS(replies("garbage"), "wrote what is not a line of JSON: 'garbage'");
+  EXPECT_HOLDS(replies("garbage"), "wrote something that is not a line of JSON: 'garbage'");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[NaN,0,0,0,0,0,1]})"), "a number that is not finite");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[1e999,0,0,0,0,0,1]})"), "a number that is too large");
-  EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"), "pose that is not of numbers");
-  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"), "pose that is not of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[null,0,0,0,0,0,1]})"),
+               "pose that does not consist of numbers");
+  EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,"1"]})"),
+               "pose that does not consist of numbers");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,-1e9,0,0,0,0,1]})"), "a pose more than 1e+08 m away");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0]})"), "expected [x, y, z, qx, qy, qz, qw]");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":[0,0,0,0,0,0,2]})"), "quaternion has norm 2");
   EXPECT_HOLDS(replies(R"({"id":2})"), "neither a pose nor");
-  EXPECT_HOLDS(replies(R"({"id":3,"pose":null})"), "replied to request 3, which was not asked");
+  EXPECT_HOLDS(replies(R"({"id":3,"pose":null})"), "replied to request 3, which was not sent");
   EXPECT_HOLDS(replies(R"({"pose":null})"), "gave no request number");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"mood":"good"})"), "unknown key 'mood'");
   EXPECT_HOLDS(replies(R"({"id":2,"pose":null,"inliers":-1})"), "expected a count");
@@ -741,7 +746,7 @@ TEST_F(OutsideFaults, PosesInAMapThatWasGivenUpAreVoid) {
   system->freeze();
   const auto session = system->open_session();
   EXPECT_HOLDS(error_of(p, [&] { session->feed(fake_frame(9, RandomStream(1)), RandomStream(2)); }),
-               "gave up a map that must not change any more");
+               "dropped a map that must not change any more");
 }
 
 TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
@@ -763,7 +768,7 @@ TEST_F(OutsideFaults, CommandsAreCheckedBeforeTheyRun) {
   for (const char* quoted : {"'{dataset}'", "\"{dataset}\"", "\"--data={dataset}\"",
                              "sh -c 'slam {dataset}'", "'{dataset}"})
     EXPECT_HOLDS(refused(OutsideMode::kTrajectory, quoted + std::string(" {trajectory}")),
-                 "stands within quotes: its value comes quoted");
+                 "is inside quotes: its value is already quoted");
   EXPECT_EQ(refused(OutsideMode::kTrajectory, R"(sh -c "slam {dataset} it's" 'a b' {trajectory})"),
             "no error");
   OutsideProgram p = program(OutsideMode::kConversation, "slam");

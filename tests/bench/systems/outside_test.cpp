@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The example odometry as somebody else's system, in both modes, over a rendered room.
+// The example odometry as an outside system, in both modes, over a rendered room.
 #include <unistd.h>
 
 #include <filesystem>
@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A camera that looks about and sways in a furnished room, with sensor noise.
+/// A camera that looks around and sways in a furnished room, with sensor noise.
 class OutsideOdometry : public testing::Test {
  protected:
   static constexpr std::size_t kCount = 90;  // test frames are 29, 59, 89: 87 are offered
@@ -65,7 +65,7 @@ class OutsideOdometry : public testing::Test {
     c.cy_px = 119.5;
     return c;
   }
-  /// Made once for all tests.
+  /// A frame; frames are made once for all tests.
   static RgbdFrame frame(std::size_t index, RandomStream noise) {
     RgbdFrame& made = made_[{index, noise.key()}];
     if (made.color.empty()) made = make_frame(index, noise);
@@ -131,7 +131,7 @@ TEST(FrameFiles, AreReadByOpenCvPixelForPixel) {
   EXPECT_EQ(labels.at<std::uint8_t>(0, 0), kVoid);
 }
 
-/// What systems are given besides images, in two small frames.
+/// Two small frames with the other data that systems get besides images.
 class OtherSenses : public testing::Test {
  protected:
   OtherSenses() {
@@ -146,7 +146,7 @@ class OtherSenses : public testing::Test {
   }
   ~OtherSenses() override { fs::remove_all(folder_); }
 
-  /// All that a program is asked which answers that it is lost.
+  /// All requests to a program that always answers that it is lost.
   std::string asked() const {
     const std::string program =
         "n=0; while read -r line; do n=$((n+1)); printf '%s\\n' \"$line\" >>" +
@@ -162,7 +162,7 @@ class OtherSenses : public testing::Test {
     }
     return read_file(folder_ / "asked");
   }
-  /// Writes a data set of the first frame, or of both.
+  /// Writes a data set with only the first frame or with both.
   fs::path dataset(std::size_t frames) const {
     const fs::path folder = folder_ / std::to_string(frames);
     write_dataset(folder, camera_, frames,
@@ -247,8 +247,9 @@ TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
   const TrajectoryScore score = score_trajectory(estimate, path_, mapping.offered);
   EXPECT_EQ(score.completeness, 1.0);
   ASSERT_TRUE(score.ate_rmse_m);
-  EXPECT_LT(*score.ate_rmse_m, 0.05);  // it drifts: it adjusts nothing; the camera sways by 0.4 m
-  EXPECT_GT(*score.ate_rmse_m, 1e-6);  // noise: nobody may be that good
+  EXPECT_LT(*score.ate_rmse_m,
+            0.05);  // odometry drifts, it adjusts nothing; the camera sways by 0.4 m
+  EXPECT_GT(*score.ate_rmse_m, 1e-6);  // there is noise: no system can be this accurate
 
   for (const std::size_t index : test_frames(kCount, {})) {
     const QueryAnswer answer = query(*system, index, frames(), {}, RandomStream(2));
@@ -318,7 +319,7 @@ TEST_F(OutsideOdometry, RewindKeepsTheMapAndResetForgetsIt) {
 }
 
 TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
-  // What mapping shows where nothing fails: every frame but the test frames, once.
+  // What mapping shows if nothing fails: every frame except the test frames, once.
   std::vector<std::size_t> offered;
   for (std::size_t i = 0; i < kCount; ++i)
     if (!is_test_frame(i, {})) offered.push_back(i);
@@ -327,7 +328,7 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
       write_dataset(folder_ / "given" / "dataset", camera(), offered.size(),
                     [&](std::size_t k) { return frame(offered[k], noise); });
   OutsideProgram program{.name = "vo"};
-  // `find` writes the names of all that the program is given to standard output: its log.
+  // `find` prints the names of all files that the program gets to standard output, its log.
   program.command =
       "find {dataset} && " VO_RUN_DATASET " {dataset} {associations} {settings} {trajectory}";
   std::size_t read = 0;
@@ -343,11 +344,13 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
   for (const char* part : {"/rgb.txt", "/depth.txt", "/label.txt", "/associations.txt",
                            "/camera.yaml", "/rgb/0.000000000.png", "/label/0.000000000.png"})
     EXPECT_NE(given.find(part), std::string::npos) << part;
-  for (const char* part : {"truth", "instance", "/0.966666657.png"})  // the last: a test frame
+  for (const char* part :
+       {"truth", "instance", "/0.966666657.png"})  // the last one is a test frame
     EXPECT_EQ(given.find(part), std::string::npos) << part;
 }
 
-// For 15 frames the camera sees nothing: wheels that drift by 1 % place it, in all three forms.
+// The camera sees nothing for 15 frames: wheel odometry that drifts by 1 % gives its pose, in all
+// three forms.
 TEST_F(OutsideOdometry, FallsBackOnTheWheels) {
   const auto wheeled = [](std::size_t i, RandomStream noise) {
     RgbdFrame shown = frame(i, noise);

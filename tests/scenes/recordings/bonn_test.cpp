@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Three frames in the data set's layout.
+/// Three frames in the layout of the data set.
 class Bonn : public MadeFolder {
  protected:
   Bonn() {
@@ -47,7 +47,7 @@ TEST_F(Bonn, IsRecognizedByItsNameAndHasThePublishedCamera) {
   EXPECT_STREQ(reader_of((folder_ / kName).string()).name, "tum") << "somebody's own calibration";
 }
 
-// world_from_camera = T_ros T T_ros T_m, as the data set's page has it.
+// world_from_camera = T_ros T T_ros T_m, as the page of the data set defines it.
 TEST_F(Bonn, TheMarkersTruthIsMovedToTheCamera) {
   const Trajectory truth = *open().sequence->truth();
   ASSERT_EQ(truth.size(), 3U);
@@ -62,7 +62,7 @@ TEST_F(Bonn, TheMarkersTruthIsMovedToTheCamera) {
   EXPECT_TRUE(first.translation().isApprox(place_m, 1e-12));
   EXPECT_TRUE(truth[1].world_from_camera.translation().isApprox(Eigen::Vector3d(-1, 3, 2) + place_m,
                                                                 1e-12));
-  // Half a turn about the file's z is one about the scan's y.
+  // Half a turn about z in the file is half a turn about y in the scan.
   const Eigen::DiagonalMatrix<double, 3> half_turn(-1, 1, -1);
   EXPECT_TRUE(truth[2].world_from_camera.rotation().isApprox(
       half_turn.toDenseMatrix() * first.rotation(), 1e-12));

@@ -55,7 +55,7 @@ TEST_F(Euroc, WritesACameraAsTheDataSetHasIt) {
         "data: [1.0, 0.0, 0.0, 0.110000,", "intrinsics: [52.0000000000, 52.0000000000, 31.5",
         "distortion_model: radial-tangential\n"})
     EXPECT_NE(sensor.find(line), std::string::npos) << line << sensor;
-  // What is there already is not made again.
+  // An image that exists already is not written again.
   EurocCameraWriter again(folder_, 1, 0.11, camera_);
   EXPECT_TRUE(again.resume(0, path_[0].stamp_ns, path_[0].world_from_camera));
   EXPECT_FALSE(again.resume(2, path_[2].stamp_ns, path_[2].world_from_camera));
@@ -126,7 +126,8 @@ TEST_F(Euroc, WritesReadingsAndStates) {
                      imu_along(path_, config, RandomStream(1)), {200, 0.25, 0, 0.5, 0});
   const std::string readings = read_file(folder_ / "mav0/imu0/data.csv");
   EXPECT_EQ(readings.substr(0, readings.find('\n')), kEurocImuColumns);
-  EXPECT_EQ(std::count(readings.begin(), readings.end(), '\n'), 1 + 20);  // 0.1 s from its start
+  EXPECT_EQ(std::count(readings.begin(), readings.end(), '\n'),
+            1 + 20);  // 0.1 s of readings from the start
   EXPECT_NE(readings.find("\n1005000000,"), std::string::npos);
   EXPECT_NE(read_file(folder_ / "mav0/imu0/sensor.yaml").find("gyroscope_noise_density: 0.25"),
             std::string::npos);

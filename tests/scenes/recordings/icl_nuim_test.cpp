@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder as the data set has it: three frames of 640 x 480, numbered from 0.
+/// A folder in the data set's layout: three frames of 640 x 480, numbered from 0.
 class IclNuim : public testing::Test {
  protected:
   IclNuim() : folder_(fs::temp_directory_path() / ("mh_icl_nuim_" + std::to_string(getpid()))) {
@@ -84,8 +84,8 @@ TEST_F(IclNuim, AnotherCameraKeepsTheScaleOfItsDepth) {
   EXPECT_EQ(opened.sequence->frame(0, RandomStream()).depth_m(7, 5), 1.5F);
 }
 
-// In the renderer's world y points up, and a turn to the left is one to the right: a camera that
-// moves up by 1 m and yaws moves by -1 m along y and yaws about the axis that points down.
+// In the renderer's world y points up and rotations are mirrored: a camera that moves up by 1 m and
+// yaws moves by -1 m along y and yaws about the axis that points down.
 TEST_F(IclNuim, PosesAreReflectedIntoTheCamerasFrame) {
   write_truth("0 1 2 3 0.1 0.2 0.3 0.9273618495495704\n");
   const Trajectory truth = *open_sequence("icl_nuim:" + folder_.string(), {}).sequence->truth();

@@ -20,7 +20,7 @@
 
 namespace mh {
 
-/// A folder of a test, removed with it.
+/// A folder for a test, removed after it.
 class MadeFolder : public testing::Test {
  protected:
   MadeFolder()
@@ -34,7 +34,7 @@ class MadeFolder : public testing::Test {
     std::filesystem::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name, std::ios::binary) << content;
   }
-  /// What opening the folder, or a file in it, says if it is refused.
+  /// The error of opening the folder or a file in it; "none" if it is accepted.
   std::string complaint(const std::string& layout, const std::string& name = {},
                         const RecordingConfig& config = {}) const {
     try {
@@ -74,7 +74,7 @@ struct WallAndSquare {
   }
 };
 
-/// The 16 numbers of a pose, by rows.
+/// The 16 numbers of a pose, row by row.
 inline std::string matrix_text(const SE3& pose, const std::string& between_rows = "\n") {
   std::string text;
   for (int row = 0; row < 3; ++row)

@@ -21,7 +21,7 @@ class Openloris : public MadeFolder {
     camera_.cx_px = 43.3;
     camera_.cy_px = 24.9;
     write("sensors.yaml", sensors("61.1, 43.3, 61.2, 24.9"));
-    // As the robot has it, the camera hangs on a laser in between.
+    // As on the robot, the camera is attached to a laser, and the laser to the base.
     const SE3 base_from_laser(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.1, 0, 0.2));
     write("trans_matrix.yaml", "%YAML:1.0\n---\ntrans_matrix:\n" +
                                    transform("laser", "d400_color_optical_frame",
@@ -70,13 +70,13 @@ class Openloris : public MadeFolder {
         "         data: [ {}0., 0., 0., 1. ]\n",
         parent, child, data);
   }
-  /// The base's z points up and its x forward; the camera looks along its x.
+  /// The base's z points up and its x forward; the camera looks along the base's x.
   static SE3 base_from_color() {
     Eigen::Matrix3d rotation;
     rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     return {rotation, Eigen::Vector3d(0.23, -0.05, 0.9)};
   }
-  /// The test's wall is at z = 3 of the world: the base drives toward it.
+  /// The wall of the test is at z = 3 in the world: the base drives toward it.
   static SE3 world_from_base(int frame) {
     Eigen::Matrix3d rotation;
     rotation << 0, -1, 0, 0, 0, -1, 1, 0, 0;
@@ -110,9 +110,9 @@ TEST_F(Openloris, TheBasesTruthIsMovedToTheCamera) {
   EXPECT_GT(on_square, 300);
 }
 
-// The numbers of the tools' repository for the robot of office, corridor, cafe and home: where its
-// color and depth cameras are. cafe1-1's trans_matrix.yaml has -3.5019440527251228e-03 in row 2,
-// column 3 of (color, depth), so that a matrix places the child in its parent.
+// Numbers from the tools' repository for the robot of office, corridor, cafe and home: the poses of
+// its color and depth cameras. trans_matrix.yaml of cafe1-1 has -3.5019440527251228e-03 in row 2,
+// column 3 of (color, depth), so a matrix gives the pose of the child in its parent.
 TEST_F(Openloris, AMatrixPlacesTheChildInItsParent) {
   const SE3 base_from_color(Eigen::Quaterniond(0.5081504289345848, -0.49676229968284136,
                                                0.4998795887129771, -0.49510681269354095),
@@ -163,7 +163,7 @@ TEST_F(Openloris, BadCalibrationIsNamed) {
     std::string foreign = fisheye;
     foreign.replace(foreign.find(usual), usual.size(), other);
     write("sensors.yaml", foreign);
-    EXPECT_NE(complaint("openloris").find(fmt::format("'{}' is read of no lens", other)),
+    EXPECT_NE(complaint("openloris").find(fmt::format("'{}' is not supported", other)),
               std::string::npos)
         << complaint("openloris");
   }
@@ -171,8 +171,9 @@ TEST_F(Openloris, BadCalibrationIsNamed) {
   EXPECT_NE(complaint("openloris").find("d400_color_optical_frame"), std::string::npos);
   write("sensors.yaml", sensors("61.1, 43.3, 61.2, 24.9"));
   write("trans_matrix.yaml", "trans_matrix:\n" + transform("base_link", "laser", SE3()));
-  EXPECT_NE(complaint("openloris").find("trans_matrix.yaml: connects d400_color_optical_frame"),
-            std::string::npos)
+  EXPECT_NE(
+      complaint("openloris").find("trans_matrix.yaml: does not connect d400_color_optical_frame"),
+      std::string::npos)
       << complaint("openloris");
   write("trans_matrix.yaml",
         "trans_matrix:\n   -\n      parent_frame: base_link\n      child_frame: x\n"

@@ -20,7 +20,7 @@ Camera camera_of(int width_px, int height_px, double focal_px) {
 }
 
 TEST(RegisteredDepth, OfSeveralPointsTheNearestStays) {
-  // 0.25 m to the left, a point at z m moves by 1 / z pixels.
+  // With the depth camera 0.25 m to the side, a point at z m moves by 1 / z pixels.
   const DepthCamera depth{camera_of(4, 1, 4), {Eigen::Matrix3d::Identity(), {0.25, 0, 0}}};
   Grid2d<float> depth_m(4, 1);
   depth_m(0, 0) = 0.5F;  // to pixel 2
@@ -48,7 +48,7 @@ TEST(RegisteredDepth, GoesThroughBothLenses) {
         if (registered(u, v) == 0) continue;
         ++met;
         EXPECT_EQ(registered(u, v), 3);
-        // Where the ray of the color pixel's point meets the depth image.
+        // Where the ray to the color pixel's point meets the depth image.
         const Eigen::Vector2d ray = color.distortion.undistorted((u - color.cx_px) / color.fx_px,
                                                                  (v - color.cy_px) / color.fy_px);
         const Eigen::Vector2d seen = depth.camera.distortion.distorted(ray.x(), ray.y());
@@ -59,7 +59,8 @@ TEST(RegisteredDepth, GoesThroughBothLenses) {
   }
 }
 
-// k1 = -0.4 shows points up to 0.61 rad off the axis; farther ones would come back to its middle.
+// With k1 = -0.4, points up to 0.61 rad off the axis are shown; those farther out would be folded
+// back toward the center.
 TEST(RegisteredDepth, WhatALensWouldFoldIsLeftOut) {
   const DepthCamera wide{camera_of(201, 1, 50), {}};
   Grid2d<float> depth_m(201, 1, 1.0F);

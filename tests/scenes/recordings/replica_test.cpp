@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A data set of one scene, as NICE-SLAM's archive has it, with smaller images.
+/// A data set with one scene in the layout of NICE-SLAM's archive, with smaller images.
 class Replica : public MadeFolder {
  protected:
   Replica() {
@@ -40,7 +40,8 @@ class Replica : public MadeFolder {
   Camera camera_;
 };
 
-// The camera looks along z, as its pixels and depths say: each point lies on the wall or square.
+// The camera looks along z, and its pixels and depths agree: each point is on the wall or the
+// square.
 TEST_F(Replica, PosesAndDepthAgree) {
   const OpenedRecording opened = open();
   const Sequence& sequence = *opened.sequence;

@@ -61,7 +61,8 @@ ExactFrame frame(std::size_t i) {
     const auto byte = static_cast<std::uint8_t>(37 * k + 11 * static_cast<int>(i));
     f.seen.color.data()[k] = {byte, static_cast<std::uint8_t>(byte + 1),
                               static_cast<std::uint8_t>(2 * byte)};
-    f.seen.depth_m.data()[k] = k == 3 ? 0 : 0.31F * static_cast<float>(k + 1);  // some beyond 13 m
+    f.seen.depth_m.data()[k] =
+        k == 3 ? 0 : 0.31F * static_cast<float>(k + 1);  // some are beyond 13 m
     f.classes.data()[k] = static_cast<ClassId>(k % 7);
     f.instances.data()[k] = static_cast<InstanceId>(300 * (k % 3));
   }
@@ -106,7 +107,7 @@ class RosRecording : public TemporaryFolder, public testing::WithParamInterface<
   }
 };
 
-/// What a robot of somebody else's may send: its topics are written by hand.
+/// What a different robot may send; its topics are chosen by each test.
 class Foreign {
  public:
   explicit Foreign(ros::Wire wire) : log_(wire) {}
@@ -143,7 +144,7 @@ class Foreign {
     info.distortion_model = "plumb_bob";
     add(topic, 0, info);
   }
-  /// All that a camera needs: /image, /depth and /camera_info.
+  /// Everything that a camera needs: /image, /depth and /camera_info.
   void camera() {
     color("/image");
     depth("/depth");
@@ -228,7 +229,7 @@ TEST_P(RosRecording, WithoutLabelsWhereNoneAreWanted) {
   EXPECT_TRUE(opened.sequence->frame(0, RandomStream(0)).semantics.index.empty());
 }
 
-// A run that looks at no labels would otherwise have another key than its plan.
+// Otherwise the key of a run that uses no labels would differ from the key in its plan.
 TEST_P(RosRecording, AClassMapIsReadEvenWhereLabelsAreLeftOut) {
   record();
   std::ofstream(folder_ / "classes.yaml") << "1: chair\n2: table\n";
@@ -257,7 +258,7 @@ TEST_P(RosRecording, AClassMapOfAnotherTableOrWithoutUseIsTold) {
   Foreign robot(wire());
   robot.camera();
   robot.write(writer());
-  EXPECT_NE(open(config).notes.back().find("has no use: the recording has no labels"),
+  EXPECT_NE(open(config).notes.back().find("is not used: the recording has no labels"),
             std::string::npos);
 }
 
@@ -272,7 +273,7 @@ TEST_P(RosRecording, ImagesOutOfOrderAreSortedByTheirStamps) {
   Foreign robot(wire());
   robot.info("/camera_info");
   robot.depth("/depth");
-  // In the file, by time of receipt, the second image stands before the first.
+  // The file is in order of receipt: the second image comes before the first.
   for (const std::size_t i : {1U, 0U, 2U})
     robot.add("/image",
               i == 1   ? 0
@@ -284,7 +285,7 @@ TEST_P(RosRecording, ImagesOutOfOrderAreSortedByTheirStamps) {
   ASSERT_EQ(opened.sequence->size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(opened.sequence->stamp_ns(i), stamp_ns(i));
   ASSERT_EQ(opened.notes.size(), 1U);
-  EXPECT_NE(opened.notes[0].find("not in the order of their stamps"), std::string::npos);
+  EXPECT_NE(opened.notes[0].find("not ordered by timestamp"), std::string::npos);
 }
 
 TEST_P(RosRecording, DepthOf8BitsIsNotRead) {
@@ -304,7 +305,7 @@ TEST_P(RosRecording, DepthOf8BitsIsNotRead) {
             std::string::npos);
 }
 
-// As `rosbag record` of RealSense's compressed topics has it: depth as an ordinary PNG.
+// As `rosbag record` writes RealSense's compressed topics: depth as an ordinary PNG.
 TEST_P(RosRecording, DepthMayBeAnOrdinaryCompressedImage) {
   Foreign robot(wire());
   robot.info("/color/camera_info");
@@ -333,7 +334,7 @@ TEST_P(RosRecording, AnotherCalibrationMidwayIsTold) {
   const OpenedRecording opened = open();
   EXPECT_EQ(opened.sequence->camera().fx_px, 2);
   ASSERT_EQ(opened.notes.size(), 1U);
-  EXPECT_NE(opened.notes[0].find("the calibration of /camera_info is another from 66666667 ns on"),
+  EXPECT_NE(opened.notes[0].find("the calibration of /camera_info changes at 66666667 ns"),
             std::string::npos)
       << opened.notes[0];
 }
@@ -540,7 +541,7 @@ TEST_P(RosRecording, EightCoefficientsGoBothWays) {
             camera.distortion);
 }
 
-// Joined in twos after 2 columns and 1 row were cut off: pixel u holds the sensor's 2 u + 2.5.
+// Binned by 2 after 2 columns and 1 row were cut off: pixel u is at 2 u + 2.5 on the sensor.
 TEST_P(RosRecording, ACalibrationOfTheWholeSensorServesItsPart) {
   Foreign robot(wire());
   robot.color("/image");
@@ -626,7 +627,7 @@ TEST_P(RosRecording, TheUnitOfDepthIsTheOneStated) {
   const OpenedRecording ours = open(with_depth_per_meter(5000));
   EXPECT_EQ(depth_m(ours), depth_m(open())) << "in meters already";
   ASSERT_EQ(ours.notes.size(), 1U);
-  EXPECT_NE(ours.notes[0].find("its depth per meter, 5000, has no use"), std::string::npos);
+  EXPECT_NE(ours.notes[0].find("its depth per meter, 5000, is not used"), std::string::npos);
 }
 
 TEST_P(RosRecording, StampsThatStandStillGiveWayToTheTimesOfReceipt) {
@@ -660,7 +661,7 @@ TEST_P(RosRecording, StampsThatStandStillGiveWayToTheTimesOfReceipt) {
   }
 }
 
-// Two parts; only the first has the calibration.
+// A recording in two parts; only the first has the calibration.
 class RosParts : public RosRecording {
  protected:
   void write_part(const std::string& name, std::size_t first, std::size_t end) const {
@@ -726,7 +727,7 @@ TEST_P(RosParts, RecordingsThatPeopleNumberedAreNone) {
   EXPECT_NE(error_of([&] { open_parts(); }).find("name one of them"), std::string::npos);
 }
 
-/// An image of one color as an encoding stores it.
+/// An image of one color, stored in a given encoding.
 class Colors : public RosRecording {
  protected:
   Grid2d<Rgb8> read(const char* encoding, int width, int height, std::uint32_t step,
@@ -740,7 +741,7 @@ class Colors : public RosRecording {
 };
 
 TEST_P(Colors, OfMosaicsAreThoseOfTheScene) {
-  constexpr std::uint32_t kStep = 12;  // rows are longer than the image
+  constexpr std::uint32_t kStep = 12;  // rows are longer than the image is wide
   const Rgb8 scene{200, 120, 40};
   for (const std::string pattern : {"rggb", "bggr", "gbrg", "grbg"}) {
     std::string bytes(6 * kStep, '\x7');
@@ -762,7 +763,7 @@ TEST_P(Colors, OfMosaicsAreThoseOfTheScene) {
             std::string::npos);
 }
 
-// BT.601: Y 82, U 90, V 240 is pure red; Y 41, U 240, V 110 pure blue.
+// BT.601: Y 82, U 90, V 240 is pure red; Y 41, U 240, V 110 is pure blue.
 TEST_P(Colors, OfYuvAreThoseOfTheirStandard) {
   const auto near = [](const Rgb8& color, int r, int g, int b) {
     return std::abs(color.r - r) <= 3 && std::abs(color.g - g) <= 3 && std::abs(color.b - b) <= 3;
@@ -776,7 +777,9 @@ TEST_P(Colors, OfYuvAreThoseOfTheirStandard) {
   const std::string y4(4, y_red);
   EXPECT_TRUE(near(read("nv12", 2, 2, 2, y4 + u_red + v_red)(1, 1), 255, 0, 0));
   EXPECT_TRUE(near(read("nv21", 2, 2, 2, y4 + v_red + u_red)(1, 1), 255, 0, 0));
-  EXPECT_NE(error_of([&] { read("yuv422", 3, 1, 6, "abcdef"); }).find("3 x 1 pixels, which no"),
+  EXPECT_NE(error_of([&] {
+              read("yuv422", 3, 1, 6, "abcdef");
+            }).find("3 x 1 pixels, which yuv422 does not allow"),
             std::string::npos);
   EXPECT_NE(error_of([&] { read("nv12", 2, 2, 2, "abcd"); }).find("holds 4 bytes"),
             std::string::npos);
@@ -803,7 +806,8 @@ TEST_P(Colors, OfAMosaicInAPngAreThoseOfTheScene) {
   EXPECT_EQ(read_as("mono8; png compressed mono8")(3, 3), (Rgb8{40, 40, 40}));
 }
 
-/// Color of 8 x 6 pixels; a depth camera of 4 x 3, 0.5 m to its right, sees a plane at 2 m.
+/// Color images of 8 x 6 pixels; a depth camera with 4 x 3 pixels, 0.5 m to the right, sees a plane
+/// at 2 m.
 class Unregistered : public RosRecording {
  protected:
   static ros::CameraInfo info(const ros::Header& header, std::uint32_t width, double f, double cx,
@@ -815,7 +819,7 @@ class Unregistered : public RosRecording {
     info.k = {f, 0, cx, 0, f, cy, 0, 0, 1};
     return info;
   }
-  /// @param color, depth  topics; their calibrations lie beside them
+  /// @param color, depth  topics
   void add_cameras(Foreign& robot, const std::string& color, const std::string& color_info,
                    const std::string& depth, const std::string& depth_info) const {
     const std::string pixels(8 * 6 * 3, 'c');
@@ -828,8 +832,8 @@ class Unregistered : public RosRecording {
     robot.add(color_info, 0, info(robot.header(0), 8, 8, 3.5, 2.5));
     robot.add(depth_info, 0, info(of_depth, 4, 4, 1.5, 1));
   }
-  /// A point at x = z (u - 1.5) / 4 + 0.5 m is seen at 8 x / z + 3.5 = 2 u + 2.5, 2 v + 2.5 - 2:
-  /// each depth pixel covers two columns and rows, from 2 u + 2 on.
+  /// A point at x = z (u - 1.5) / 4 + 0.5 m appears at 8 x / z + 3.5 = 2 u + 2.5 and 2 v + 2.5 - 2:
+  /// each depth pixel covers two columns and two rows, starting at column 2 u + 2.
   void expect_registered(const OpenedRecording& opened) const {
     const Grid2d<float> depth_m = opened.sequence->frame(0, RandomStream(0)).depth_m;
     for (int y = 0; y < 6; ++y)
@@ -857,7 +861,7 @@ TEST_P(Unregistered, DepthIsRegisteredByWhatRealSensesRecorderStates) {
   add_cameras(
       robot, "/device_0/sensor_1/Color_0/image/data", "/device_0/sensor_1/Color_0/info/camera_info",
       "/device_0/sensor_0/Depth_0/image/data", "/device_0/sensor_0/Depth_0/info/camera_info");
-  // From the reference to the stream: the reference lies 1 m to the right of depth.
+  // From the reference to the stream: the reference is 1 m to the right of the depth camera.
   robot.add("/device_0/sensor_0/Depth_0/tf/0", 0, ros::Transform{{1, 0, 0}, {}});
   robot.add("/device_0/sensor_1/Color_0/tf/0", 0, ros::Transform{{1.5, 0, 0}, {}});
   robot.write(writer());
@@ -879,7 +883,7 @@ TEST_P(Unregistered, WithoutATransformItIsRefused) {
   add_cameras(robot, "/rgb/image_raw", "/rgb/camera_info", "/depth/image_raw",
               "/depth/camera_info");
   robot.tf(0, "odom", "cam_optical", shift(1, 2, 3));
-  robot.tf(1, "odom", "cam_optical", shift(2, 2, 3));  // moves
+  robot.tf(1, "odom", "cam_optical", shift(2, 2, 3));  // it moves
   robot.tf(0, "odom", "depth_optical", shift(1.5, 2, 3));
   robot.write(writer());
   EXPECT_NE(error_of([&] { open(); })
@@ -919,7 +923,7 @@ TEST_P(Unregistered, DepthInTheFrameOfColorIsAlignedWhateverItsCalibration) {
   const OpenedRecording opened = open(with_topics("depth=/aligned/image"));
   EXPECT_EQ(opened.sequence->frame(0, RandomStream(0)).depth_m(0, 0), 1.0F);
   ASSERT_EQ(opened.notes.size(), 1U);
-  EXPECT_NE(opened.notes[0].find("another calibration than color of /image: it is used as if"),
+  EXPECT_NE(opened.notes[0].find("a different calibration from color of /image: it is used as if"),
             std::string::npos);
 }
 
@@ -935,9 +939,10 @@ TEST(TopicNames, AreKeysAndTopics) {
 }
 
 TEST(TopicNames, OnlyMessagesHaveThem) {
-  EXPECT_NE(
-      error_of([] { open_sequence("tum:/nowhere", with_topics("color=/a")); }).find("has none"),
-      std::string::npos);
+  EXPECT_NE(error_of([] {
+              open_sequence("tum:/nowhere", with_topics("color=/a"));
+            }).find("has no topics"),
+            std::string::npos);
 }
 
 }  // namespace

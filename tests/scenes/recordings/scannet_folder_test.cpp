@@ -27,21 +27,21 @@ class ScannetFolder : public TemporaryFolder {
     camera_.cy_px = 11.5;
   }
 
-  /// Gray that grows to the right; two classes, left and right; depth in whole millimeters.
+  /// Gray that gets brighter to the right; two classes, left and right; depth in whole millimeters.
   ExactFrame frame(std::size_t index) const {
     ExactFrame f;
     f.seen.stamp_ns = static_cast<Stamp>(index) * 40'000'000;
     f.seen.color = Grid2d<Rgb8>(32, 24);
     f.seen.depth_m = Grid2d<float>(32, 24, 1.5F);
     f.seen.depth_m(3, 3) = 0;
-    f.seen.depth_m(4, 4) = 70.0F;  // beyond 16 bits of millimeters
+    f.seen.depth_m(4, 4) = 70.0F;  // too large for 16 bits of millimeters
     f.classes = Grid2d<ClassId>(32, 24, ClassId{5});
     f.instances = Grid2d<InstanceId>(32, 24, InstanceId{3});
     for (int y = 0; y < 24; ++y)
       for (int x = 0; x < 32; ++x) {
         const auto gray = static_cast<std::uint8_t>(40 + 5 * x);
         f.seen.color(x, y) = {gray, gray, gray};
-        if (x >= 16) f.classes(x, y) = 43;  // a potted plant: NYU40 has none
+        if (x >= 16) f.classes(x, y) = 43;  // a potted plant, which NYU40 lacks
       }
     f.world_from_camera = SE3(so3_exp({0, 0.1 * static_cast<double>(index), 0}), {1, 2, 3});
     return f;
@@ -97,7 +97,7 @@ TEST_F(ScannetFolder, ATableThatKnowsNoneOfTheIdsIsTold) {
   const auto told = notes({.calibration = {}, .classes = folder_ / "other.yaml"});
   ASSERT_EQ(told.size(), 1U);
   EXPECT_TRUE(names(told[0], {"s_2d-label-filt.zip", "frame 0", "other.yaml"}));
-  // A damaged image of labels costs its frame, not the recording.
+  // A damaged label image costs only its frame, not the recording.
   write("d/a.sens", read_file(folder_ / "s" / "s.sens"));
   write("d/label-filt/0.png", "no image");
   EXPECT_TRUE(
@@ -108,10 +108,11 @@ TEST_F(ScannetFolder, ATableThatKnowsNoneOfTheIdsIsTold) {
 TEST_F(ScannetFolder, SaysWhichFileIsWrongAndWhichLabelsAreMissing) {
   write_scannet_recording(folder_ / "s", camera_, 2, [&](std::size_t i) { return frame(i); });
   const fs::path table = folder_ / "s" / "scannetv2-labels.combined.tsv";
-  // cx 15.5 lies within a width of 16 pixels, but half a pixel beyond the last one's center.
+  // cx 15.5 is less than the width of 16 pixels, but half a pixel beyond the center of the last
+  // one.
   std::string sens = read_file(folder_ / "s" / "s.sens");
   const std::uint32_t width = 16;
-  const std::size_t depth_width = 4 + 8 + 10 + 4 * 64 + 8 + 8;  // behind the name "Modelhouse"
+  const std::size_t depth_width = 4 + 8 + 10 + 4 * 64 + 8 + 8;  // after the name "Modelhouse"
   sens.replace(depth_width, 4, std::string(reinterpret_cast<const char*>(&width), 4));
   const auto file = write("b/narrow.sens", sens);
   std::vector<std::string> notes;
@@ -180,8 +181,8 @@ TEST_F(ScannetFolder, APoseThatIsNoneIsCountedAndItsFrameOffered) {
       << notes[0];
 }
 
-/// Color has twice the pixels, another center, and stands 10 cm to the right: a point at depth z
-/// is seen fx * 0.1 / z further left.
+/// The color camera has twice the resolution and a different center, and is 10 cm to the right: a
+/// point at depth z appears fx * 0.1 / z farther to the left.
 TEST_F(ScannetFolder, ColorAndLabelsAreTakenWhereTheColorCameraSawThePixel) {
   RecordingInfo info;
   info.depth = {16, 12, 20, 20, 7.5, 5.5, {}};
@@ -208,7 +209,7 @@ TEST_F(ScannetFolder, ColorAndLabelsAreTakenWhereTheColorCameraSawThePixel) {
   };
   for (int x = 2; x < 14; ++x) {
     const double column = column_of(x, 2.0), row = 80 * ((5 - 5.5) / 20) + 23.5;
-    // Averaging over 4 x 4 pixels, JPEG, and remap's steps of 1/32 px: a few levels.
+    // Averaging over 4 x 4 pixels, JPEG and remap's steps of 1/32 px cost a few gray levels.
     EXPECT_NEAR(frame.color(x, 5).r, 3 * column, 6) << x;
     EXPECT_NEAR(frame.color(x, 5).g, 4 * row, 8) << x;
     EXPECT_EQ(frame.semantics.at(x, 5).most_probable(), std::round(column) < 32 ? 1 : 5) << x;

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A made scene of the data set: what its two cameras would see of a wall and a square.
+/// A made-up scene in the data set's layout: what its two cameras would see of a wall and a square.
 class SevenScenes : public MadeFolder {
  protected:
   static SE3 world_from_depth(int frame) {
@@ -39,8 +39,8 @@ class SevenScenes : public MadeFolder {
   }
 };
 
-// Depth at the color camera is that of closed form there: on the near square, on the wall behind
-// it, and none where the square hides the wall from the depth camera alone.
+// Depth in the color camera has its closed form: that of the near square, that of the wall behind
+// it, and none where the square hides the wall only from the depth camera.
 TEST_F(SevenScenes, DepthIsRegisteredToTheColorCamera) {
   write_sequence("seq-01", 2);
   const OpenedRecording opened = open("seq-01");
@@ -76,12 +76,12 @@ TEST_F(SevenScenes, DepthIsRegisteredToTheColorCamera) {
   for (int v = 1; v + 1 < 480; ++v)
     for (int u = 1; u + 1 < 640; ++u) {
       const Class here = class_of(u, v);
-      bool at_edge = false;  // a point may round over it
+      bool at_edge = false;  // a point may be rounded across it
       for (int k = 0; k < 9; ++k)
         at_edge = at_edge || class_of(u + k % 3 - 1, v + k / 3 - 1) != here;
       if (at_edge) continue;
       ++count[here];
-      // Half a millimeter by the files, the rest by half a pixel on a wall that is turned by 6
+      // Half a millimeter is due to the files, the rest to half a pixel on a wall turned by 6
       // degrees.
       const double expected_m = here == kHidden || here == kOutside ? 0 : seen_m(u, v);
       EXPECT_NEAR(frame.depth_m(u, v), expected_m, 1.5e-3) << u << ' ' << v;
@@ -106,7 +106,7 @@ TEST_F(SevenScenes, ACameraOfAnotherSizeIsRefused) {
     open_sequence((folder_ / "seq-01").string(), config);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("half.yaml: is of 320 x 240"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("half.yaml: has 320 x 240"), std::string::npos)
         << error.what();
   }
 }
@@ -166,7 +166,7 @@ TEST_F(SevenScenes, AFolderWithoutFramesIsRefused) {
   EXPECT_NE(complaint("seven_scenes", "absent").find("absent"), std::string::npos);
 }
 
-// A run's key covers poses and splits as well as images.
+// The key of a run covers poses and splits as well as images.
 TEST_F(SevenScenes, EveryFileIsOfTheRecording) {
   write_sequence("seq-01", 2);
   write("TestSplit.txt", "sequence1\n");

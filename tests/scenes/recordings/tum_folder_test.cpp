@@ -95,7 +95,7 @@ TEST_F(TumFolder, EveryDepthIsTheQuotientOfTwoDoublesRounded) {
   }
 }
 
-// Lossy compression makes classes that nobody wrote.
+// Lossy compression creates class ids that were never written.
 TEST_F(TumFolder, LabelsThatAreNotExactAreRefused) {
   TumWriter writer(folder_, camera_);
   writer.add(0, exact(0, SE3()));
@@ -137,7 +137,7 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.9 b.png\n";
   std::vector<std::string> notes;
   const auto frames = load_tum_folder(folder_, &notes);
-  ASSERT_EQ(frames.size(), 1u);  // nothing was seen near 0.9 s
+  ASSERT_EQ(frames.size(), 1u);  // there is no image close to 0.9 s
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_NE(notes[0].find("1 of 2 color images have no depth image"), std::string::npos);
   const auto refused = [&](const std::string& part) {
@@ -150,11 +150,11 @@ TEST_F(TumFolder, NamesWhatIsWrong) {
   };
   refused("a.png: cannot be read: no such file");
   std::ofstream(folder_ / "a.png") << "no image";
-  refused("a.png: is not an image, or a damaged one");
+  refused("a.png: is not an image, or is damaged");
   const std::string whole = encode_png(Grid2d<std::uint8_t>(8, 6));
   std::ofstream(folder_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 12);
   refused("a.png: is truncated");
-  std::string huge = whole;  // its header announces 100000 x 100000 pixels
+  std::string huge = whole;  // its header declares 100000 x 100000 pixels
   huge.replace(16, 8, std::string("\0\1\x86\xa0\0\1\x86\xa0", 8));
   std::ofstream(folder_ / "a.png", std::ios::binary) << huge;
   refused("a.png: is 100000 x 100000, the camera has 8 x 6");
@@ -187,11 +187,11 @@ TEST_F(TumFolder, WhatHasNoUseIsTold) {
   EXPECT_NE(notes("").find("label.txt: 1 of 1 frames have no label image"), std::string::npos);
   EXPECT_NE(notes("").find("no frame has a true pose at its time"), std::string::npos) << notes("");
   const fs::path classes = folder_ / "classes.yaml";
-  EXPECT_NE(notes(classes).find("has no use: the recording has no labels"), std::string::npos);
+  EXPECT_NE(notes(classes).find("is not used: the recording has no labels"), std::string::npos);
   std::ofstream(folder_ / "label.txt") << "0.1 c.png\n";
   EXPECT_NE(notes(classes).find("c.png: none of its ids has a class"), std::string::npos)
       << notes(classes);
-  fs::remove(folder_ / "c.png");  // costs its frame the labels, not the recording
+  fs::remove(folder_ / "c.png");  // costs the frame its labels, not the recording
   EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
   std::ofstream(folder_ / "c.png", std::ios::binary) << encode_jpeg(Grid2d<Rgb8>(4, 4), 90);
   EXPECT_EQ(notes(classes).find("none of its ids"), std::string::npos);
@@ -226,8 +226,7 @@ TEST_F(TumFolder, ListsInNoOrderAreSortedByTheirStamps) {
   EXPECT_EQ(frames[2].color, folder_ / "d.png") << "of one stamp: as listed";
   EXPECT_EQ(frames[3].depth, folder_ / "3.png");
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("rgb.txt: its images are not in the order of their stamps"),
-            std::string::npos);
+  EXPECT_NE(notes[0].find("rgb.txt: its images are not ordered by timestamp"), std::string::npos);
   std::ofstream(folder_ / "rgb.txt") << "0.1 a.png\n0.2 c.png\n0.2 d.png\n0.3 b.png\n";
   notes.clear();
   load_tum_folder(folder_, &notes);
@@ -236,7 +235,8 @@ TEST_F(TumFolder, ListsInNoOrderAreSortedByTheirStamps) {
 
 TEST_F(TumFolder, TakesTheNearestDepthAndTheFirstOfEquals) {
   fs::create_directories(folder_);
-  // Stamps in tens of milliseconds, out of order and more than once; some lie as near on each side.
+  // Timestamps in tens of milliseconds, out of order and repeated; some have equally near partners
+  // on both sides.
   const RandomStream draw(7);
   std::string colors, depths;
   std::vector<Stamp> color_ns, depth_ns;
@@ -283,7 +283,7 @@ TEST_F(TumFolder, ReadsAssociationsWhereTheListsAreMissing) {
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[1].color, folder_ / "c.png");
   EXPECT_EQ(frames[1].depth, folder_ / "d.png");
-  // As listed, however far apart.
+  // Pairs are taken as listed, no matter how far apart they are.
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png 0.2 b.png\n";
   EXPECT_EQ(load_tum_folder(folder_)[0].depth, folder_ / "b.png");
   std::ofstream(folder_ / "associations.txt") << "0.1 a.png\n";
@@ -299,7 +299,7 @@ TEST_F(TumFolder, TheImagesTellWhichOfAPairIsDepth) {
   const std::string color = " rgb/0.100000000.png", depth = " depth/0.100000000.png";
   for (const std::string& line :
        {"0.1" + color + " 0.11" + depth, "0.11" + depth + " 0.1" + color}) {
-    // The first pair cannot be read, or only half of it.
+    // The first pair cannot be read at all, or only half of it can.
     for (const std::string& before : {std::string(), std::string("0.05 x.png 0.05 y.png\n")}) {
       std::ofstream(folder_ / "associations.txt") << before << line << "\n";
       const RecordedFrame read = load_tum_folder(folder_).back();
@@ -319,8 +319,8 @@ TEST_F(TumFolder, AssociationsOfThreeListsAreRefusedByTheirWords) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("associations.txt:2: '-0.68' is no file: a line is "
-                        "'stamp file stamp file', and this one has 12 words"),
+                  .find("associations.txt:2: '-0.68' is not a file: a line is 'stamp file stamp "
+                        "file', but this one has 12 words"),
               std::string::npos)
         << error.what();
   }
@@ -345,7 +345,7 @@ TEST_F(TumFolder, OfEth3dBringsItsCalibration) {
   EXPECT_EQ(camera.rate_hz, 25);
   EXPECT_TRUE(camera.distortion.none());
   EXPECT_EQ(opened.sequence->frame(1, RandomStream()).depth_m, frame(0).depth_m);
-  // The list of pairs alone is enough.
+  // The list of pairs is enough.
   fs::remove(folder_ / "rgb.txt");
   std::ofstream(folder_ / "associated.txt")
       << "0.1 rgb/0.100000000.png 0.1 depth/0.100000000.png\n";
@@ -356,8 +356,8 @@ TEST_F(TumFolder, OfEth3dBringsItsCalibration) {
   }
 }
 
-// As people write them: other names of the list of pairs, ROS' stamps, gray cameras, simulators'
-// images with opacity.
+// Variants in use: other names for the list of pairs, ROS timestamps, gray cameras, images with an
+// alpha channel from simulators.
 TEST_F(TumFolder, IsReadAsPeopleWriteIt) {
   TumWriter writer(folder_, camera_);
   writer.add(frame(100'000'000));
@@ -394,7 +394,8 @@ TEST_F(TumFolder, AScaleOfDepthThatGivesWayIsTold) {
   const auto has_note = [&](const std::string& layout) {
     const auto opened = open_sequence(layout + (folder_ / "rgbd_bonn_x").string(), config);
     return std::ranges::any_of(opened.notes, [](const std::string& note) {
-      return note == "mine.yaml: its depth per meter, 4000, gives way to 5000, the recording's own";
+      return note ==
+             "mine.yaml: its depth per meter, 4000, is replaced by 5000, the recording's own";
     });
   };
   EXPECT_TRUE(has_note("bonn:"));

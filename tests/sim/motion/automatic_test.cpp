@@ -31,7 +31,7 @@ Tour tour_to(const Eigen::Vector2d& start, const Eigen::Vector2d& goal) {
   return tour;
 }
 
-/// The rooms that a path leads through; they are rectangles.
+/// The rooms that a path passes through; all rooms are rectangles.
 std::set<std::string> rooms_of(const DrivenPath& path, const Scene& scene) {
   std::set<std::string> rooms;
   for (const TimedPose& pose : path.base)
@@ -111,7 +111,7 @@ TEST(Planned, GoesRoundWhatStandsInTheWay) {
   Scene scene = empty_room();
   add_box(scene, "sofa", {5, 0, 0}, {6, 8, 0.8F});
   Tour tour = tour_to({3, 2}, {8, 2});
-  EXPECT_THROW(drive(scene, pepper(), tour), InputError);  // straight on it is stuck
+  EXPECT_THROW(drive(scene, pepper(), tour), InputError);  // the straight path gets stuck
   tour.plan = true;
   const DrivenPath path = drive(scene, pepper(), tour);
   EXPECT_EQ(path.contact_time_s, 0.0);
@@ -132,15 +132,16 @@ TEST(Planned, AWaypointThatCannotBeReachedIsNamed) {
     }
     return "no error";
   };
-  EXPECT_NE(refusal({8, 2}).find("test.yaml:7: waypoint 1: [8.00, 2.00] cannot be reached: no way "
-                                 "from [3.00, 2.00]"),
-            std::string::npos)
+  EXPECT_NE(
+      refusal({8, 2}).find(
+          "test.yaml:7: waypoint 1: [8.00, 2.00] cannot be reached: no path from [3.00, 2.00]"),
+      std::string::npos)
       << refusal({8, 2});
   EXPECT_NE(refusal({5.1, 2}).find("cannot be reached against sofa"), std::string::npos);
 }
 
 TEST(Replay, KeepsTheShapeOfTheRecordingAndStaysClear) {
-  // A wavy walk of 4 m, at 100 Hz, somewhere far from the room and turned.
+  // A wavy walk of 4 m at 100 Hz, rotated and far from the room.
   Trajectory recorded;
   for (int i = 0; i <= 800; ++i) {
     const double t = 0.01 * i;
@@ -151,7 +152,7 @@ TEST(Replay, KeepsTheShapeOfTheRecordingAndStaysClear) {
   }
   Scene scene = empty_room();
   add_box(scene, "table", {3, 3, 0}, {7, 7, 0.75F});    // below the camera
-  add_box(scene, "cupboard", {4, 8, 0}, {7, 9, 2.0F});  // not below it
+  add_box(scene, "cupboard", {4, 8, 0}, {7, 9, 2.0F});  // not below the camera
   const Robot robot = pepper();
   const DrivenPath path = replay(scene, robot.camera, recorded, "walk.tum");
   ASSERT_EQ(path.camera.size(), 241U);
@@ -159,7 +160,7 @@ TEST(Replay, KeepsTheShapeOfTheRecordingAndStaysClear) {
     const Eigen::Vector3d p = path.camera[i].world_from_camera.translation();
     EXPECT_TRUE(p.x() > 0.1 && p.x() < 9.9 && p.y() > 0.1 && p.y() < 9.9) << p.transpose();
     EXPECT_NEAR(p.z(), 1.2, 1e-12);
-    // Distance from the start and turn since then are the recording's.
+    // Distance from the start and rotation since the start are those of the recording.
     const double t = static_cast<double>(i) / 30;
     EXPECT_NEAR((p - path.camera[0].world_from_camera.translation()).norm(),
                 std::hypot(0.5 * t, 0.2 * std::sin(t)), 1e-4);
@@ -175,7 +176,7 @@ TEST(Replay, KeepsTheShapeOfTheRecordingAndStaysClear) {
     pose.world_from_camera =
         SE3(pose.world_from_camera.rotation(),
             10 * pose.world_from_camera.translation() - Eigen::Vector3d(0, 0, 9 * 1.2));
-  EXPECT_THROW(replay(scene, robot.camera, recorded, "far.tum"), InputError);  // 40 m
+  EXPECT_THROW(replay(scene, robot.camera, recorded, "far.tum"), InputError);  // 40 m does not fit
 }
 
 }  // namespace

@@ -44,8 +44,8 @@ TEST(ScanByHand, MovesAsRealCamerasDo) {
   for (std::uint64_t seed = 0; seed < 4; ++seed)
     add_speeds(speeds, scan_by_hand(office(), camera, {.seed = seed, .frames = 1000}),
                camera.rate_hz);
-  // 7-Scenes' redkitchen at 30 Hz: 0.035 / 0.133 / 0.222 / 0.303 / 0.423 m/s and 1.8 / 8.1 / 13.4 /
-  // 18.7 / 26 deg/s. Recordings differ among themselves by more than these bounds.
+  // redkitchen of 7-Scenes at 30 Hz: 0.035 / 0.133 / 0.222 / 0.303 / 0.423 m/s and 1.8 / 8.1 / 13.4
+  // / 18.7 / 26 deg/s. Recordings differ from each other by more than these bounds.
   EXPECT_NEAR(percentile(speeds.linear_m_per_s, 0.25), 0.133, 0.06);
   EXPECT_NEAR(percentile(speeds.linear_m_per_s, 0.5), 0.222, 0.06);
   EXPECT_NEAR(percentile(speeds.linear_m_per_s, 0.75), 0.303, 0.08);
@@ -53,7 +53,7 @@ TEST(ScanByHand, MovesAsRealCamerasDo) {
   EXPECT_NEAR(percentile(speeds.angular_deg_per_s, 0.25), 8.1, 4);
   EXPECT_NEAR(percentile(speeds.angular_deg_per_s, 0.5), 13.4, 5);
   EXPECT_NEAR(percentile(speeds.angular_deg_per_s, 0.75), 18.7, 8);
-  // Fast turns as in TUM's fr1/rpy.
+  // Turns as fast as in TUM's fr1/rpy.
   const double top = percentile(speeds.angular_deg_per_s, 1.0);
   EXPECT_GT(top, 60);
   EXPECT_LT(top, 150);
@@ -73,7 +73,7 @@ TEST(ScanByHand, KeepsClearAndSeesTheWholeRoom) {
       EXPECT_GE(grid.clearance_at(p.head<2>()), 0.1) << p.transpose();
       EXPECT_NEAR(p.z(), 1.4, 0.2);
       const Eigen::Vector3d ahead = pose.world_from_camera.rotation().col(2);
-      // The image's left end, middle and right end.
+      // The left end, the middle and the right end of the image.
       const double half_view_rad = std::atan(0.5 * camera.width_px / camera.fx_px);
       for (const double aside_rad : {-half_view_rad, 0.0, half_view_rad})
         quarters.insert(std::lround((std::atan2(ahead.y(), ahead.x()) + aside_rad) / M_PI_2 + 8) %
@@ -84,8 +84,8 @@ TEST(ScanByHand, KeepsClearAndSeesTheWholeRoom) {
   }
 }
 
-// In a bare hall with one table in its middle a camera that looked anywhere would have the table's
-// middle in view in a sixth of the frames (a view is 58 degrees wide).
+// In a bare hall with a table in its center, a camera with random headings would have the table's
+// center in view in a sixth of the frames (the field of view is 58 degrees).
 TEST(ScanByHand, LooksAtFurnitureRatherThanAtBareWalls) {
   const Camera camera = test::pepper().camera;
   const double half_view_rad = std::atan(0.5 * camera.width_px / camera.fx_px);
@@ -142,7 +142,7 @@ TEST(ScanByHand, EachPartOfTheMotionHasItsPublishedSize) {
     square += std::pow(pose.world_from_camera.translation().x() - mean, 2);
   EXPECT_NEAR(std::sqrt(square / 3000), 0.005, 0.0005);
 
-  // Tremor alone: what a frame differs from the mean of those beside it holds most of 6 to 12 Hz.
+  // Tremor only: the root mean square is the configured one.
   still.sway_rms_m = 0;
   still.tremor_rms_m = 0.00025;
   const DrivenPath trembling = scan_by_hand(office(), camera, still);

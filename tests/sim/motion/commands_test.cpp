@@ -110,8 +110,9 @@ TEST(Commands, TheReflexKeepsItsDistanceAtAnySpeedAndSlant) {
       script.start_heading_rad = heading_deg * M_PI / 180;
       const double x =
           drive(empty_room(), robot, script).path.base.back().world_from_camera.translation().x();
-      // Along the way, until the shell's foremost point of the wall would touch, or what is less
-      // than aside_m beside the way would be level with the middle.
+      // The distance left along the path: until the shell's foremost point would touch the wall, or
+      // until wall that is less than aside_m to the side of the shell would be level with the
+      // center.
       const double slant = std::tan(script.start_heading_rad), half_m = 0.26 + 0.10;
       const double touch_m = (10 - x - 0.26) / std::cos(script.start_heading_rad);
       const double level_m = (10 - x) / std::cos(script.start_heading_rad) - half_m * slant;
@@ -140,8 +141,8 @@ TEST(Commands, TheReflexLooksTenCentimetersAside) {
 
 TEST(Commands, TheReflexLetsPassWhatIsAsideAndStopsForAPerson) {
   Scene scene = empty_room();
-  add_box(scene, "shelf", {6, 5.40F, 0}, {8, 6, 1});         // 0.14 m beside the way
-  add_box(scene, "bin", {6, 4.2F, 0}, {6.5F, 4.68F, 0.5F});  // 0.06 m beside it
+  add_box(scene, "shelf", {6, 5.40F, 0}, {8, 6, 1});         // 0.14 m beside the path
+  add_box(scene, "bin", {6, 4.2F, 0}, {6.5F, 4.68F, 0.5F});  // 0.06 m beside the path
   CommandScript script = script_of({{.duration_s = 8, .forward_m_per_s = 0.4}}, true);
   const auto end_x = [&](const std::vector<MovingObstacle>& others) {
     return drive(scene, pepper(), script, others)
@@ -149,7 +150,7 @@ TEST(Commands, TheReflexLetsPassWhatIsAsideAndStopsForAPerson) {
         .world_from_camera.translation()
         .x();
   };
-  EXPECT_LT(end_x({}), 5.8);  // the bin is too near
+  EXPECT_LT(end_x({}), 5.8);  // the bin is too close
   scene = empty_room();
   add_box(scene, "shelf", {6, 5.40F, 0}, {8, 6, 1});
   EXPECT_GT(end_x({}), 7.5);
@@ -205,7 +206,7 @@ TEST(Commands, AStartInsideAPersonIsRefused) {
 }
 
 TEST(CommandedBase, WhoIsShovedDidNotDriveThere) {
-  // A person walks into the robot and stops; the robot rolls on to the wall behind it, at x = 0.
+  // A person walks into the robot and stops; the robot rolls on until the wall behind it, at x = 0.
   const MovingObstacle person{.instance = 99, .path = [](double time_s) {
                                 return Eigen::Vector2d(std::max(3.0 - 0.8 * time_s, 1.1), 5);
                               }};
@@ -240,7 +241,7 @@ TEST(ReadSensors, LasersAndSonarsMeasureTheRoom) {
   ASSERT_EQ(r.lasers_m.size(), 3U);
   ASSERT_EQ(r.lasers_m[0].size(), 15U);
   EXPECT_NEAR(r.lasers_m[0][7], 1.5 - 0.0562, 1e-4);  // the middle ray of the front laser
-  // Outer rays of 30 deg: the box is 2 m wide, its face 1.44 m away.
+  // Outer rays at 30 deg: the box is 2 m wide, its face is 1.44 m away.
   EXPECT_NEAR(r.lasers_m[0][0], (1.5 - 0.0562) / std::cos(M_PI / 6), 1e-3);
   EXPECT_EQ(r.lasers_m[1][7], 0.0F);  // nothing within 3 m to the left
   EXPECT_NEAR(r.sonars_m[0], 1.5 - 0.0699, 0.03);
@@ -248,7 +249,7 @@ TEST(ReadSensors, LasersAndSonarsMeasureTheRoom) {
   EXPECT_NEAR(r.specific_force_m_per_s2.z(), 9.81, 1e-9);
   EXPECT_FALSE(r.bumpers[0] || r.bumpers[1] || r.bumpers[2]);
 
-  // Somebody stands behind it.
+  // A person stands behind the robot.
   const MovingObstacle person{.path = [](double) { return Eigen::Vector2d(3.5, 5); }};
   const RobotReadings with = read_sensors(scene, pepper(), base, 0, {person});
   EXPECT_NEAR(with.moments.at(0).sonars_m[1], 1.5 - 0.0718 - 0.22, 0.04);
@@ -259,7 +260,7 @@ TEST(ReadSensors, LaserNoiseIsTheLargerOfALengthAndAShare) {
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
   LaserScanner& laser = equipment->lasers[0];
   laser.rays = 2001;
-  laser.field_of_view_rad = 1e-6;  // all rays measure one range
+  laser.field_of_view_rad = 1e-6;  // all rays measure the same distance
   laser.sigma_m = 0.010;
   laser.sigma_share = 0.035;
   robot.equipment = equipment;
@@ -295,7 +296,7 @@ TEST(ReadSensors, TheBumperThatIsTouchedIsPressed) {
 }
 
 TEST(ReadSensors, TheImuFeelsAccelerationAndTurning) {
-  Trajectory base;  // constant acceleration of 0.3 m/s2 ahead, then nothing; turning at 0.5 rad/s
+  Trajectory base;  // constant acceleration of 0.3 m/s2 ahead, then none; turning at 0.5 rad/s
   for (int i = 0; i <= 60; ++i) {
     const double t = i / 30.0;
     base.push_back(

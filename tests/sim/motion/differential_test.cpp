@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tours and scripts of a robot that cannot move sideways.
+// Tours and scripts for a robot that cannot move sideways.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -24,7 +24,7 @@ using test::add_box;
 using test::empty_room;
 using test::turtlebot;
 
-/// The TurtleBot with its axle elsewhere on its base.
+/// The TurtleBot with its axle at a different place on its base.
 Robot turtlebot_with_axle_at(double x) {
   Robot robot = turtlebot();
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
@@ -44,11 +44,11 @@ Tour tour_of(std::initializer_list<Vector2d> places) {
 }
 
 struct Sideways {
-  double middle_m_per_s = 0;  ///< the most that the wheels' middle moved across its heading
-  double turned_rad = 0;      ///< in all
+  double middle_m_per_s = 0;  ///< maximum lateral speed of the point midway between the wheels
+  double turned_rad = 0;      ///< total angle
 };
 
-/// Between neighboring poses as a constant twist.
+/// Treats the motion between neighboring poses as a constant twist.
 Sideways sideways(const Trajectory& base, const WheelBase& wheels) {
   Sideways most;
   for (std::size_t i = 1; i < base.size(); ++i) {
@@ -62,9 +62,9 @@ Sideways sideways(const Trajectory& base, const WheelBase& wheels) {
   return most;
 }
 
-// Between frames, a constant twist leaves out how the turn rate and the speed change: (v alpha + a
-// omega) t^2 / 12, at the TurtleBot's limits (0.26 x 3.2 + 2.5 x 1.82) / (900 x 12) = 0.5 mm/s. A
-// wheel base that is 1 cm off slides by 18 mm/s.
+// Between frames, a constant twist ignores the changes of turn rate and speed: (v alpha + a omega)
+// t^2 / 12, which at the TurtleBot's limits is (0.26 x 3.2 + 2.5 x 1.82) / (900 x 12) = 0.5 mm/s. A
+// wheel base that is off by 1 cm slides at 18 mm/s.
 constexpr double kNotSideways_m_per_s = 6e-4;
 
 TEST(DifferentialMotion, FacesItsWayAndKeepsEveryLimit) {
@@ -77,8 +77,8 @@ TEST(DifferentialMotion, FacesItsWayAndKeepsEveryLimit) {
       }
       const WheelBase& wheels = *robot.differential();
       Tour tour = tour_of({{0, 0}, {2, 0}, {2, 2}, {1.5, 2.2}, {1, 1}, {0, 1}});
-      tour.waypoints[1].look_at_m = Vector2d(9, 9);  // cannot be had
-      tour.waypoints[3].heading_rad = 2.0;           // turned to at a stop
+      tour.waypoints[1].look_at_m = Vector2d(9, 9);  // impossible for this robot
+      tour.waypoints[3].heading_rad = 2.0;           // it turns to this at a stop
       tour.waypoints.back().turn_rad = -4;
       tour.waypoints.back().pause_s = 0.5;
       constexpr double h = 1.0 / 240;
@@ -141,7 +141,8 @@ TEST(RoundedPath, EasedBendsAreSmoothAndStayBetweenTheCornerAndItsArc) {
   EXPECT_GT(eased.length_m(), arcs.length_m());
   EXPECT_LT(eased.length_m(), 4 + (corners[3] - corners[2]).norm());
   EXPECT_LT((eased.at(eased.length_m()).position_m - corners.back()).norm(), 1e-12);
-  // The tangent is the derivative of the place, and the curvature that of the tangent's angle.
+  // The direction is the derivative of the position, and the curvature is that of the direction's
+  // angle.
   constexpr double d = 1e-5;
   for (double s = 0.01; s < eased.length_m() - 0.01; s += 0.013) {
     const PathPoint before = eased.at(s - d), here = eased.at(s), after = eased.at(s + d);
@@ -205,7 +206,8 @@ TEST(Drive, AnAutomaticTourOfATwoWheeledRobotTouchesNothing) {
 TEST(Drive, ATwoWheeledRobotThatIsPushedAsideSteersBack) {
   const Robot robot = turtlebot();
   MovingObstacle pedestrian{.instance = 90, .path = [](double t) {
-                              // Comes from the side as it passes, shoves by some cm, and leaves.
+                              // Comes from the side as the robot passes, pushes it by a few cm, and
+                              // leaves.
                               const double y = 4.2 + std::clamp(0.3 * (t - 6.7), 0.0, 0.4) -
                                                std::max(0.0, 0.3 * (t - 8.2));
                               return Vector2d(3.9, y);
@@ -248,12 +250,12 @@ TEST(Commands, WhatTheRobotLacksIsToldWithFileAndLine) {
   EXPECT_EQ(refusal(robot, script_of({{.duration_s = 1, .head_yaw_rad = 0.2, .line = 8}})),
             "test.yaml:8: robot 'turtlebot3' has no head to move (its file: equipment.head)");
   CommandScript script = script_of({{.duration_s = 1, .forward_m_per_s = 0.2}});
-  EXPECT_EQ(refusal(robot, script), "no error");  // though it has neither reflex nor jerk limits
+  EXPECT_EQ(refusal(robot, script), "no error");  // it has neither reflex nor jerk limits
   script.reflex = true;
   EXPECT_EQ(refusal(robot, script),
-            "test.yaml: robot 'turtlebot3' has no reflex to be awake (its file: "
+            "test.yaml: robot 'turtlebot3' has no reflex to enable (its file: "
             "equipment.collision_reflex)");
-  // Without wheels, any direction is possible, and without equipment, too.
+  // Without wheels, or without equipment, any direction is possible.
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
   equipment->wheels.reset();
   robot.equipment = equipment;
@@ -279,9 +281,9 @@ TEST(Commands, ATwoWheeledRobotObeysWithoutMovingSideways) {
     EXPECT_LT(sideways(path.base, wheels).middle_m_per_s, kNotSideways_m_per_s);
     EXPECT_LE(path.peaks.rim_m_per_s, wheels.max_rim_m_per_s);
     EXPECT_GT(path.peaks.rim_m_per_s, 0.9 * wheels.max_rim_m_per_s);
-    // After the first command it has driven straight ahead: v t - v^2 / (2 a).
+    // After the first command it has driven straight ahead by v t - v^2 / (2 a).
     EXPECT_NEAR(path.base[90].world_from_camera.translation().x(), 5.6 - 0.008, 2e-3);
-    // What its encoders tell is where it is.
+    // The odometry from its encoders gives its true position.
     const Trajectory odometry = read_sensors(empty_room(), robot, path.base, 0).odometry;
     ASSERT_EQ(odometry.size(), path.base.size());
     const Trajectory exact = wheel_odometry(path.base, wheels, {}, 0);

@@ -60,7 +60,8 @@ TEST(Drive, AStraightLegIsAsLongAsItsEndsAreApart) {
 
 TEST(Drive, ARoundTripIsShorterThanItsCornersByTheLawOfBows) {
   const DrivenPath path = drive(empty_room(), pepper(), tour_of({to(8, 2), to(8, 8), to(2, 8)}));
-  // A right angle left at distance r before and met again at r after saves (2 - pi / 2) r.
+  // Leaving a right-angled path at distance r before the corner and rejoining it r after the corner
+  // saves (2 - pi / 2) r.
   EXPECT_NEAR(path.length_m, 18.0 - 2 * (2 - M_PI_2) * PathConfig{}.cut_m, 0.02);
 }
 
@@ -91,7 +92,7 @@ TEST(Drive, SampledMotionKeepsTheLimits) {
     const SE3 &a = path.base[i - 1].world_from_camera, &b = path.base[i].world_from_camera;
     const Eigen::Vector3d v = (b.translation() - a.translation()) / dt;
     const double w = std::remainder(heading_rad(b) - heading_rad(a), 2 * M_PI) / dt;
-    // Positions near 8 m are single-precision numbers 1e-6 m apart: 3e-5 m/s, 1e-3 m/s^2.
+    // Single-precision positions near 8 m are 1e-6 m apart: 3e-5 m/s, 1e-3 m/s^2.
     ASSERT_LE(v.norm(), robot.limits.max_velocity_m_per_s + 1e-4) << i;
     ASSERT_LE(std::abs(w), robot.limits.max_turn_rad_per_s + 1e-4) << i;
     ASSERT_LE((v - v_before).norm() / dt, robot.limits.max_acceleration_m_per_s2 + 5e-3) << i;
@@ -128,7 +129,7 @@ TEST(Drive, FacesTravelAPlaceOrAHeading) {
   const DrivenPath travel = drive(empty_room(), pepper(), tour_of({to(8, 8)}));
   EXPECT_NEAR(heading_rad(travel.base.back().world_from_camera), M_PI_4, 0.03);
   const DrivenPath at_place = drive(empty_room(), pepper(), tour_of({looking}));
-  // At the end the place is seen from (2, 8); the heading may lag a little.
+  // At the end, the place to look at is seen from (2, 8); the heading may lag a little.
   EXPECT_NEAR(heading_rad(at_place.base.back().world_from_camera), std::atan2(-3, 7), 0.05);
   const DrivenPath at_heading = drive(empty_room(), pepper(), tour_of({headed}));
   EXPECT_NEAR(heading_rad(at_heading.base.back().world_from_camera), 2.0, 0.01);
@@ -137,7 +138,7 @@ TEST(Drive, FacesTravelAPlaceOrAHeading) {
 
 TEST(Drive, RepeatsBitForBit) {
   Scene scene = empty_room();
-  add_box(scene, "stool", {4.5F, 2.3F, 0}, {5, 3, 0.5F});  // scraped in passing
+  add_box(scene, "stool", {4.5F, 2.3F, 0}, {5, 3, 0.5F});  // touched in passing
   const Tour tour = tour_of({to(8, 2.1), turn(to(8, 6), 3.0), to(3, 6)});
   const DrivenPath a = drive(scene, pepper(), tour), b = drive(scene, pepper(), tour);
   EXPECT_GT(a.contact_time_s, 0.1);
@@ -167,7 +168,7 @@ TEST(Drive, SaysThatAWaypointLiesOutsideTheRooms) {
   for (const bool plan : {false, true}) {
     tour.plan = plan;
     const std::string error = refusal(empty_room(), tour);
-    EXPECT_NE(error.find("test.yaml:9: waypoint 2: [18.00, 2.00] cannot be reached, as it lies in "
+    EXPECT_NE(error.find("test.yaml:9: waypoint 2: [18.00, 2.00] cannot be reached, since it is in "
                          "no room of empty room: "),
               std::string::npos)
         << error;
@@ -191,7 +192,7 @@ TEST(Drive, WhoWalksIntoTheRobotPushesItAsideAndItFindsItsWayBack) {
   EXPECT_GT(touched.contact_time_s, 0);
   EXPECT_LE(touched.max_penetration_m, 5e-3);
   EXPECT_NEAR(touched.base.back().world_from_camera.translation().x(), 8, 0.01);
-  // Somebody who stands in the way stops the tour, which says why.
+  // A person who stands in the path stops the tour, and the error says why.
   const MovingObstacle stands{.instance = 99, .path = [](double) { return Eigen::Vector2d(5, 2); }};
   try {
     drive(empty_room(), pepper(), tour, {stands});
@@ -211,8 +212,7 @@ TEST(Drive, RefusesAStartInsideSomethingOrOutsideTheHouse) {
   EXPECT_NE(error.find("mm inside sofa"), std::string::npos) << error;
   Tour outside = tour_of({to(2, 5)});
   outside.start_m = {-3, 0};
-  EXPECT_NE(refusal(empty_room(), outside).find("lies in no room of empty room"),
-            std::string::npos);
+  EXPECT_NE(refusal(empty_room(), outside).find("is in no room of empty room"), std::string::npos);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ DrivenPath driven(const std::string& tour) {
   return drive(house(), test::pepper(), load_tour(kHouse + "tours/" + tour + ".yaml"));
 }
 
-/// All rooms of the model house are rectangles.
+/// The name of the room at a point; all rooms of the model house are rectangles.
 std::string room_at(const Eigen::Vector3d& p) {
   for (const Room& room : house().rooms) {
     Eigen::Vector2d low = room.polygon_m.front(), high = low;
@@ -41,7 +41,7 @@ std::string room_at(const Eigen::Vector3d& p) {
   return "doorway";
 }
 
-/// Of each room, how many frames look into each quarter (east, north, west, south).
+/// For each room, the number of frames that look into each quarter (east, north, west, south).
 std::map<std::string, std::array<int, 4>> views(const DrivenPath& path) {
   std::map<std::string, std::array<int, 4>> result;
   for (const TimedPose& pose : path.camera) {
@@ -64,12 +64,12 @@ TEST(HouseTours, MappingLeadsThroughAllRoomsAndBack) {
   EXPECT_LE(path.length_m, 70.0);
   EXPECT_LE(path.camera.size(), 4500U);
   EXPECT_GE(path.turned_in_place_rad, 4 * M_PI);
-  // Back where it began, facing the same way.
+  // It ends where it began, facing the same direction.
   const SE3& first = path.base.front().world_from_camera;
   const SE3& last = path.base.back().world_from_camera;
   EXPECT_LT((last.translation() - first.translation()).norm(), 0.02);
   EXPECT_LT(angle_between_rad(first, last), 0.02);
-  // A second of frames and more into every quarter of every room.
+  // At least one second of frames faces each quarter of each room.
   const auto seen = views(path);
   ASSERT_EQ(house().rooms.size(), 4U);
   for (const Room& room : house().rooms) {
@@ -86,7 +86,7 @@ TEST(HouseTours, QueriesComeFromElsewhereInAllRooms) {
   const auto seen = views(query);
   for (const Room& room : house().rooms) EXPECT_TRUE(seen.contains(room.name)) << room.name;
 
-  // No replay of the mapping tour.
+  // The query tour does not repeat the mapping tour.
   EXPECT_GT(test::median_distance_to_nearest_view(query.camera, mapping.camera), 0.15);
 }
 

@@ -7,7 +7,7 @@
 
 namespace mh::test {
 
-/// The base as Bullet moved it kept every limit.
+/// Expects that the base, as moved by Bullet, kept every limit.
 inline void expect_limits_kept(const DrivePeaks& peaks, const BaseLimits& limits) {
   EXPECT_LE(peaks.m_per_s, limits.max_velocity_m_per_s);
   EXPECT_LE(peaks.rad_per_s, limits.max_turn_rad_per_s);

@@ -9,12 +9,13 @@
 
 namespace mh::test {
 
-/// How unlike two views are: 1 rad weighs as much as 1 m.
+/// How different two views are: 1 rad counts as much as 1 m.
 inline double view_distance(const SE3& a, const SE3& b) {
   return (a.translation() - b.translation()).norm() + angle_between_rad(a, b);
 }
 
-/// Every 30th frame of a query path is asked for: the median distance to its nearest mapped view.
+/// The median distance of a query to its nearest mapped view; every 30th frame of the query path is
+/// a query.
 inline double median_distance_to_nearest_view(const Trajectory& queries, const Trajectory& mapped) {
   std::vector<double> distances;
   for (std::size_t q = 0; q < queries.size(); q += 30) {

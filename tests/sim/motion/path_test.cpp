@@ -26,7 +26,7 @@ TEST(RoundedPath, IsContinuousWithUnitSpeedAndContinuousTangent) {
   for (double s = -0.5; s < path.length_m() + 0.5; s += h) {
     const PathPoint a = path.at(s), b = path.at(s + h);
     ASSERT_NEAR((b.position_m - a.position_m).norm(), h, 1e-9) << s;
-    ASSERT_LT((b.direction - a.direction).norm(), h / 0.3) << s;  // no bow is tighter than 0.3 m
+    ASSERT_LT((b.direction - a.direction).norm(), h / 0.3) << s;  // no curve is tighter than 0.3 m
     ASSERT_LT((b.position_m - a.position_m - h * a.direction).norm(), 1e-7) << s;
   }
   EXPECT_LT((path.at(0).position_m - kCorners.front()).norm(), 1e-12);
@@ -63,11 +63,12 @@ TEST(SpeedProfile, TimeAndPlaceAgreeWithTheSpeed) {
   EXPECT_EQ(profile.s_at(0), 0.0);
   EXPECT_NEAR(profile.s_at(profile.duration_s()), path.length_m(), 1e-12);
   EXPECT_NEAR(profile.s_at(1e3), path.length_m(), 1e-12);
-  // A straight way: v / a to speed up and to slow down, the rest at v.
+  // A straight path: v / a each to speed up and to slow down, the rest at v.
   const std::array<Eigen::Vector2d, 2> line{Eigen::Vector2d{0, 0}, {3, 0}};
   const SpeedProfile straight(
       RoundedPath(line), {.velocity_m_per_s = 0.5, .along_m_per_s2 = 0.4, .across_m_per_s2 = 0.3});
-  EXPECT_NEAR(straight.duration_s(), 3 / 0.5 + 0.5 / 0.4, 0.01);  // speed kinks within 1 cm
+  EXPECT_NEAR(straight.duration_s(), 3 / 0.5 + 0.5 / 0.4,
+              0.01);  // the speed changes abruptly within 1 cm
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double h = 1.0 / 240;
 
-/// The base's neighboring places and headings, differenced once, twice, three times; at rest
-/// before and after.
+/// First, second and third differences of the base's positions and headings; it is at rest before
+/// and after.
 DrivePeaks differences(const Stretch& stretch) {
   const auto n = static_cast<long>(stretch.position_m.size());
   const auto p = [&](long i) {
@@ -38,7 +38,7 @@ DrivePeaks differences(const Stretch& stretch) {
   return peaks;
 }
 
-/// Full acceleration one way and another, at random, and back to rest.
+/// Full acceleration in random directions, and back to rest.
 Stretch restless(double acceleration, double turn_acceleration) {
   const RandomStream draw(3);
   Stretch stretch;
@@ -72,7 +72,7 @@ TEST(Smoothed, KeepsTheJerkAndNeitherGrowsAnythingNorStraysFar) {
   const BaseLimits limits = test::pepper().limits;
   const Stretch raw = restless(0.5, 0.7), smooth = smoothed(raw, limits, h);
   const DrivePeaks before = differences(raw), after = differences(smooth);
-  EXPECT_GT(before.m_per_s3, 10.0);  // as it was, it kept none
+  EXPECT_GT(before.m_per_s3, 10.0);  // the input exceeds the jerk limit
   EXPECT_LE(after.m_per_s3, *limits.max_jerk_m_per_s3);
   EXPECT_LE(after.rad_per_s3, *limits.max_turn_jerk_rad_per_s3);
   EXPECT_LE(after.m_per_s, before.m_per_s);
@@ -82,7 +82,7 @@ TEST(Smoothed, KeepsTheJerkAndNeitherGrowsAnythingNorStraysFar) {
   EXPECT_LT((smooth.position_m.front() - raw.position_m.front()).norm(), 1e-12);
   EXPECT_LT((smooth.position_m.back() - raw.position_m.back()).norm(), 1e-12);
   EXPECT_NEAR(smooth.heading_rad.back(), raw.heading_rad.back(), 1e-12);
-  // At most 2 A / j = 1.05 s longer, and A T^2 / 24 beside.
+  // At most 2 A / j = 1.05 s longer, and off by at most A T^2 / 24.
   const auto longer = static_cast<long>(smooth.position_m.size() - raw.position_m.size());
   const double window_s = static_cast<double>(longer + 1) * h;
   EXPECT_LE(window_s, 2 * 0.5 / (0.95 * *limits.max_jerk_m_per_s3) + h);
@@ -90,7 +90,7 @@ TEST(Smoothed, KeepsTheJerkAndNeitherGrowsAnythingNorStraysFar) {
     const auto k = static_cast<std::size_t>(
         std::clamp(i - longer / 2, 0L, static_cast<long>(raw.position_m.size()) - 1));
     ASSERT_LT((smooth.position_m[static_cast<std::size_t>(i)] - raw.position_m[k]).norm(),
-              0.5 * window_s * window_s / 24 + before.m_per_s * h)  // and half a step's rounding
+              0.5 * window_s * window_s / 24 + before.m_per_s * h)  // plus half a step of rounding
         << i;
   }
 }
@@ -107,14 +107,14 @@ TEST(ReferenceMotion, KeepsEveryLimitThroughBowsStopsAndTurns) {
   tour.name = "test";
   for (const auto& [x, y] : {std::pair{4.0, 0.0}, {4.0, 3.0}, {3.6, 3.2}, {3.5, 2.9}, {0.0, 2.0}})
     tour.waypoints.push_back({.position_m = {x, y}});
-  tour.waypoints[1].look_at_m = Eigen::Vector2d(4.2, 2.8);  // swings round in passing
+  tour.waypoints[1].look_at_m = Eigen::Vector2d(4.2, 2.8);  // it swings around in passing
   tour.waypoints[4].turn_rad = -7;
   tour.waypoints.push_back({.position_m = {0, 2}, .pause_s = 1});
   tour.waypoints.push_back({.position_m = {0.02, 2.0}, .heading_rad = 1.0});
   const BaseLimits limits = test::pepper().limits;
   const std::vector<Stretch> stretches = reference_motion(tour, limits, h);
   ASSERT_GE(stretches.size(), 5U);
-  Stretch whole;  // stretches follow each other without a break
+  Stretch whole;  // stretches follow each other without a gap
   for (const Stretch& stretch : stretches) {
     whole.position_m.insert(whole.position_m.end(), stretch.position_m.begin() + 1,
                             stretch.position_m.end());
@@ -128,7 +128,7 @@ TEST(ReferenceMotion, KeepsEveryLimitThroughBowsStopsAndTurns) {
   EXPECT_LE(peaks.rad_per_s, limits.max_turn_rad_per_s);
   EXPECT_LE(peaks.rad_per_s2, limits.max_turn_acceleration_rad_per_s2);
   EXPECT_LE(peaks.rad_per_s3, *limits.max_turn_jerk_rad_per_s3);
-  EXPECT_GT(peaks.m_per_s, 0.9 * limits.max_velocity_m_per_s);  // and no gentler than need be
+  EXPECT_GT(peaks.m_per_s, 0.9 * limits.max_velocity_m_per_s);  // no slower than necessary
   EXPECT_GT(peaks.m_per_s3, 0.9 * *limits.max_jerk_m_per_s3);
   EXPECT_GT(peaks.rad_per_s3, 0.9 * *limits.max_turn_jerk_rad_per_s3);
   EXPECT_LT((whole.position_m.front() - tour.start_m).norm(), 1e-12);

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every number is unlike every other, so that no two of them change places unseen.
+// All numbers are different, so that no two of them can be swapped without a failure.
 TEST(WriteReadings, EachNumberStandsUnderItsHeading) {
   auto equipment = std::make_shared<Equipment>();
   equipment->lasers = {{.name = "left", .base_from_laser = {}, .rays = 2},

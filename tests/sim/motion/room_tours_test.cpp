@@ -18,7 +18,7 @@ namespace {
 
 const std::string kRooms = MH_SOURCE_DIR "/scenes/rooms/";
 
-/// Of a place in scenes/rooms: its mapping tour and its query tour, driven.
+/// The mapping tour and the query tour of a place in scenes/rooms, driven.
 class RoomTours : public testing::TestWithParam<const char*> {
  protected:
   RoomTours()
@@ -35,7 +35,7 @@ class RoomTours : public testing::TestWithParam<const char*> {
     for (const TimedPose& pose : path.base)
       for (const Room& room : scene_.rooms) {
         const Eigen::Vector2d at = pose.world_from_camera.translation().head<2>();
-        const auto& corners = room.polygon_m;  // rectangles
+        const auto& corners = room.polygon_m;  // rooms are rectangles
         if (((at - corners[0]).array() > 0).all() && ((corners[2] - at).array() > 0).all())
           rooms.insert(room.name);
       }

@@ -29,7 +29,7 @@ constexpr const char* kSmall = "bench/scenarios/robot.yaml";
 constexpr const char* kFast = "bench/scenarios/robot_fast.yaml";
 constexpr const char* kModelHouse = "scenes/model_house/house.yaml";
 
-/// How far from a waypoint the rounded way passes.
+/// How far from a waypoint the rounded path passes.
 double off_corner_m(const Tour& tour, std::size_t i) {
   const Waypoint& here = tour.waypoints[i];
   if (i + 1 == tour.waypoints.size() || here.turn_rad != 0 || here.pause_s > 0) return 0;
@@ -45,21 +45,22 @@ double off_corner_m(const Tour& tour, std::size_t i) {
 
 class TourLimits : public testing::TestWithParam<Case> {};
 
-// As Bullet moved the base, not as it was planned.
+// For the base as moved by Bullet, not as planned.
 TEST_P(TourLimits, AreKeptPastEveryWaypointAndClearOfEverything) {
   const Robot robot = load_robot(kRoot + GetParam().robot);
   const Tour tour = load_tour(kRoot + GetParam().tour);
   const DrivenPath path = drive(load_scene(kRoot + GetParam().scene), robot, tour);
   test::expect_limits_kept(path.peaks, robot.limits);
-  EXPECT_GT(path.peaks.m_per_s3, 0.5 * *robot.limits.max_jerk_m_per_s3);  // it did move
+  EXPECT_GT(path.peaks.m_per_s3, 0.5 * *robot.limits.max_jerk_m_per_s3);  // the base did move
   EXPECT_EQ(path.contact_time_s, 0.0);
-  std::size_t from = 0;  // waypoints are passed one after the other
+  std::size_t from = 0;  // waypoints are passed in order
   for (std::size_t i = 0; i < tour.waypoints.size(); ++i) {
     const auto distance_m = [&](std::size_t k) {
       return (path.base[k].world_from_camera.translation().head<2>() - tour.waypoints[i].position_m)
           .norm();
     };
-    // Beside the bow: the smoothing, and half the way between two frames.
+    // In addition to the rounding of the corner: the smoothing, and half the distance between two
+    // frames.
     const double enough_m = off_corner_m(tour, i) + 0.025;
     while (from < path.base.size() && distance_m(from) > enough_m) ++from;
     ASSERT_LT(from, path.base.size()) << "waypoint " << i + 1;

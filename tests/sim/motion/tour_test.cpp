@@ -46,7 +46,7 @@ TEST(LoadTour, ReadsEveryField) {
   EXPECT_EQ(tour.waypoints[1].look_at_m.value(), Eigen::Vector2d(7, 8));
   EXPECT_DOUBLE_EQ(tour.waypoints[2].heading_rad.value(), -M_PI_2);
   EXPECT_DOUBLE_EQ(tour.waypoints[2].pause_s, 0.5);
-  EXPECT_EQ(tour.waypoints[3].position_m, Eigen::Vector2d(6, 6));  // stays where it was
+  EXPECT_EQ(tour.waypoints[3].position_m, Eigen::Vector2d(6, 6));  // it stays where it was
   EXPECT_DOUBLE_EQ(tour.waypoints[3].turn_rad, 2 * M_PI);
   EXPECT_EQ(tour.waypoints[3].line, 9);
 }

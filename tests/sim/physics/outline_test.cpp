@@ -29,7 +29,8 @@ TEST(Outline, OfABoxIsItsRectangle) {
   Scene scene;
   test::add_box(scene, "box", {1, 2, 0.1F}, {4, 3, 0.5F});
   const auto outline = floor_outline(scene, 0.03F, 1.2F);
-  ASSERT_EQ(outline.size(), 4u);  // no diagonal, nothing twice though four faces meet at each edge
+  ASSERT_EQ(outline.size(),
+            4u);  // no diagonals, and no duplicates although four faces meet at each edge
   EXPECT_FLOAT_EQ(length_m(outline), 8);
   EXPECT_EQ(outline[0].instance, 1);
   EXPECT_TRUE(floor_outline(scene, 0.6F, 1.2F).empty());
@@ -39,10 +40,11 @@ TEST(Outline, LeavesOutWhatIsBetweenTwoFaces) {
   Scene scene;
   test::add_box(scene, "left", {0, 0, 0.1F}, {1, 1, 1});
   test::add_box(scene, "right", {1, 0, 0.1F}, {2, 1, 1});
-  EXPECT_FLOAT_EQ(length_m(floor_outline(scene, 0.03F, 1.2F)), 6);  // of the two together
+  EXPECT_FLOAT_EQ(length_m(floor_outline(scene, 0.03F, 1.2F)),
+                  6);  // the outline of both boxes together
 }
 
-/// Distance on the floor to the nearest face between the heights: all of them, one by one.
+/// Distance on the floor to the nearest face in the range of heights, by testing each face.
 double distance_m(const Scene& scene, float top_m, const Vector2d& p) {
   double least = 1e9;
   for_each_face_in_band(
@@ -60,7 +62,7 @@ double distance_m(const Scene& scene, float top_m, const Vector2d& p) {
           left = left && side > 0;
           right = right && side < 0;
         }
-        if (left || right) least = 0;  // below or above it
+        if (left || right) least = 0;  // the point is below or above the face
       });
   return least;
 }

@@ -20,7 +20,7 @@ const BaseCommand kEast{.velocity_m_per_s = {0.5, 0.0}, .turn_rad_per_s = 0.0};
 TEST(PlanarWorld, FreeMotionFollowsTheLawOfConstantAcceleration) {
   const Robot robot = pepper();
   PlanarWorld world(empty_room(), robot, {2, 5}, 0.3);
-  // Speeding up to 0.5 m/s takes v / a; from then on the way is v t - v^2 / 2a.
+  // Reaching 0.5 m/s takes v / a; after that, the distance is v t - v^2 / 2a.
   const double time_s = 5.0, v = 0.5, a = robot.limits.max_acceleration_m_per_s2;
   for (int i = 0; i < std::lround(time_s / world.step_s()); ++i) world.step(kEast);
   const BaseState state = world.state();
@@ -36,7 +36,7 @@ TEST(PlanarWorld, VelocityAndAccelerationStayWithinLimits) {
   BaseState before = world.state();
   double top_speed = 0, top_turn = 0;
   for (int i = 0; i < 2400; ++i) {
-    // Far too much is asked, in a direction that jumps every 1.2 s.
+    // The commands are far too fast, and their direction jumps every 1.2 s.
     const double angle = 2.4 * (i / 288);
     world.step({.velocity_m_per_s = {3 * std::cos(angle), 3 * std::sin(angle)},
                 .turn_rad_per_s = (i / 400) % 2 == 0 ? 9.0 : -9.0});
@@ -44,7 +44,7 @@ TEST(PlanarWorld, VelocityAndAccelerationStayWithinLimits) {
     const double dv = (now.velocity_m_per_s - before.velocity_m_per_s).norm();
     ASSERT_LE(now.velocity_m_per_s.norm(), limits.max_velocity_m_per_s * 1.00001);
     ASSERT_LE(std::abs(now.turn_rad_per_s), limits.max_turn_rad_per_s * 1.00001);
-    // Single precision: velocities carry some 1e-6, divided by a step of 1/240 s.
+    // Single precision: velocities have errors of about 1e-6, divided by a step of 1/240 s.
     ASSERT_LE(dv / world.step_s(), limits.max_acceleration_m_per_s2 + 5e-4);
     ASSERT_LE(std::abs(now.turn_rad_per_s - before.turn_rad_per_s) / world.step_s(),
               limits.max_turn_acceleration_rad_per_s2 + 5e-4);
@@ -52,7 +52,7 @@ TEST(PlanarWorld, VelocityAndAccelerationStayWithinLimits) {
     top_turn = std::max(top_turn, std::abs(now.turn_rad_per_s));
     before = now;
   }
-  EXPECT_NEAR(top_speed, limits.max_velocity_m_per_s, 1e-3);  // the limits were tried
+  EXPECT_NEAR(top_speed, limits.max_velocity_m_per_s, 1e-3);  // the limits were put to the test
   EXPECT_NEAR(top_turn, limits.max_turn_rad_per_s, 1e-3);
 }
 
@@ -117,7 +117,7 @@ TEST(PlanarWorld, SeesAStartInsideFurniture) {
   EXPECT_EQ(contact.instance, 6);
   EXPECT_FALSE(PlanarWorld(scene, pepper(), {3, 5}, 0).contact().touching);
   add_box(scene, "bed", {6, 4, 0.2F}, {8, 6, 0.6F});
-  const Contact in_bed = PlanarWorld(scene, pepper(), {7, 5.1}, 0).contact();  // touches no face
+  const Contact in_bed = PlanarWorld(scene, pepper(), {7, 5.1}, 0).contact();  // it touches no face
   EXPECT_NEAR(in_bed.penetration_m, 0.26, 1e-6);
   EXPECT_EQ(in_bed.instance, 7);
 }

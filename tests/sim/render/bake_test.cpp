@@ -20,7 +20,7 @@ using test::plain_scene;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// A floor of 4 x 4 m about the origin, facing up, in cells of 10 cm.
+/// A floor of 4 x 4 m around the origin, facing up, in cells of 10 cm.
 Scene floor_scene() {
   Scene scene = plain_scene();
   add_quad(scene, {-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, 1, 0, 40);
@@ -42,7 +42,7 @@ TEST(BakeLight, FloorUnderALampFollowsInverseSquareAndCosine) {
   for (std::size_t v = 0; v < scene.light.size(); ++v) {
     const float distance = (scene.positions_m[v] - Vector3f(0, 0, 1.5F)).norm();
     const float expected = 2.0F * (1.5F / distance) / (distance * distance) / kPi;
-    // Averages over cells of 10 cm at 1.5 m and a lamp of 5 cm: 2 %; on the border half a cell.
+    // Averages over cells of 10 cm at 1.5 m and a lamp of 5 cm: 2 %; at the border, half a cell.
     const bool border = scene.positions_m[v].head<2>().cwiseAbs().maxCoeff() > 1.95F;
     ASSERT_NEAR(scene.light[v].x(), expected, (border ? 0.06F : 0.02F) * expected);
     ASSERT_NEAR(scene.light[v].y(), 0.5F * scene.light[v].x(), 1e-6);
@@ -63,7 +63,8 @@ TEST(BakeLight, SunLightsWithTheCosineAndTablesCastShadows) {
   const float lit = 3.0F * std::sqrt(0.5F) / kPi;
   int shadowed = 0;
   for (std::size_t v = 0; v < floor_vertices; ++v) {
-    // The shadow of [-0.5, 0.5] at height 1 under a sun from 45 deg: [0.5, 1.5] on the floor.
+    // The shadow of a square over [-0.5, 0.5] at height 1 under a sun at 45 deg is at [0.5, 1.5] on
+    // the floor.
     const float outside =
         std::max(std::abs(scene.positions_m[v].x() - 1.0F), std::abs(scene.positions_m[v].y())) -
         0.5F;
@@ -78,7 +79,7 @@ TEST(BakeLight, SunLightsWithTheCosineAndTablesCastShadows) {
       ASSERT_LE(light, 1.001F * lit);
     }
   }
-  EXPECT_EQ(shadowed, 49);  // 7 x 7 vertices at least 11 cm inside a meter
+  EXPECT_EQ(shadowed, 49);  // 7 x 7 vertices are at least 11 cm inside a square of 1 m
 }
 
 TEST(BakeLight, OpenSkyGivesItsRadiance) {
@@ -90,8 +91,8 @@ TEST(BakeLight, OpenSkyGivesItsRadiance) {
 }
 
 TEST(BakeLight, ClosedBoxOfConstantGlowIsTheGeometricSeries) {
-  // Inside a closed surface of albedo a that glows with radiance e everywhere, each interreflection
-  // adds a factor a: after n of them light = e (1 + a + ... + a^n), at every point.
+  // Inside a closed surface of albedo a that emits radiance e everywhere, each bounce adds a factor
+  // a: after n bounces light = e (1 + a + ... + a^n) at every point.
   Scene scene = plain_scene({188, 188, 188});
   scene.materials[0].emission = {0.5F, 0.25F, 1.0F};
   add_box(scene, {0, 0, 0}, {3, 2, 2.5F}, true, 1, 1, 0, 8);
@@ -107,7 +108,7 @@ TEST(BakeLight, ClosedBoxOfConstantGlowIsTheGeometricSeries) {
 
 TEST(BakeLight, AmbientLightReachesEverySurfaceAlike) {
   Scene scene = floor_scene();
-  add_quad(scene, {-2, -2, 0.01F}, {4, 0, 0}, {0, 4, 0}, 2, 1, 0, 40);  // lies on the floor
+  add_quad(scene, {-2, -2, 0.01F}, {4, 0, 0}, {0, 4, 0}, 2, 1, 0, 40);  // it lies on the floor
   scene.lights.push_back(sphere_lamp({0, 0, 1.5F}, 2.0F));
   Scene with = scene;
   with.lights.push_back({.kind = Light::Kind::kAmbient, .color = {0.5F, 0.25F, 0.125F}});
@@ -126,17 +127,18 @@ TEST(BakeLight, ColorOfATextureBleedsByItsMean) {
   add_box(scene, {0, 0, 0}, {2, 2, 2}, true, 1, 1, 0, 4);
   bake_light(scene, {.bounces = 1});
   for (const Vector3f& light : scene.light)
-    ASSERT_LT((light - Vector3f(1.5F, 1.0F, 1.0F)).norm(), 1e-3F);  // half red: 1 + 0.5
+    ASSERT_LT((light - Vector3f(1.5F, 1.0F, 1.0F)).norm(),
+              1e-3F);  // half of the light meets red: 1 + 0.5
 }
 
 TEST(BakeLight, RoomsAreDarkWithoutLightEvenUnderABrightSky) {
   Scene scene = plain_scene();
   add_box(scene, {0, 0, 0}, {3, 3, 2.5F}, true, 1, 1, 0,
-          10);  // single sheets: the sky is right behind
+          10);  // single sheets: the sky is right behind them
   scene.lights.push_back({.kind = Light::Kind::kSky, .color = {9, 9, 9}});
   scene.lights.push_back(sphere_lamp({1.5F, 1.5F, 2.0F}, 1.0F));
   bake_light(scene);
-  // Everything is lit by the lamp alone: nowhere near the sky's radiance.
+  // Only the lamp lights the room: values are far below the sky's radiance.
   for (const Vector3f& light : scene.light) {
     ASSERT_GT(light.x(), 0.01F);
     ASSERT_LT(light.x(), 3.0F);
@@ -200,7 +202,7 @@ TEST(SuggestExposure, BringsWhatIsSeenToTheStatedRadiance) {
   scene.light.assign(scene.positions_m.size(), Vector3f::Constant(0.1F));
   const float albedo = srgb_to_linear(std::uint8_t{188});
   EXPECT_NEAR(suggest_exposure(scene) * 0.1F * albedo, 0.2F, 1e-5);
-  // What no one in the rooms can see does not count: a large bright floor outside.
+  // Surfaces that cannot be seen from the rooms do not count: a large bright floor outside.
   scene.rooms.push_back({"room", {{0, 0}, {4, 0}, {4, 3}, {0, 3}}});
   add_quad(scene, {5, 0, 0}, {9, 0, 0}, {0, 9, 0}, 2, 1, 0, 4);
   scene.light.resize(scene.positions_m.size(), Vector3f::Constant(7.0F));

@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 using test::add_quad;
 using test::plain_scene;
 
-/// The camera's axes in a world of the same axes: x right, y down, z forward.
+/// The camera's axes are those of the world: x right, y down, z forward.
 const SE3 kIdentity;
 
 /// Colors that vary smoothly from texel to texel, so that every bilinear weight matters.
@@ -44,7 +44,7 @@ TEST(Encode, IsTheTableForEveryEntry) {
   };
   for (int i = 0; i <= kSrgbTableMax; ++i) {
     const auto place = static_cast<float>(i), last = static_cast<float>(kSrgbTableMax);
-    // The entry itself, and both ends of what belongs to it.
+    // The entry itself, and both ends of the interval that belongs to it.
     expect(place / last, (place - 0.49F) / last, (place + 0.49F) / last);
   }
   expect(-1.0F, 1.5F, 1e30F);
@@ -65,7 +65,7 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
   EXPECT_EQ(sharp.depth_m, smooth.depth_m);
   EXPECT_EQ(sharp.classes, smooth.classes);
   EXPECT_EQ(sharp.instances, smooth.instances);
-  // One sample of three is white.
+  // One of three samples is white.
   EXPECT_NEAR(smooth.color(320, 240).g, linear_to_srgb(1.0F / 3.0F), 1);
   EXPECT_EQ(sharp.color(320, 240).g, 0);
   for (int x = 0; x < camera.width_px; ++x)
@@ -155,7 +155,7 @@ TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
                       .cx_px = 50,
                       .cy_px = 40,
                       .distortion = {}};
-  Camera finer = camera;  // pixel (x, y) is (2x .. 2x + 1, 2y .. 2y + 1) of it
+  Camera finer = camera;  // pixel (x, y) corresponds to its pixels (2x .. 2x + 1, 2y .. 2y + 1)
   finer.width_px *= 2, finer.height_px *= 2, finer.fx_px *= 2, finer.fy_px *= 2;
   finer.cx_px = 2 * camera.cx_px + 0.5, finer.cy_px = 2 * camera.cy_px + 0.5;
   const auto sharp = make_embree_renderer(scene, {.antialiasing = Antialiasing::kNone});
@@ -171,7 +171,7 @@ TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
       Vector3f sum = Vector3f::Zero();
       for (const int i : {0, 1})
         for (const int j : {0, 1}) sum += srgb_to_linear(fine.color(2 * x + i, 2 * y + j));
-      // Two roundings, to the fine pixels' levels and to the mean's.
+      // Two roundings: to the levels of the fine pixels and to those of the mean.
       ASSERT_NEAR(mean.color(x, y).g, linear_to_srgb(sum.y() / 4.0F), 2) << x << " " << y;
     }
   EXPECT_NE(mean.color, centers.color);
@@ -198,7 +198,7 @@ TEST(EmbreeRenderer, ThreadsAndImagesNotMultiplesOfATileChangeNoBit) {
   EXPECT_EQ(one.instances, two.instances);
   EXPECT_NE(one.instances(166, 125), 0);
 
-  // The same rays in a wider image: the left part agrees bit for bit.
+  // The same rays in a wider image: the left part is equal to the bit.
   Camera wider = camera;
   wider.width_px = 400;
   const RenderedFrame wide = make_embree_renderer(scene)->render(wider, kIdentity);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closed forms that every renderer has to meet, and the agreement of the two.
+// Closed forms that every renderer has to reproduce, and the agreement between the two renderers.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 using test::add_quad;
 using test::plain_scene;
 
-/// The camera's axes in a world of the same axes: x right, y down, z forward.
+/// The camera's axes are those of the world: x right, y down, z forward.
 const SE3 kFromOrigin;
 
 class BothRenderers : public testing::TestWithParam<const char*> {
@@ -54,7 +54,8 @@ Grid2d<Rgb8> smooth_texture(int width, int height) {
   return image;
 }
 
-/// Bilinear interpolation in linear light of a repeating image, texel centers at half-integers.
+/// Bilinear interpolation in linear light of a repeating image, with texel centers at
+/// half-integers.
 Vector3f bilinear_truth(const Grid2d<Rgb8>& image, double u, double v) {
   const double x = u * image.width() - 0.5, y = v * image.height() - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
@@ -114,7 +115,7 @@ TEST_P(BothRenderers, SeesThroughPanesInTheirColors) {
   const Vector3f green(0.5F, 0.9F, 0.6F), gray(0.25F, 0.25F, 0.25F);
   pane(green, -1, 1.0, 1.0);  // the left half
   pane(gray, -1, 1.2, 1.25);  // behind it and beyond its edge, x < 0.25
-  pane(gray, -5, 2.5, 10);    // behind the wall: seen by nobody
+  pane(gray, -5, 2.5, 10);    // behind the wall: never visible
   const Camera camera;
   for (const Antialiasing antialiasing :
        {Antialiasing::kNone, Antialiasing::kEdges, Antialiasing::kSupersample}) {
@@ -154,7 +155,7 @@ TEST_P(BothRenderers, PlaneAtTwoMetersReadsTwoMetersAtEveryPixel) {
   const auto renderer = make(plane_at_two_meters());
   const RenderedFrame frame = renderer->render(Camera{}, kFromOrigin);
   ASSERT_EQ(frame.depth_m.size(), 640U * 480U);
-  // Embree computes in float: one part in 2^22.
+  // Embree computes in single precision: one part in 2^22.
   for (const float depth : frame.depth_m) ASSERT_NEAR(depth, 2.0F, 1e-6);
   for (const ClassId id : frame.classes) ASSERT_EQ(id, 1);
   for (const InstanceId id : frame.instances) ASSERT_EQ(id, 1);
@@ -197,7 +198,8 @@ TEST_P(BothRenderers, FinelyCutSphereHasTheDepthOfASphere) {
   scene.material_of.assign(scene.triangles.size(), 0);
   scene.instances.push_back({1, 5, "sphere", {}, {}});
 
-  // Beside the axis, lest whole rows of rays run along edges, where single ones slip through.
+  // Off the axis, since otherwise whole rows of rays would run along edges, where single rays slip
+  // through.
   const Eigen::Vector3d center(0.0123, -0.0211, distance);
   for (Vector3f& p : scene.positions_m) p += center.cast<float>();
   const Camera camera;
@@ -206,16 +208,17 @@ TEST_P(BothRenderers, FinelyCutSphereHasTheDepthOfASphere) {
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       const Eigen::Vector3d d = camera.unproject(x, y, 1.0);
-      // |t d - center| = radius, the nearer root; t is the depth as d.z = 1.
+      // |t d - center| = radius, the smaller root; t is the depth since d.z = 1.
       const double b = d.dot(center) / d.squaredNorm();
       const double discriminant =
           b * b - (center.squaredNorm() - radius * radius) / d.squaredNorm();
       if (discriminant < -1e-4) {
         ASSERT_EQ(frame.depth_m(x, y), 0.0F);
         ASSERT_EQ(frame.classes(x, y), kVoid);
-      } else if (discriminant > 1e-2) {  // incidence below 79 deg
+      } else if (discriminant > 1e-2) {  // angle of incidence below 79 deg
         ++hits;
-        // Facets of 6 x 6 mm sag by up to 2e-5 m; the incidence multiplies that by up to 5.
+        // Facets of 6 x 6 mm deviate from the sphere by up to 2e-5 m; the incidence multiplies that
+        // by up to 5.
         ASSERT_NEAR(frame.depth_m(x, y), b - std::sqrt(discriminant), 1e-4) << x << " " << y;
       }
     }
@@ -223,7 +226,8 @@ TEST_P(BothRenderers, FinelyCutSphereHasTheDepthOfASphere) {
 }
 
 TEST_P(BothRenderers, PixelCentersLieAtIntegers) {
-  // An edge at x = 0: with cx = 10 pixel 10's ray runs along it, pixel 9 is left, 11 is right.
+  // An edge at x = 0: with cx = 10 the ray of pixel 10 runs along it, pixel 9 is left of it, 11 is
+  // right of it.
   Scene scene = plain_scene();
   add_quad(scene, {-9, -9, 1}, {9.001F, 0, 0}, {0, 18, 0}, 1, 1);
   add_quad(scene, {0.001F, -9, 1}, {9, 0, 0}, {0, 18, 0}, 2, 2);
@@ -235,7 +239,8 @@ TEST_P(BothRenderers, PixelCentersLieAtIntegers) {
                 .cy_px = 2,
                 .distortion = {}};
   const auto renderer = make(scene);
-  EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(10, 2), 1);  // 1 mm = 0.1 px right of it
+  EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(10, 2),
+            1);  // the edge is 1 mm = 0.1 px to the right of it
   EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(11, 2), 2);
   camera.cx_px = 9.8;  // now pixel 10 looks 0.2 px to the right of the axis, beyond the edge
   EXPECT_EQ(renderer->render(camera, kFromOrigin).classes(10, 2), 2);
@@ -245,12 +250,13 @@ TEST_P(BothRenderers, PixelCentersLieAtIntegers) {
 TEST_P(BothRenderers, PoseIsWorldFromCamera) {
   Scene scene = plain_scene();
   add_quad(scene, {3, -1, -1}, {0, 2, 0}, {0, 0, 2}, 7,
-           1);               // a wall 2 m ahead of (1, 0, 0) along +x
+           1);               // a wall 2 m from (1, 0, 0) in the direction +x
   Eigen::Matrix3d rotation;  // columns: the camera's right, down and forward in the world
   rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const RenderedFrame frame = make(scene)->render(Camera{}, SE3(rotation, {1, 0, 0}));
   EXPECT_NEAR(frame.depth_m(320, 240), 2.0F, 1e-5);
-  // The wall spans +-1 m at 2 m: +-262.5 px about the center, pixels 57 to 582; the last is a tie.
+  // The wall covers +-1 m at 2 m: +-262.5 px around the center, pixels 57 to 582; the last one is a
+  // tie.
   EXPECT_EQ(frame.classes(319 - 262, 240), 7);
   EXPECT_EQ(frame.classes(319 - 263, 240), kVoid);
   EXPECT_EQ(frame.classes(319 + 262, 240), 7);
@@ -272,7 +278,7 @@ TEST_P(BothRenderers, MissShowsTheSkyAndNothingElse) {
 TEST_P(BothRenderers, LabelsAreThoseOfTheNearestFaceSeenFromEitherSide) {
   Scene scene = plain_scene();
   add_quad(scene, {-5, -5, 3}, {10, 0, 0}, {0, 10, 0}, 1, 1);
-  add_quad(scene, {0, -5, 2}, {0, 10, 0}, {5, 0, 0}, 5, 2);  // its back looks at the camera
+  add_quad(scene, {0, -5, 2}, {0, 10, 0}, {5, 0, 0}, 5, 2);  // its back faces the camera
   const Camera camera;
   const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   for (int y = 0; y < camera.height_px; ++y)
@@ -288,7 +294,8 @@ TEST_P(BothRenderers, MagnifiedTextureIsBilinearInLinearLight) {
   scene.materials[0].texture = smooth_texture(7, 5);
   // u = x / 1.28 m + 0.5 and so on: 7 texels over 640 px at 2 m and f = 1000.
   add_quad(scene, {-0.64F, -0.48F, 2}, {1.28F, 0, 0}, {0, 0.96F, 0}, 1, 1);
-  for (auto& uv : scene.uvs) uv = {uv.x() * 2.0F - 1.0F, uv.y() + 3.0F};  // repeats, negative too
+  for (auto& uv : scene.uvs)
+    uv = {uv.x() * 2.0F - 1.0F, uv.y() + 3.0F};  // repeats, with negative coordinates, too
   const Camera camera{.fx_px = 1000, .fy_px = 1000, .distortion = {}};
   const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   for (int y = 3; y < 477; ++y)
@@ -297,7 +304,8 @@ TEST_P(BothRenderers, MagnifiedTextureIsBilinearInLinearLight) {
       const double v = ((y - 239.5) * 0.002 + 0.48) / 0.96 + 3.0;
       const Vector3f truth = bilinear_truth(scene.materials[0].texture, u, v)
                                  .cwiseProduct(srgb_to_linear(scene.materials[0].base_color));
-      // One gray level: the gain is kept as a half (one part in 2048), the output rounds.
+      // One gray level: the gain is stored in half precision (one part in 2048), and the output is
+      // rounded.
       ASSERT_NEAR(frame.color(x, y).r, linear_to_srgb(truth.x()), 1) << x << " " << y;
       ASSERT_NEAR(frame.color(x, y).g, linear_to_srgb(truth.y()), 1) << x << " " << y;
       ASSERT_NEAR(frame.color(x, y).b, linear_to_srgb(truth.z()), 1) << x << " " << y;
@@ -311,7 +319,7 @@ TEST_P(BothRenderers, FarTextureShowsItsMeanInLinearLight) {
     for (int x = 0; x < 64; ++x) texture(x, y) = (x + y) % 2 ? Rgb8{255, 255, 255} : Rgb8{0, 0, 0};
   scene.materials[0].texture = texture;
   add_quad(scene, {-50, -50, 10}, {100, 0, 0}, {0, 100, 0}, 1, 1);
-  for (auto& uv : scene.uvs) uv *= 1000.0F;  // 10 cm per repeat: some 12 texels per pixel
+  for (auto& uv : scene.uvs) uv *= 1000.0F;  // 10 cm per repeat: about 12 texels per pixel
   const RenderedFrame frame = make(scene)->render(Camera{}, kFromOrigin);
   const int half = linear_to_srgb(0.5F);  // 188: half the light, not half the code value
   for (const Rgb8& color : frame.color) ASSERT_NEAR(color.g, half, 1);
@@ -346,7 +354,7 @@ TEST_P(BothRenderers, RefusesACameraWithoutSizeOrFocalLength) {
 }
 
 TEST_P(BothRenderers, CheckerboardHasItsColorsCellByCell) {
-  // 8 x 6 cells of 8 x 8 texels; 80 px per cell, so that a pixel covers a tenth of a texel.
+  // 8 x 6 cells of 8 x 8 texels; 80 px per cell, so a pixel covers a tenth of a texel.
   Scene scene = plain_scene();
   Grid2d<Rgb8> texture(64, 48);
   for (int y = 0; y < 48; ++y)
@@ -358,7 +366,8 @@ TEST_P(BothRenderers, CheckerboardHasItsColorsCellByCell) {
   const RenderedFrame frame = make(scene)->render(camera, kFromOrigin);
   for (int y = 0; y < 480; ++y)
     for (int x = 0; x < 640; ++x) {
-      const int in_x = x % 80, in_y = y % 80;  // the filter reaches half a texel, 5 px, over a side
+      const int in_x = x % 80,
+                in_y = y % 80;  // the filter reaches half a texel, 5 px, across a side
       if (in_x < 6 || in_x > 73 || in_y < 6 || in_y > 73) continue;
       const Rgb8 wanted = (x / 80 + y / 80) % 2 ? Rgb8{250, 240, 230} : Rgb8{20, 30, 40};
       ASSERT_EQ(frame.color(x, y), wanted) << x << " " << y;
@@ -366,8 +375,8 @@ TEST_P(BothRenderers, CheckerboardHasItsColorsCellByCell) {
 }
 
 TEST_P(BothRenderers, TexelsPerPixelChooseTheMipLevel) {
-  // Columns of one texel, black and white: level 0 shows them, level 1 and above are half gray, and
-  // between the two the contrast fades with the share of level 1.
+  // Columns of one texel, black and white: level 0 shows them, levels 1 and above are medium gray,
+  // and in between the contrast decreases with the share of level 1.
   const auto contrast = [&](double texels_per_pixel) {
     Scene scene = plain_scene();
     Grid2d<Rgb8> texture(64, 64);
@@ -386,9 +395,9 @@ TEST_P(BothRenderers, TexelsPerPixelChooseTheMipLevel) {
     }
     return high - low;
   };
-  EXPECT_GT(contrast(0.97), 0.97);  // level 0; the logarithm is good to 0.05
+  EXPECT_GT(contrast(0.97), 0.97);  // level 0; the logarithm is accurate to 0.05
   EXPECT_LT(contrast(2.1), 0.03);   // level 1
-  // Half way between them (sqrt 2 texels): half of level 0 is left, at the columns' centers.
+  // Halfway between them (sqrt 2 texels), half of level 0 is left at the centers of the columns.
   EXPECT_NEAR(contrast(std::numbers::sqrt2), 0.5, 0.06);
 }
 
@@ -398,7 +407,7 @@ TEST(Renderers, NamesAreKnownAndOthersRefused) {
 }
 
 TEST(Renderers, AgreeOverAGeneratedRoom) {
-  // render_agreement does this with 200 views of five scenes; these few guard every build.
+  // render_agreement does this with 200 views of five scenes; these few views protect every build.
   Scene scene = make_training_room(7);
   scene.light.assign(scene.positions_m.size(), Vector3f(0.7F, 0.6F, 0.5F));
   std::unique_ptr<Renderer> osmesa;
@@ -425,10 +434,10 @@ TEST(Agreement, CountsWhatDiffers) {
   RenderedFrame b = a;
   b.classes(5, 5) = 9;
   b.color(6, 6).g = static_cast<std::uint8_t>(b.color(6, 6).g - 3);
-  b.color(7, 7).g = static_cast<std::uint8_t>(b.color(7, 7).g - 2);  // still counts as the same
+  b.color(7, 7).g = static_cast<std::uint8_t>(b.color(7, 7).g - 2);  // still counts as equal
   for (float& depth : b.depth_m) depth += 0.001F;
   b.instances(8, 8) = b.instances(9, 9) = 77;
-  b.depth_m(8, 8) = a.depth_m(8, 8);  // a tie; its neighbor is not
+  b.depth_m(8, 8) = a.depth_m(8, 8);  // a tie, unlike (9, 9)
   Agreement agreement;
   agreement.add(a, b);
   EXPECT_EQ(agreement.pixels, 640 * 480);

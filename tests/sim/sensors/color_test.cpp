@@ -47,7 +47,7 @@ TEST(ShotNoise, SignalToNoiseIsThatOfTheElectrons) {
       const double light = srgb_to_linear(static_cast<std::uint8_t>(gray));
       const double well = 3981.0 / gain, electrons = light * well;
       const double sigma = std::sqrt(electrons + 1.6 * 1.6) / well;
-      // Rounding to 8 bits adds a twelfth of a squared gray level.
+      // Rounding to 8 bits adds a twelfth of a gray level squared to the variance.
       const double level = srgb_to_linear(static_cast<std::uint8_t>(gray + 1)) - light;
       const double rounded = std::sqrt(sigma * sigma + level * level / 12.0);
       EXPECT_NEAR(seen.sigma(), rounded, 0.02 * rounded) << gray << " at gain " << gain;
@@ -68,7 +68,7 @@ TEST(ShotNoise, DarkerScenesTakeMoreGain) {
     truth.exposure = exposure;
     return sense(truth, {}, config, RandomStream(1), 0).color;
   };
-  EXPECT_EQ(taken(3.0F), taken(0.5F));  // not asked for
+  EXPECT_EQ(taken(3.0F), taken(0.5F));  // the exposure has no effect by default
   config.shot_noise.gain_at_exposure = 0.5;
   const auto at_gain = [&](double gain) {
     SensorConfig plain = config;
@@ -130,8 +130,9 @@ TEST(Lens, EveryPixelShowsWhatItsRayMeets) {
   camera.distortion = {-0.25, 0.05, 0.001, -0.002, 0.0};
   const Lens lens(camera);
   const Camera& wide = lens.pinhole();
-  EXPECT_GT(wide.width_px, camera.width_px);  // a barrel draws in what lies outside
-  // An image that encodes where its rays went.
+  EXPECT_GT(wide.width_px,
+            camera.width_px);  // barrel distortion brings in what is outside the image
+  // An image that encodes the directions of its rays.
   RenderedFrame image = gray_frame(0, wide);
   for (int y = 0; y < wide.height_px; ++y)
     for (int x = 0; x < wide.width_px; ++x) {
@@ -160,7 +161,7 @@ TEST(Lens, WithoutDistortionNothingChanges) {
 TEST(LensBlur, SpreadsAPointByItsSigmaAndLosesNoLight) {
   for (const double sigma : {0.7, 2.0}) {
     Grid2d<Rgb8> color(61, 41);
-    // A block of 9 x 9, so that 8 bits suffice: its own variance is (81 - 1) / 12.
+    // A block of 9 x 9 pixels, so that 8 bits suffice: its own variance is (81 - 1) / 12.
     for (int y = 16; y <= 24; ++y)
       for (int x = 26; x <= 34; ++x) color(x, y) = {255, 255, 255};
     blur_by_lens(color, sigma);
@@ -206,7 +207,8 @@ TEST(Processing, SharpensEachFrequencyAsAnUnsharpMaskDoes) {
       const double before = amplitude();
       process(color, {.sharpening = 1.5, .sharpening_px = sigma});
       const double passed = std::exp(-2.0 * std::pow(std::numbers::pi * sigma / period, 2));
-      // 1 %: half a gray level of at least 50, all samples of a short wave alike.
+      // 1 %: half a gray level of at least 50, where all samples of a short wave are rounded
+      // identically.
       EXPECT_NEAR(amplitude() / before, 1 + 1.5 * (1 - passed), 0.02) << sigma << " " << period;
     }
 }
@@ -216,14 +218,14 @@ TEST(Processing, AStepOvershootsAsMuchOnBothSidesAndOnlyNearIt) {
   for (int y = 20; y < 40; ++y)
     for (int x = 0; x < 40; ++x) color(x, y) = {140, 150, 160};
   process(color, {.sharpening = 0.5, .sharpening_px = 1.0});
-  // The first row beyond a step of 40 lacks half of what the middle weight does not hold.
+  // The first row after a step of 40 lacks half of the weight outside the central one.
   const double middle = 1.0 / (1 + 2 * (std::exp(-0.5) + std::exp(-2.0) + std::exp(-4.5)));
   const int over = static_cast<int>(std::lround(0.5 * 40 * 0.5 * (1 - middle)));
   EXPECT_NEAR(color(20, 20).r, 140 + over, 1);
   EXPECT_EQ(color(20, 20).r - 140, 100 - color(20, 19).r);
   for (int y = 0; y < 40; ++y) {
     EXPECT_EQ(color(7, y), color(30, y));
-    EXPECT_EQ(color(7, y).g - color(7, y).r, 10);  // the color stays
+    EXPECT_EQ(color(7, y).g - color(7, y).r, 10);  // the color does not change
     EXPECT_EQ(color(7, y).b - color(7, y).g, 10);
   }
   EXPECT_EQ(color(20, 15), (Rgb8{100, 110, 120}));
@@ -251,7 +253,7 @@ TEST(Processing, ItsToneCurveKeepsBothEndsAndSteepensTheMiddle) {
   process(grays, {.contrast = 0.5});
   EXPECT_EQ(grays(0, 1).g, 0);
   EXPECT_EQ(grays(255, 1).g, 255);
-  // At a quarter 3/16 - 1/32 = 5/32 of full scale takes part with one half.
+  // At a quarter, 3/16 - 1/32 = 5/32 of full scale is added with a weight of one half.
   EXPECT_NEAR(grays(64, 1).g, 255 * 0.5 * (0.25 + 5.0 / 32.0), 1.0);
   EXPECT_NEAR(grays(148, 1).g - grays(108, 1).g, 1.25 * 40, 1.0);
   for (int x = 0; x < 255; ++x) EXPECT_LE(grays(x, 1).g, grays(x + 1, 1).g);

@@ -27,7 +27,7 @@ void paint(RenderedFrame& frame, int left, int top, int size, ClassId class_id,
     }
 }
 
-/// Chairs of 20, 60 or 100 px (small, medium, large) that do not touch.
+/// Chairs of 20, 60 or 100 px (small, medium, large) that do not touch each other.
 RenderedFrame chairs(int size) {
   RenderedFrame frame = empty_frame();
   InstanceId instance = 0;
@@ -58,7 +58,8 @@ std::vector<Detection> detections(const RenderedFrame& truth, const DetectorConf
 
 TEST(Detector, APerfectOneDrawsTheExactBoxes) {
   RenderedFrame truth = chairs(60);
-  paint(truth, 20, 20, 30, kCabinet, 200);  // no class of the detector's, and in the way of one
+  paint(truth, 20, 20, 30, kCabinet,
+        200);  // not a class of the detector, and in the way of one chair
   LabelConfig config{.detector = perfect()};
   const SemanticImage drawn =
       label_image(truth, LabelMode::kDetector, config, SE3(), RandomStream(1));
@@ -110,8 +111,8 @@ double overlap(const Detection& box, int left, int top, int size) {
 }
 
 TEST(Detector, BoxesStrayAsFarAsTheTableSays) {
-  // AP75 / AP50 and AP / AP50: what share of the boxes with an IoU above 0.5 is above 0.75, and on
-  // the mean above the ten thresholds 0.5 to 0.95.
+  // AP75 / AP50 and AP / AP50: the share of the boxes with an IoU above 0.5 whose IoU is above
+  // 0.75, and the mean of such shares over the ten thresholds 0.5 to 0.95.
   DetectorConfig config = perfect();
   config.box_sigma = DetectorConfig{}.box_sigma;
   RenderedFrame truth = empty_frame();
@@ -134,7 +135,7 @@ TEST(Detector, ConfusionAndFalseAlarmsComeAtTheirRates) {
   config.false_alarms = published.false_alarms;
   RenderedFrame truth = chairs(60);
   const int chairs_in_view = count(truth);
-  // The one thing in view that false alarms may be drawn around.
+  // The only object in view that may get a false alarm.
   paint(truth, 590, 430, 40, kCabinet, 500);
   double confused = 0, all = 0, alarms = 0, images = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {

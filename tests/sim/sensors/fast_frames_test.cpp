@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is fast in making a frame equals, to the bit, what is plain.
+// The fast ways of making a frame give the same as plain ones, to the bit.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -54,7 +54,7 @@ TEST(ColorRows, AreTheirValuesOneByOne) {
   }
 }
 
-/// A grid of floats blurred pass by pass, one value at a time.
+/// A grid of floats blurred in separate passes, one value at a time.
 Grid2d<float> plainly_blurred(const Grid2d<float>& image, const std::vector<float>& kernel) {
   const int radius = static_cast<int>(kernel.size()) - 1, w = image.width(), h = image.height();
   Grid2d<float> across(w, h), both(w, h);
@@ -115,7 +115,7 @@ TEST(Processing, IsThePlainOne) {
   }
 }
 
-/// The depth sensor one pixel at a time.
+/// The depth sensor, computed one pixel at a time.
 class PlainDepthSensor {
  public:
   PlainDepthSensor(const Grid2d<float>& depth_m, const Camera& camera,
@@ -169,7 +169,7 @@ class PlainDepthSensor {
     float inverse, slope_x, slope_y, cosine;
   };
   float inverse(int x, int y) const { return depth_m_(x, y) > 0 ? 1.0F / depth_m_(x, y) : 0.0F; }
-  /// Along one axis: the gentler difference, or the only one at the image's border.
+  /// Along one axis: the smaller difference, or the only one at the border of the image.
   template <class At>
   static float slope(At at, int i, int count) {
     const float before = at(i) - at(std::max(i - 1, 0)),
@@ -189,13 +189,13 @@ class PlainDepthSensor {
     const float squares = (nx * nx + ny * ny + nz * nz) * (a * a + b * b + 1.0F);
     return {inverse(x, y), sx, sy, inverse(x, y) / std::sqrt(squares + 1e-30F)};
   }
-  /// In steps of 1/1024 of the cosine, as the sensor tabulates it.
+  /// In steps of 1/1024 of the cosine, as tabulated by the sensor.
   static double incidence(const Surface& surface) {
     return std::acos(
         static_cast<double>(static_cast<int>(std::min(surface.cosine, 1.0F) * 1024 + 0.5F)) / 1024);
   }
-  /// Whether another pixel of the row, more than 1 px of disparity nearer, covers this one's column
-  /// of the projector's image.
+  /// Whether another pixel of the row that is nearer by more than 1 px of disparity covers this
+  /// pixel's column in the projector's image.
   bool shaded(int x, int y) const {
     const float focal_base =
         static_cast<float>(kDisparityStepsPerPx * camera_.fx_px * camera_.baseline_m) /
@@ -221,7 +221,7 @@ TEST(DepthNoise, IsThePlainOne) {
   for (const auto& [width, height] : {std::pair(1, 1), {2, 3}, {37, 23}, {75, 48}}) {
     camera.width_px = width, camera.height_px = height;
     camera.cx_px = 0.5 * width, camera.cy_px = 0.4 * height;
-    // A wall that turns away, a box before it, a hole, and single pixels close by.
+    // A wall that turns away, a box in front of it, a hole, and single pixels close to the camera.
     Grid2d<float> depth_m(width, height);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
@@ -250,7 +250,7 @@ TEST(DepthNoise, IsThePlainOne) {
   }
 }
 
-/// A renderer all of whose images are whole.
+/// A renderer that always renders whole images.
 class WholeImages : public Renderer {
  public:
   explicit WholeImages(std::shared_ptr<const Renderer> inner) : inner_(std::move(inner)) {}
@@ -262,7 +262,7 @@ class WholeImages : public Renderer {
   std::shared_ptr<const Renderer> inner_;
 };
 
-/// A room with boxes of noise textures; every second one is a plain color.
+/// A room with twelve boxes.
 Scene room_of_boxes() {
   Scene scene = test::plain_scene();
   test::add_box(scene, {-3, -3, -3}, {3, 3, 3}, true, 1, 1);

@@ -20,7 +20,7 @@ ImuConfig exact() {
           .accel_bias = 0};
 }
 
-/// A path at 30 Hz: a wave of 0.3 m and 0.6 rad while it turns.
+/// A path at 30 Hz: waves of 0.3 m and 0.6 rad while it turns.
 Trajectory a_path(std::size_t frames = 300) {
   Trajectory path;
   for (std::size_t i = 0; i < frames; ++i) {
@@ -33,7 +33,7 @@ Trajectory a_path(std::size_t frames = 300) {
   return path;
 }
 
-// At rest the accelerometer shows what holds it up, the gyroscope nothing.
+// At rest the accelerometer measures the force that supports it, and the gyroscope nothing.
 TEST(Imu, AtRestFeelsGravityAlone) {
   const Eigen::Matrix3d tilted = so3_exp({0.3, -0.4, 0.2});
   Trajectory path;
@@ -46,8 +46,8 @@ TEST(Imu, AtRestFeelsGravityAlone) {
   }
 }
 
-// What the readings add up to is the path: rotation, and with gravity taken away the position, over
-// 10 s from the true start.
+// Integrating the readings gives the path: the rotation and, after removing gravity, the position,
+// over 10 s from the true start.
 TEST(Imu, IntegratesToThePath) {
   const Trajectory path = a_path();
   const double period_s = 1.0 / 2000;
@@ -80,7 +80,7 @@ TEST(Imu, TurnsByThePathsRotationBetweenAnyTwoPoses) {
   const auto readings = imu_along(path, exact(), RandomStream(1)).readings;
   double worst_rad_per_s = 0;
   for (const ImuReading& r : readings) {
-    // Analytically, by small differences of a_path()'s own formula.
+    // Computed from small differences of a_path()'s own formula.
     const double t = static_cast<double>(r.stamp_ns - 1'000'000'000) * 1e-9, h = 1e-5;
     if (t < 0.1 || t > 1.8) continue;
     const auto rotation = [](double s) -> Eigen::Matrix3d {
@@ -105,7 +105,7 @@ TEST(Imu, ErrsByItsNoiseBiasAndWalk) {
   white.gyro_noise = 1e-3;
   EXPECT_NEAR(spread(white), 1e-3 * std::sqrt(200.0), 2e-4);
   ImuConfig walks = exact();
-  walks.gyro_walk = 1e-3;  // after 100 s 1e-2, over all 7e-3 on average
+  walks.gyro_walk = 1e-3;  // 1e-2 after 100 s, 7e-3 on average
   EXPECT_GT(spread(walks), 2e-3);
   EXPECT_LT(spread(walks), 2e-2);
   ImuConfig biased = exact();
@@ -115,10 +115,10 @@ TEST(Imu, ErrsByItsNoiseBiasAndWalk) {
   EXPECT_GT(bias.norm(), 0.01);
   EXPECT_LT(bias.norm(), 0.4);
   EXPECT_LT((readings.back().specific_force_m_per_s2 - Vector3d(0, 0, 9.81) - bias).norm(), 1e-9);
-  // Equal streams, equal bits; another stream, another bias.
+  // Equal streams give equal bits; a different stream gives a different bias.
   EXPECT_EQ(imu_along(path, biased, RandomStream(4)).readings, readings);
   EXPECT_NE(imu_along(path, biased, RandomStream(5)).readings, readings);
-  // The truth says what they err by.
+  // The truth contains the errors of the readings.
   const ImuPath truth = imu_along(path, {}, RandomStream(4));
   ASSERT_EQ(truth.biases.size(), truth.readings.size());
   Vector3d off = Vector3d::Zero();

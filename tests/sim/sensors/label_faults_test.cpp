@@ -28,7 +28,7 @@ void paint(RenderedFrame& frame, int left, int top, int width, int height, Class
     }
 }
 
-/// 12 x 9 row_of_chairs of 20 x 20 px, instances 1 to 108.
+/// 12 x 9 chairs of 20 x 20 px, instances 1 to 108.
 RenderedFrame row_of_chairs() {
   RenderedFrame frame = unpainted_frame();
   for (int i = 0; i < 108; ++i)
@@ -47,7 +47,7 @@ SemanticImage labels(const RenderedFrame& truth, LabelMode mode, const LabelConf
   return label_image(truth, mode, config, view, RandomStream(frame));
 }
 
-/// How many of the row_of_chairs' middles carry the class.
+/// Number of chairs in row_of_chairs() whose center has this class.
 int count(const SemanticImage& image, ClassId class_id) {
   int found = 0;
   for (int i = 0; i < 108; ++i)
@@ -88,7 +88,7 @@ TEST(LabelNoise, DialsAreSharesOfInstances) {
                 count(labels(truth, LabelMode::kExact, config), kVoid));
       trials += 108;
     }
-    // Instances draw apart from one another: a binomial spread of 3,240.
+    // Instances are drawn independently: a binomial spread with 3,240 trials.
     const double spread = 4.0 * std::sqrt(share * (1.0 - share) / trials);
     EXPECT_NEAR(static_cast<double>(confused) / trials, share, spread);
     EXPECT_NEAR(static_cast<double>(dropped) / trials, share, spread);
@@ -104,7 +104,8 @@ TEST(LabelNoise, AnInstanceIsConfusedAsAWholeAndAlwaysWithTheSameClass) {
   EXPECT_EQ(a, labels(truth, LabelMode::kExact, config, view_at(7), 2));
   for (int y = 2; y < 22; ++y)
     for (int x = 2; x < 22; ++x) ASSERT_EQ(a.at(x, y), a.at(12, 12));
-  EXPECT_GE(classes()[a.at(12, 12).most_probable()].coco80, 0);  // a box stays a box
+  EXPECT_GE(classes()[a.at(12, 12).most_probable()].coco80,
+            0);  // the class is still one that has boxes
 }
 
 TEST(LabelNoise, FaultsStayWithTheViewAndFadeWithDistance) {
@@ -124,7 +125,7 @@ TEST(LabelNoise, FaultsStayWithTheViewAndFadeWithDistance) {
   };
   EXPECT_LT(differing(view_at(0.22)), 8);
   EXPECT_LT(differing(view_at(0.22)), differing(view_at(0.5)));
-  EXPECT_NEAR(differing(view_at(5.0)), 54, 22);  // as good as independent: half of them
+  EXPECT_NEAR(differing(view_at(5.0)), 54, 22);  // effectively independent: half of them
   EXPECT_NEAR(differing(view_at(0.2, 1.5)), 54, 22);
 }
 
@@ -149,14 +150,14 @@ TEST(LabelNoise, SharesOfTheVarianceAreThoseStated) {
 TEST(LabelNoise, SwappedNeighborsExchangeTheirClasses) {
   RenderedFrame truth = unpainted_frame();
   paint(truth, 10, 10, 50, 50, kFaultyChair, 1);
-  paint(truth, 70, 10, 50, 50, kTable, 2);  // nearest to both others
+  paint(truth, 70, 10, 50, 50, kTable, 2);  // nearest to both of the others
   paint(truth, 200, 10, 50, 50, kBed, 3);
   LabelConfig config;
   config.noise = {.enabled = true, .swap = 1.0};
   const SemanticImage image = labels(truth, LabelMode::kExact, config);
   EXPECT_EQ(image.at(30, 30).most_probable(), kTable);
   EXPECT_EQ(image.at(90, 30).most_probable(), kFaultyChair);
-  EXPECT_EQ(image.at(220, 30).most_probable(), kBed);  // nobody is left to exchange with
+  EXPECT_EQ(image.at(220, 30).most_probable(), kBed);  // no neighbor is left to exchange with
 }
 
 TEST(LabelNoise, ErosionMakesVoidWhatIsNearABorder) {

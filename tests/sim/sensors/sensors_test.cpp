@@ -27,8 +27,8 @@ RenderedFrame blank_frame(float depth_m, Rgb8 color = {120, 130, 140}) {
           Grid2d<InstanceId>(w, h)};
 }
 
-/// Depth of the plane with unit normal (0, -sin t, -cos t) that cuts the axis at `distance_m`: a
-/// surface leaning back by the angle t.
+/// Depth of the plane with unit normal (0, -sin t, -cos t) that intersects the axis at
+/// `distance_m`: a surface that leans back by the angle t.
 RenderedFrame leaning_plane(double distance_m, double angle_rad) {
   RenderedFrame frame = blank_frame(0.0F);
   for (int y = 0; y < kCamera.height_px; ++y) {
@@ -40,7 +40,7 @@ RenderedFrame leaning_plane(double distance_m, double angle_rad) {
   return frame;
 }
 
-/// The angle between a pixel's ray and that plane's normal.
+/// The angle between a pixel's ray and the normal of that plane.
 double incidence_rad(int x, int y, double angle_rad) {
   const Eigen::Vector3d d = kCamera.unproject(x, y, 1.0).normalized();
   return std::acos(std::abs(d.dot(Eigen::Vector3d(0, std::sin(angle_rad), std::cos(angle_rad)))));
@@ -83,7 +83,7 @@ TEST(DepthNoise, AxialSigmaOverDistanceIsThePublishedOne) {
     for (const float depth : frame.depth_m) moments.add(depth - z);
     const double published = 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
     EXPECT_NEAR(moments.sigma(), published, 0.05 * published) << z;
-    // 307,200 draws: the mean's own sigma is sigma / 554.
+    // 307,200 samples: the standard error of the mean is sigma / 554.
     EXPECT_NEAR(moments.mean(), 0.0, 5.0 * published / 554.0) << z;
   }
 }
@@ -106,7 +106,7 @@ TEST(DepthNoise, AxialSigmaGrowsWithSteepIncidenceAsPublished) {
       smallest_angular_share = std::min(smallest_angular_share, (sigma - flat) / flat);
       standardized.add((frame.depth_m(x, y) - z) / sigma);
     }
-  EXPECT_GT(smallest_angular_share, 0.05);  // else the term would go unseen
+  EXPECT_GT(smallest_angular_share, 0.05);  // otherwise the term would have no visible effect
   EXPECT_NEAR(standardized.sigma(), 1.0, 0.03);
 }
 
@@ -119,7 +119,7 @@ TEST(DepthNoise, LateralNoiseMovesEdgesAndNothingElse) {
   const RgbdFrame frame = sensed(truth, config);
   const double sigma = lateral_sigma_px(0.0);
   EXPECT_DOUBLE_EQ(sigma, 0.8);
-  for (int k = 0; k < 3; ++k) {  // k px left of the last near column
+  for (int k = 0; k < 3; ++k) {  // k px to the left of the last near column
     int far = 0;
     for (int y = 0; y < kCamera.height_px; ++y) {
       const float depth = frame.depth_m(319 - k, y);
@@ -136,7 +136,7 @@ TEST(DepthNoise, LateralNoiseMovesEdgesAndNothingElse) {
         ASSERT_NEAR(frame.depth_m(x, y), truth.depth_m(x, y), 1e-5);
       }
 
-  // On a smooth slope it changes nothing: an inverse depth is affine there.
+  // It changes nothing on a smooth slope: inverse depth is affine there.
   const RenderedFrame slope = leaning_plane(2.0, 0.9);
   const RgbdFrame slid = sensed(slope, config);
   for (int y = 0; y < kCamera.height_px; ++y)
@@ -200,7 +200,7 @@ TEST(DepthNoise, TheProjectorsShadowLiesLeftOfWhatStandsInFront) {
     }
     ASSERT_NEAR(holes, y >= 100 && y < 300 ? width : 0.0, 1.6) << y;
   }
-  // A pole throws its own width: right of the shadow the wall is lit again.
+  // A pole casts a shadow of its own width: to the right of the shadow, the wall is lit again.
   for (float& z : truth.depth_m) z = 3.0F;
   for (int y = 0; y < kCamera.height_px; ++y)
     for (int x = 300; x < 306; ++x) truth.depth_m(x, y) = 1.0F;
@@ -209,7 +209,7 @@ TEST(DepthNoise, TheProjectorsShadowLiesLeftOfWhatStandsInFront) {
   for (const float depth : pole.depth_m.row(50)) holes += depth == 0.0F;
   EXPECT_NEAR(holes, 6, 1.6);
   EXPECT_GT(pole.depth_m(295, 50), 0.0F);
-  // A slope, however steep, shades nothing of itself.
+  // A slope does not shade itself, no matter how steep it is.
   const RgbdFrame slope = sensed(leaning_plane(2.0, 1.2), config);
   EXPECT_EQ(slope.depth_m, leaning_plane(2.0, 1.2).depth_m);
 }
@@ -252,7 +252,7 @@ TEST(ColorNoise, StopsAtBlackAndWhite) {
   const RgbdFrame frame = sensed(blank_frame(2.0F, {0, 255, 128}), config);
   int black = 0, white = 0;
   for (const Rgb8& c : frame.color) {
-    ASSERT_LT(c.r, 128);  // wrapping round would turn black into white
+    ASSERT_LT(c.r, 128);  // wrapping around would turn black into white
     ASSERT_GT(c.g, 127);
     black += c.r == 0, white += c.g == 255;
   }
@@ -267,7 +267,7 @@ TEST(Sense, SameKeySameBitsOtherKeyOtherNoise) {
   EXPECT_EQ(a.color, b.color);
   EXPECT_NE(a.depth_m, c.depth_m);
   EXPECT_NE(a.color, c.color);
-  // Depth noise does not touch the color's stream.
+  // Depth noise does not affect the random stream of color.
   SensorConfig color_only;
   color_only.depth_noise.enabled = false;
   EXPECT_EQ(sensed(truth, color_only).color, a.color);
@@ -300,12 +300,13 @@ TEST(LabelImage, EachVisibleObjectHasAnEntryOfItsOwn) {
   RenderedFrame truth = blank_frame(2.0F);
   paint_box(truth, 10, 10, 59, 59, 5, 1);
   paint_box(truth, 60, 10, 99, 59, 5, 2);  // touches the first
-  paint_box(truth, 10, 80, 59, 99, 7, 0);  // of no instance
+  paint_box(truth, 10, 80, 59, 99, 7, 0);  // without an instance
   const SemanticImage image = label_image(truth, LabelMode::kExact);
   EXPECT_NE(image.index(20, 20), image.index(80, 20));
   EXPECT_EQ(image.at(20, 20), image.at(80, 20));
   EXPECT_EQ(image.index(20, 90), 7);
-  // Erosion takes what lies at the border of a class, not at that of two objects of one.
+  // Erosion removes pixels at the border of a class, but not at the border of two objects of the
+  // same class.
   LabelConfig config;
   config.noise = {.enabled = true, .erosion_px = 2};
   const SemanticImage eroded =
@@ -332,7 +333,7 @@ TEST(LabelImage, FewerClassesAreDistinguishedOnDemand) {
     for (std::size_t i = 0; i < names.size(); ++i)
       classes_seen.push_back(
           classes()[image.at(static_cast<int>(20 * i) + 5, 20).most_probable()].name);
-    EXPECT_NE(image.index(25, 20), image.index(45, 20));  // objects stay apart
+    EXPECT_NE(image.index(25, 20), image.index(45, 20));  // objects remain separate
     return classes_seen;
   };
   using Names = std::vector<std::string_view>;
@@ -349,7 +350,8 @@ TEST(LabelImage, FewerClassesAreDistinguishedOnDemand) {
 TEST(LabelImage, MoreObjectsThanAPaletteHoldsShareTheEntryOfTheirClass) {
   RenderedFrame truth = blank_frame(2.0F);
   for (int i = 0; i < 400; ++i) {
-    const int x = i % 25 * 12, y = i / 25 * 12, side = i < 300 ? 8 : 4;  // the last are smaller
+    const int x = i % 25 * 12, y = i / 25 * 12,
+              side = i < 300 ? 8 : 4;  // the last ones are smaller
     paint_box(truth, x, y, x + side, y + side, 5, static_cast<InstanceId>(i + 1));
   }
   const SemanticImage image = label_image(truth, LabelMode::kExact);
@@ -369,13 +371,13 @@ TEST(LabelImage, MoreObjectsThanAPaletteHoldsShareTheEntryOfTheirClass) {
 TEST(LabelImage, BoxesAreThoseWorkedOutByHand) {
   constexpr ClassId chair = 5, table = 7, wall = 1;
   RenderedFrame truth = blank_frame(2.0F);
-  paint_box(truth, 0, 0, 639, 479, wall, 1);       // no COCO class: background
+  paint_box(truth, 0, 0, 639, 479, wall, 1);       // not a COCO class: background
   paint_box(truth, 100, 100, 299, 249, table, 2);  // box 100..299 x 100..249
-  paint_box(truth, 150, 150, 179, 299, chair, 3);  // smaller: over the table
-  paint_box(truth, 400, 50, 408, 60, chair, 4);    // 9 x 11 = 99 px: too little to be seen
-  paint_box(truth, 500, 50, 509, 59, chair, 5);    // 100 px: just enough
-  paint_box(truth, 600, 300, 604, 319, table, 6);  // one object in two parts, 100 px each:
-  paint_box(truth, 620, 400, 624, 419, table, 6);  // one box around both
+  paint_box(truth, 150, 150, 179, 299, chair, 3);  // smaller: on top of the table
+  paint_box(truth, 400, 50, 408, 60, chair, 4);    // 9 x 11 = 99 px: too small to be seen
+  paint_box(truth, 500, 50, 509, 59, chair, 5);    // 100 px: just large enough
+  paint_box(truth, 600, 300, 604, 319, table, 6);  // one object in two parts of 100 px each:
+  paint_box(truth, 620, 400, 624, 419, table, 6);  // one box around both parts
   const SemanticImage image = label_image(truth, LabelMode::kBoxes);
   const auto expected = [&](int x, int y) -> ClassId {
     const auto within = [&](int l, int t, int r, int b) {
@@ -393,7 +395,7 @@ TEST(LabelImage, BoxesAreThoseWorkedOutByHand) {
 TEST(LabelImage, SmallerBoxesLieOverLargerOnesWhateverTheirIds) {
   RenderedFrame truth = blank_frame(2.0F);
   paint_box(truth, 0, 0, 400, 400, 6, 9);      // sofa
-  paint_box(truth, 100, 100, 200, 200, 4, 3);  // bed inside its box, lower id
+  paint_box(truth, 100, 100, 200, 200, 4, 3);  // bed inside the sofa's box, lower id
   EXPECT_EQ(label_image(truth, LabelMode::kBoxes).at(150, 150).most_probable(), 4);
   paint_box(truth, 0, 0, 400, 400, 6, 3);
   paint_box(truth, 100, 100, 200, 200, 4, 9);
@@ -404,8 +406,8 @@ std::filesystem::path level(const std::string& name) {
   return std::filesystem::path(MH_SOURCE_DIR) / "sim/sensors/levels" / (name + ".yaml");
 }
 
-// Results name a level by its digest, and comparisons made under one name must mean one thing. A
-// change here is a new level: say so in CHANGELOG.md, and throw away what was measured before.
+// Results identify a level by its digest, and comparisons under the same name must mean the same. A
+// changed level is a new level: say so in CHANGELOG.md, and discard earlier measurements.
 TEST(SensorLevels, AreFrozen) {
   const auto digest = [](const std::string& name) {
     const std::string text = read_file(level(name));
@@ -446,7 +448,7 @@ TEST(SensorLevels, SayWhatTheirNamesSay) {
   EXPECT_EQ(pepper.processing.contrast + pepper.processing.sharpening, 0.0);
 }
 
-/// What format_sensor_config() writes is read back equal.
+/// Expects that the output of format_sensor_config() is read back equal.
 void expect_round_trip(const SensorConfig& config) {
   for (const bool notes : {false, true})
     EXPECT_EQ(parse_sensor_config(format_sensor_config(config, notes), "level"), config);
@@ -461,7 +463,7 @@ TEST(SensorLevels, WhatIsPrintedIsReadBackEqual) {
   expect_round_trip({});
 }
 
-/// Gives each field a value of its own that its range allows.
+/// Gives each field a different value within its range.
 struct OtherValues {
   void section(const char*) {}
   void operator()(const char*, bool& value, const SettingRange&, const char*) { value = !value; }
@@ -494,17 +496,17 @@ TEST(SensorLevels, ASectionThatIsThereIsOnUnlessItSaysOtherwise) {
   EXPECT_EQ(off.motion_blur.exposure_s(), 0);
   EXPECT_EQ(off.blank_frames.lost(), 0);
   EXPECT_TRUE(off.labels.noise.none());
-  EXPECT_EQ(off.labels.seed, 3U);  // the detector's, too
+  EXPECT_EQ(off.labels.seed, 3U);  // the detector uses it, too
 }
 
-/// A number of a level: where it stands, what it may be, where it goes.
+/// A number in a level: its place in the file, its range and the field that it sets.
 struct LevelNumber {
   std::string section, key;
   double low, high;
-  bool above = false;  ///< the low end itself is refused
-  std::string beside;  ///< what else the section needs: "sigma_px: 1, "
+  bool above = false;  ///< the low end itself is not allowed
+  std::string beside;  ///< what else the section needs, such as "sigma_px: 1, "
   std::function<double(const SensorConfig&)> value;
-  double unit = 1;  ///< of the file, in ours
+  double unit = 1;  ///< one unit of the file, in our unit
 };
 
 std::vector<LevelNumber> level_numbers() {
@@ -626,7 +628,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   EXPECT_NE(message("depth_noise: {}\ncolor_noise: {sigma: -1}\n").find("-1"), std::string::npos);
   EXPECT_NE(message("depth_noise: {}\n").find("color_noise"), std::string::npos);
   EXPECT_EQ(message("depth_noise: {}\n" + color), "accepted");
-  // Each section by its own fault: what must be named, and in which line.
+  // Each fault in its own section: what the message must contain, and for which line.
   const std::string both = "depth_noise: {}\n" + color;
   const auto third_line = [&](const std::string& text, const std::string& named) {
     const std::string reported = message(both + text + "\n");

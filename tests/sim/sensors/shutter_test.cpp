@@ -24,8 +24,8 @@ Camera small_camera() {
   return camera;
 }
 
-/// A wall at a depth of 2 m, white where world x < 0 and black beyond, smooth over one pixel. The
-/// depth encodes the camera's world y. Counts the rows that it renders.
+/// A wall at a depth of 2 m, white where world x < 0 and black elsewhere, with an edge smoothed
+/// over one pixel. The depth encodes the camera's world y. Counts the rows that it renders.
 class Edge : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -50,7 +50,7 @@ class Edge : public Renderer {
   mutable long rows = 0;
 };
 
-/// Frames at 30 Hz with the camera moving along x.
+/// Frames at 30 Hz while the camera moves along x.
 Trajectory sliding(double speed_m_per_s, int frames = 5, double from_m = 0.0) {
   Trajectory path;
   for (int i = 0; i < frames; ++i) {
@@ -72,9 +72,9 @@ SensorConfig blurring(double exposure_s) {
   return config;
 }
 
-/// The squared width over which an edge was smeared: a uniform smear has a variance of
-/// width^2 / 12, to which a pixel's area and, on the mean over where the edge falls between pixels,
-/// the sampling by pixels add 1/12 each.
+/// The squared width over which an edge was smeared: a uniform smear has a variance of width^2 /
+/// 12; the area of a pixel adds 1/12, and so does sampling by pixels, averaged over where the edge
+/// falls between pixels.
 double squared_smear_px(const Grid2d<Rgb8>& color, int y) {
   double mean = 0.0, square = 0.0;
   for (int x = 0; x + 1 < color.width(); ++x) {
@@ -85,7 +85,7 @@ double squared_smear_px(const Grid2d<Rgb8>& color, int y) {
   return 12.0 * (square - mean * mean) - 2.0;
 }
 
-/// Where the edge stands in a row: as many pixels as there is light.
+/// Position of the edge in a row: the number of pixels that the light would fill.
 double edge_px(const Grid2d<Rgb8>& color, int y) {
   double light = 0.0;
   for (const Rgb8& c : color.row(y)) light += srgb_to_linear(c.r);
@@ -111,7 +111,7 @@ TEST(MotionBlur, LengthIsFocalLengthTimesSpeedTimesExposureOverDepth) {
 }
 
 TEST(MotionBlur, IsTheMeanInLinearLight) {
-  // Half of the exposure on white, half on black: sRGB 188, not 128.
+  // Half of the exposure sees white, half sees black: sRGB 188, not 128.
   const Shutter shutter(std::make_shared<Edge>(), small_camera(), sliding(2.0), blurring(0.030));
   const Grid2d<Rgb8> color = shutter.expose(2).seen.color;
   EXPECT_EQ(color(20, 60).r, 255);
@@ -148,16 +148,17 @@ TEST(RollingShutter, SlantsAnUprightEdgeBySpeedTimesReadout) {
   for (const double speed : {-1.5, 0.8, 1.5}) {
     const Shutter shutter(scene, small_camera(), sliding(speed), config);
     const Grid2d<Rgb8> color = shutter.expose(2).seen.color;
-    // The camera moves to the right, so what stands still moves to the left, row after row.
+    // The camera moves to the right, so static objects move to the left, row by row.
     const double expected = -130.0 * speed * 0.030 / kDepthM * 119.0 / 120.0;
     EXPECT_NEAR(edge_px(color, 119) - edge_px(color, 0), expected, 0.5) << speed;
-    EXPECT_NEAR(edge_px(color, 60), 80.0, 0.6) << speed;  // the middle row is that of the stamp
-    for (int y = 0; y < 120; ++y) ASSERT_LT(squared_smear_px(color, y), 1.2);  // sharp in each row
+    EXPECT_NEAR(edge_px(color, 60), 80.0, 0.6)
+        << speed;  // the middle row is exposed at the timestamp
+    for (int y = 0; y < 120; ++y) ASSERT_LT(squared_smear_px(color, y), 1.2);  // each row is sharp
   }
 }
 
-/// Two upright surfaces that meet in one edge, white and black, of classes 1 and 2; a camera that
-/// pans over it at 2 rad/s, and what it sees under rolling shutter and blur.
+/// Two upright surfaces, white and black, of classes 1 and 2, that meet in one edge; a camera that
+/// pans across it at 2 rad/s, and its images under rolling shutter and motion blur.
 class PannedEdge : public testing::Test {
  protected:
   PannedEdge() {
@@ -177,8 +178,8 @@ class PannedEdge : public testing::Test {
   RenderedFrame seen(LabelMode labels) const {
     return Shutter(renderer_, Camera{}, path_, config_).expose(2, labels).seen;
   }
-  /// By how many pixels the labels' border in a row lies beside the two pixels that the color's
-  /// edge is between; the border is where class and instance change, from 1 to 2 and once.
+  /// By how many pixels the labels' border in a row is outside the two pixels around the color's
+  /// edge; at the border, class and instance change from 1 to 2, exactly once.
   static double astray_px(const RenderedFrame& frame, int y) {
     const auto classes = frame.classes.row(y);
     const auto border = std::ranges::find(classes, 2) - classes.begin();
@@ -186,7 +187,7 @@ class PannedEdge : public testing::Test {
       EXPECT_EQ(frame.classes(x, y), x < border ? 1 : 2);
       EXPECT_EQ(frame.instances(x, y), frame.classes(x, y));
     }
-    // edge_px counts from the outer side of the first pixel, as the border does.
+    // edge_px counts from the outer side of the first pixel, and so does the border.
     return std::max(0.0, std::abs(edge_px(frame.color, y) - static_cast<double>(border)) - 0.5);
   }
   std::shared_ptr<const Renderer> renderer_;
@@ -197,7 +198,8 @@ class PannedEdge : public testing::Test {
 TEST_F(PannedEdge, ExactLabelsFollowTheColorRowByRow) {
   const RenderedFrame frame = seen(LabelMode::kExact);
   for (int y = 0; y < frame.color.height(); ++y) ASSERT_LE(astray_px(frame, y), 1.0) << y;
-  // 2 rad/s for 26.1 ms at a focal length of 525 px: the labels' edge leans as far as the color's.
+  // 2 rad/s for 26.1 ms at a focal length of 525 px: the labels' edge slants as much as the
+  // color's.
   const auto border = [&](int y) {
     return std::ranges::find(frame.classes.row(y), 2) - frame.classes.row(y).begin();
   };
@@ -228,12 +230,12 @@ TEST(RollingShutter, AloneCostsAboutOneImageMore) {
   config.motion_sampling.step_px = 0.5;
   const Shutter shutter(scene, small_camera(), sliding(2.0), config);
   shutter.expose(2);
-  EXPECT_LE(scene->rows, 120 * 4);  // the exact one, and each row of the others about twice
+  EXPECT_LE(scene->rows, 120 * 4);  // the exact image, and about two times each row of the others
   EXPECT_GE(scene->rows, 120 * 2);
 }
 
 TEST(RollingShutter, ARealRendererDrawsEveryStrip) {
-  // Strips above and below the middle do not hold the principal point.
+  // The strips above and below the middle do not contain the principal point.
   Scene scene = test::plain_scene();
   test::add_box(scene, {-3, -3, -3}, {3, 3, 3}, true, 1, 1);
   const std::shared_ptr<const Renderer> renderer = make_embree_renderer(scene);
@@ -268,7 +270,7 @@ TEST(Shutter, PosesBetweenFramesLieOnAConstantTwist) {
   EXPECT_NEAR(
       angle_between_rad(pose_at(path, 0, 0.0333333333 + 0.00833333), path[1].world_from_camera),
       0.1, 1e-5);
-  // Beyond the ends it rests.
+  // Before the start and after the end, the camera is at rest.
   EXPECT_EQ(pose_at(path, 0, -1.0).translation(), path[0].world_from_camera.translation());
   EXPECT_EQ(pose_at(path, 2, 1.0).translation(), path[2].world_from_camera.translation());
 }
@@ -286,7 +288,7 @@ TEST(DepthOffset, DepthIsThatOfAnotherMomentAndColorIsNot) {
   EXPECT_EQ(seen.color, Edge().render(small_camera(), path[1].world_from_camera).color);
 }
 
-/// Everything has one gray, lighter where the camera has gone beyond x = 0.
+/// Everything has the same gray, which is lighter once the camera is past x = 0.
 class Lamp : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -301,7 +303,7 @@ TEST(AutoExposure, TheGainNearsItsGoalExponentially) {
   config.auto_exposure.enabled = true;
   config.auto_exposure.target = 0.15;
   config.auto_exposure.time_constant_s = 0.2;
-  const Trajectory path = sliding(1.0, 40);  // frame 2 stands at x = 0, or a hair beside it
+  const Trajectory path = sliding(1.0, 40);  // frame 2 is at x = 0, up to rounding
   const Shutter shutter(std::make_shared<Lamp>(), small_camera(), path, config);
   EXPECT_NEAR(shutter.expose(0).gain, 1.5, 0.02);
   EXPECT_NEAR(shutter.expose(39).gain, 0.5, 0.02);
@@ -334,7 +336,8 @@ TEST(DroppedFrames, GoMissingAtTheirRateAndTheSameOnesEachTime) {
     ASSERT_LT(arrived[i - 1].stamp_ns, arrived[i].stamp_ns);
   EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), arrived.size());
   config.dropped_frames = {.enabled = true, .share = 1.0};
-  EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(), 1U);  // never nothing at all
+  EXPECT_EQ(arriving_frames(path, config, RandomStream(1)).size(),
+            1U);  // at least one frame arrives
 }
 
 }  // namespace

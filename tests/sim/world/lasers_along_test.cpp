@@ -19,7 +19,7 @@ SE3 turned(double heading_rad, const Eigen::Vector3d& at_m) {
   return {Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix(), at_m};
 }
 
-/// The robot turns beside a wall, and its head nods.
+/// The robot turns next to a wall while its head nods.
 DrivenPath turning(const Robot& robot) {
   DrivenPath path;
   for (int i = 0; i < 5; ++i) {
@@ -32,7 +32,7 @@ DrivenPath turning(const Robot& robot) {
   return path;
 }
 
-// A ray's end is on the wall wherever the head looks.
+// The end of a ray is on the wall wherever the head looks.
 TEST(LasersAlong, PlaceWhatTheyMeasureByTheCamera) {
   Scene scene = empty_room();
   add_box(scene, "wall", {7, 0, 0}, {7.2F, 10, 2});
@@ -64,7 +64,7 @@ TEST(LasersAlong, SeeWhoWalksByAtThatMomentInAnyOrder) {
                            {person});
   const auto ahead_m = [&](std::size_t i) { return lasers.at(i)[0].ranges_m[7]; };
   const float later_m = ahead_m(1), first_m = ahead_m(0);
-  EXPECT_NEAR(first_m, 2 - 0.22 - 0.0562, 5e-3);  // a cylinder of flat faces
+  EXPECT_NEAR(first_m, 2 - 0.22 - 0.0562, 5e-3);  // the cylinder has flat faces
   EXPECT_GT(later_m, first_m + 0.05F);
   EXPECT_EQ(ahead_m(1), later_m);
 }

@@ -76,7 +76,7 @@ TEST(Pedestrian, HasAPersonsSize) {
   }
 }
 
-/// A camera at 1 m that looks along x at a wall 5 m away, and a pedestrian who crosses 3 m away.
+/// A camera at 1 m that looks along x at a wall 5 m away, and a pedestrian who crosses at 3 m.
 class PedestrianSceneTest : public testing::Test {
  protected:
   PedestrianSceneTest() {
@@ -106,7 +106,7 @@ TEST_F(PedestrianSceneTest, HeHidesWhatIsBehindHimAndNothingElseChanges) {
   const std::vector<Eigen::Vector2i> pixel = {{camera_.width_px / 2, camera_.height_px / 2}};
   EXPECT_EQ(pedestrian_scene.at(2 * kSecond)->depth_at(camera_, world_from_camera_, pixel)[0],
             seen.depth_m(pixel[0].x(), pixel[0].y()));
-  // He stands on the axis, seen from the side: 2 * 0.65 * 0.22 m broad at chest height.
+  // The pedestrian is on the axis, seen from the side: 2 * 0.65 * 0.22 m wide at chest height.
   const ClassId person = *class_by_name("person");
   EXPECT_EQ(seen.classes(159, 119), person);
   EXPECT_EQ(seen.instances(159, 119), 2);
@@ -151,7 +151,7 @@ TEST_F(PedestrianSceneTest, HeMovesWithTimeAndIsTheSameBitsAtTheSameTime) {
     return -1;
   };
   EXPECT_EQ(left_edge(2 * kSecond), left_edge(2 * kSecond));
-  // Half a second is half a meter is 40 px at 3 m; +y is to the left.
+  // Half a second is half a meter, which is 40 px at 3 m; +y is to the left.
   EXPECT_NEAR(left_edge(2 * kSecond) - left_edge(2 * kSecond + kSecond / 2), 40, 2);
 }
 
@@ -166,7 +166,7 @@ TEST_F(PedestrianSceneTest, ASequenceShowsHimWhereHeIsAtEachStamp) {
     return frame.semantics.at(159, 119).most_probable() == *class_by_name("person") &&
            std::abs(frame.depth_m(159, 119) - 2.8F) < 0.1F;
   };
-  EXPECT_FALSE(person(0, pedestrian_scene));  // 2 m aside, out of the image
+  EXPECT_FALSE(person(0, pedestrian_scene));  // 2 m to the side, outside the image
   EXPECT_TRUE(person(1, pedestrian_scene));
   EXPECT_FALSE(person(1, nullptr));
 }

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every file below a folder, by its path, with its bytes.
+/// The content of every file below a folder, by relative path.
 std::map<std::string, std::string> contents(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -115,7 +115,8 @@ TEST_F(RenderSequence, MakesAnewWhatWasCutOff) {
     const std::string name = layout;
     const auto whole = rendered(layout, name.c_str(), {});
     std::size_t k = 0;
-    for (const auto& [file, bytes] : whole) {  // every fifth image, by another cut each
+    for (const auto& [file, bytes] :
+         whole) {  // every fifth image, each truncated at a different length
       const std::string ending = fs::path(file).extension();
       if ((ending != ".png" && ending != ".jpg") || k++ % 5 != 0) continue;
       fs::resize_file(folder_ / name / file, bytes.size() * (k % 3) / 3);

@@ -67,12 +67,12 @@ void expect_equal(const Shutter::Exposed& a, const Shutter::Exposed& b) {
 
 class SharedExposuresFolder : public testing::Test {
  protected:
-  /// Another process's, as far as the file is concerned.
+  /// Opens the file as a separate process would.
   std::unique_ptr<SharedExposures> open(std::uint64_t limit_bytes = kMuch) {
     return std::make_unique<SharedExposures>(SharedImages{folder(), limit_bytes}, "path",
                                              tiny_camera(), kFrames);
   }
-  /// Gets every frame, expects the right ones, and returns how many were made.
+  /// Gets every frame and expects the right ones. @returns how many were made
   int get_all(SharedExposures& shared) {
     int made = 0;
     for (std::size_t i = 0; i < kFrames; ++i)
@@ -184,7 +184,7 @@ TEST_F(SharedExposuresFolder, AFrameThatCouldNotBeMadeIsLeftToTheOthers) {
   EXPECT_EQ(get_all(*one), 0);
 }
 
-// A path past two walls under a rolling shutter, where annotated labels are others than exact ones.
+// A path past two walls under a rolling shutter, where annotated labels differ from exact ones.
 SimulatedSequence moving_past_walls(LabelMode labels) {
   Scene scene = test::plain_scene({120, 120, 120});
   test::add_quad(scene, {-9, -9, 3}, {9.1F, 0, 0}, {0, 18, 0}, 5, 1);

@@ -46,7 +46,7 @@ TEST(SimulatedSequence, NoiseIsKeyedByAttemptAndFrameNotByTheOrderOfAsking) {
   EXPECT_EQ(early.color, late.color);
   EXPECT_NE(sequence.frame(1, other).depth_m, early.depth_m);
   EXPECT_NE(sequence.frame(1, other).color, early.color);
-  // The wall looks the same from everywhere, so that equal noise would give equal images.
+  // The wall looks the same from everywhere, so equal noise would give equal images.
   EXPECT_NE(sequence.frame(0, first).color, early.color);
   EXPECT_TRUE(early.semantics.index.empty());
 }

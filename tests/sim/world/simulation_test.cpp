@@ -42,7 +42,7 @@ Scene furnished() {
   return scene;
 }
 
-/// Turns, drives and slides.
+/// A command that turns, drives and slides.
 Twist2d command_at(int i) {
   return {0.3 * std::sin(0.1 * i), 0.1 * std::cos(0.3 * i), 0.5 * std::sin(0.05 * i)};
 }
@@ -117,7 +117,7 @@ TEST(Simulation, SameCommandsGiveTheSameBits) {
   };
   const std::uint64_t once = bits(1);
   EXPECT_EQ(once, bits(1));
-  EXPECT_NE(once, bits(2));  // another noise
+  EXPECT_NE(once, bits(2));  // different noise
 }
 
 TEST(Simulation, ABumpIsToldWithItsSpeedAndPressesABumper) {
@@ -159,7 +159,7 @@ TEST(Simulation, ATwoWheeledRobotIsNotMovedSidewaysAndKnowsItsWay) {
   const Eigen::Vector3d at = simulation.truth().world_from_base().translation();
   EXPECT_NEAR(at.x(), 3.2, 0.01);
   EXPECT_NEAR(at.y(), 5.0, 1e-6);
-  // 1 % too long, give or take what its file says of wheels and slip.
+  // 1 % too long, within the wheel spread and slip that the robot's file allows.
   EXPECT_NEAR(seen.odom_from_base.translation().x() - 3, 1.01 * (at.x() - 3), 0.01);
   EXPECT_EQ(seen.reading.lasers_m[0].size(), 360U);
   EXPECT_GT(seen.reading.specific_force_m_per_s2.z(), 9);

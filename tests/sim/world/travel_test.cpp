@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motions on floors as scanners and other programs leave them.
+// Motions on floors that come from scanners and other programs.
 #include "sim/world/travel.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/trajectory_io.hpp"
@@ -59,7 +59,7 @@ TEST_P(RealFloor, RobotDrivesAlongIt) {
     EXPECT_NEAR(above(room.floor, base.translation()), 0.0, 1e-9);
     EXPECT_LT((base.rotation().col(2) - room.floor.up).norm(), 1e-9);
     EXPECT_GT(above(room.floor, path.camera[i].world_from_camera.translation()), 1.0);
-    // Round the table, not through it.
+    // Around the table, not through it.
     EXPECT_FALSE(std::abs(base.translation().x()) < 0.6 && std::abs(base.translation().y()) < 0.4);
   }
 }
@@ -81,7 +81,7 @@ TEST(Travel, FloorThatLiesHigherLiftsThePathAndNothingElse) {
     room.add_table(scene, 1.25, 0.75);
     return settled(std::move(scene));
   };
-  const Scene low = at(0), high = at(0.0625);  // exact in binary, as are all heights
+  const Scene low = at(0), high = at(0.0625);  // exact in binary, like all heights
   ASSERT_EQ(high.floor.middle_m.z(), 0.0625);
   for (const char* motion : {"auto:1", "handheld:1:60"}) {
     const DrivenPath a = travel(low, test::pepper(), motion),
@@ -119,10 +119,10 @@ TEST(Travel, AHurriedHandPassesTheSameWayInLessTime) {
   for (std::size_t i = 0; i < thrice.camera.size(); ++i) {
     const SE3 apart =
         thrice.camera[i].world_from_camera.inverse() * path.camera[3 * i].world_from_camera;
-    EXPECT_LT(apart.log().norm(), 1e-6) << i;  // stamps are whole nanoseconds
+    EXPECT_LT(apart.log().norm(), 1e-6) << i;  // timestamps are whole nanoseconds
     EXPECT_EQ(thrice.camera[i].stamp_ns, path.camera[i].stamp_ns);
   }
-  // 89 frames of the path at 1.5 fit in 59 steps.
+  // At a speed of 1.5, 89 intervals of the path fit into 59 steps.
   EXPECT_EQ(hurry("handheld:0:90", 1.5).camera.size(), 60U);
 }
 
@@ -130,7 +130,7 @@ TEST(Travel, PosesOfAFileStayWhereTheyAreAndAReplaySaysWhereItPutsThem) {
   const Scene room = settled(ScannedRoom{}.build());
   const Robot robot = test::pepper();
   const Trajectory scan = travel(room, robot, "handheld:0:30").camera;
-  Trajectory elsewhere = scan;  // as recorded in another room
+  Trajectory elsewhere = scan;  // as if recorded in a different room
   for (TimedPose& pose : elsewhere)
     pose.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {40, 0, 0}) * pose.world_from_camera;
   const TemporaryFolder folder(std::filesystem::temp_directory_path());
@@ -166,8 +166,8 @@ TEST(NoteOn, APlaceToFaceIsNotForADifferentialDrive) {
   EXPECT_EQ(note_on(file, test::pepper()), "");
   EXPECT_EQ(note_on(file, test::turtlebot()),
             file +
-                ":5: robot 'turtlebot3' has a differential drive: it faces its way, not the "
-                "place of 'face'");
+                ":5: robot 'turtlebot3' has a differential drive: it faces its direction of "
+                "travel, not the place in 'face'");
 }
 
 }  // namespace

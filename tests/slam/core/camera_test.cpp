@@ -49,7 +49,7 @@ TEST(Camera, EachNumberHasItsRangeAndIsNamedOutsideIt) {
     for (const double bad : {0.0, -1.0, kNan, kInfinity, -kInfinity})
       EXPECT_TRUE(with(member, bad).starts_with(std::string("camera: ") + name + " = ")) << bad;
   }
-  // The principal point lies on a pixel's middle at most.
+  // The principal point is at most at the center of the last pixel.
   for (const auto& [member, name, last] :
        {std::tuple(&Camera::cx_px, "cx_px", 639.0), {&Camera::cy_px, "cy_px", 479.0}}) {
     for (const double good : {0.0, last}) EXPECT_EQ(with(member, good), "") << name;
@@ -64,7 +64,7 @@ TEST(Camera, EachNumberHasItsRangeAndIsNamedOutsideIt) {
   EXPECT_EQ(complaint(one), "");
 }
 
-// f = 500 and 400 px, center (320, 240): a point 0.4 m to the right and 0.5 m below, 2 m away.
+// f = 500 and 400 px, center (320, 240): a point 0.4 m to the right, 0.5 m down and 2 m ahead.
 TEST(Camera, ProjectsAsWorkedByHandAndBack) {
   Camera camera;
   camera.fx_px = 500, camera.fy_px = 400;
@@ -109,7 +109,7 @@ TEST(Distortion, EightCoefficientsAreARationalOne) {
   EXPECT_EQ(text_of({.k1 = 0.1}), "k1 0.1, k2 0, p1 0, p2 0, k3 0");
 }
 
-// A file's name in Latin-1 goes into JSON by the message.
+// A message may contain a file name in Latin-1 and is written to JSON.
 TEST(InputError, MessagesAreLegible) {
   EXPECT_STREQ(InputError("rgb/b\xfcro.png: cannot be read").what(),
                "rgb/b?ro.png: cannot be read");

@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-// As ScanNet's scripts list them (util.py: names of NYU40 and their colors), 1 to 40.
+// Names and colors of NYU40 classes 1 to 40, as in ScanNet's scripts (util.py).
 struct Published {
   const char* name;
   int r, g, b;
@@ -40,7 +40,8 @@ constexpr std::array<Published, 40> kNyu40 = {
      {"bag", 213, 92, 176},           {"otherstructure", 94, 106, 211},
      {"otherfurniture", 82, 84, 163}, {"otherprop", 100, 85, 144}}};
 
-// Of COCO's 80 classes those that are found indoors, by their place in the usual list from 0.
+// Those of COCO's 80 classes that are found indoors, by their index in the usual list, starting at
+// 0.
 const std::map<int, std::string_view> kCoco80 = {
     {0, "person"},        {13, "bench"},  {26, "bag"},     {39, "bottle"},    {41, "cup"},
     {45, "bowl"},         {56, "chair"},  {57, "couch"},   {58, "plant"},     {59, "bed"},
@@ -81,7 +82,8 @@ TEST(Classes, AreInOrderEachWithANameAndAColorOfItsOwn) {
     EXPECT_EQ(class_by_name(info.name), info.id);
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_TRUE(colors.emplace(info.r, info.g, info.b).second) << info.name;
-    // Classes that NYU40 lacks map to otherfurniture or otherprop; void and background to neither.
+    // Classes that NYU40 lacks map to otherfurniture or otherprop; void and background map to
+    // neither.
     if (i > kNyu40.size()) {
       EXPECT_EQ(info.nyu40 == 39 || info.nyu40 == 40, i != kBackground) << info.name;
     }

@@ -8,7 +8,7 @@
 
 namespace mh {
 
-/// A sequence whose frames a function makes.
+/// A sequence whose frames are made by a function.
 class MadeSequence : public Sequence {
  public:
   using Make = std::function<RgbdFrame(std::size_t, RandomStream)>;

@@ -6,8 +6,8 @@
 namespace mh {
 namespace {
 
-// 100,000 draws: the standard error of the mean is 0.0009 (uniform) and 0.0032 (normal); five of
-// them never happen by chance, and the draws are fixed anyway.
+// 100,000 samples: the standard error of the mean is 0.0009 (uniform) and 0.0032 (normal);
+// deviations of five standard errors do not happen by chance, and the samples are fixed anyway.
 constexpr int kDraws = 100000;
 
 TEST(RandomStream, UniformAndNormalHaveTheirMoments) {

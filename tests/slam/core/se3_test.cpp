@@ -18,8 +18,8 @@ Vector6d random_tangent(RandomStream stream, double scale) {
 
 using Matrix3l = Eigen::Matrix<long double, 3, 3>;
 
-/// The power series sum of hat(phi)^k / (k + first)! in extended precision, which knows nothing of
-/// angles: first = 0 is exp, first = 1 is V of the translation.
+/// The power series sum of hat(phi)^k / (k + first)! in extended precision, without any special
+/// case for angles: first = 0 gives exp, first = 1 gives V for the translation.
 Matrix3l power_series(const Eigen::Vector3d& phi, int first) {
   const Matrix3l skew = hat(phi).cast<long double>();
   Matrix3l sum = Matrix3l::Identity(), term = Matrix3l::Identity();
@@ -30,14 +30,14 @@ Matrix3l power_series(const Eigen::Vector3d& phi, int first) {
   return sum;
 }
 
-/// Angles on both sides of where the code changes from series to closed form, and far from there.
+/// Angles on both sides of the switch from series to closed form, and far from it.
 constexpr double kAngles_rad[] = {
     0,    1e-12, 1e-8, 3e-6, 9.999e-6, 1e-5 * (1 - 1e-12), 1e-5, 1e-5 * (1 + 1e-12), 1.001e-5,
     1e-4, 1e-2,  0.7,  2.0,  3.1};
 
-// The axes have no zero component: each entry of both matrices takes part. Tolerance: a few units
-// in the last place of 1. The closed form of the turn loses (1 - cos) / angle^2 to cancellation: an
-// error of half a unit over angle^2, times angle^2 again.
+// The axes have no zero component, so each entry of both matrices matters. Tolerance: a few units
+// in the last place of 1. In the closed form of the rotation, (1 - cos) / angle^2 suffers from
+// cancellation: an error of half a unit divided by angle^2, and then multiplied by angle^2 again.
 TEST(Se3, ExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
   for (const double angle_rad : kAngles_rad)
     for (const Eigen::Vector3d& axis :
@@ -48,9 +48,9 @@ TEST(Se3, ExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
     }
 }
 
-// V's closed form divides the canceled 1 - cos by angle^2 and multiplies with angle once: at
-// 1e-5 rad it is good to 1e-16 / 1e-5 = 1e-11, where its second-order term is 1.7e-11. So the law
-// is of the largest error that this allows.
+// V's closed form divides the canceled 1 - cos by angle^2 and multiplies by the angle once: at 1e-5
+// rad its error is 1e-16 / 1e-5 = 1e-11, while its second-order term is 1.7e-11. The bound is
+// therefore the largest error that this allows.
 TEST(Se3, TranslationOfExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
   const Eigen::Vector3d rho(0.7, -1.1, 0.4);
   for (const double angle_rad : kAngles_rad)
@@ -68,7 +68,7 @@ TEST(Se3, TranslationOfExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
     }
 }
 
-// The rotation is made by the power series, so that an error of so3_exp cannot hide one here.
+// The rotation is made with the power series, so that an error in so3_exp cannot hide one here.
 TEST(Se3, LogUndoesThePowerSeriesOnBothSidesOfTheSwitch) {
   const Eigen::Vector3d rho(0.7, -1.1, 0.4);
   for (const double angle_rad : kAngles_rad)

@@ -39,7 +39,7 @@ TEST(ParseStamp, IsExactToTheNanosecond) {
   EXPECT_EQ(parse_stamp("0"), 0);
   EXPECT_EQ(parse_stamp("0.000"), 0);
   EXPECT_EQ(parse_stamp("1305031229.528748"), 1'305'031'229'528'748'000);
-  // A double would end in ...535.
+  // As a double, it would end in ...535.
   EXPECT_EQ(parse_stamp("1403636580.013555527"), 1'403'636'580'013'555'527);
   EXPECT_EQ(parse_stamp("1.403636580013555527e+09"), 1'403'636'580'013'555'527);
   EXPECT_EQ(parse_stamp("+12e-1"), 1'200'000'000);
@@ -71,7 +71,7 @@ TEST(Tum, ReadsCommentsBlankLinesAndCarriageReturns) {
   ASSERT_EQ(t.size(), 3U);
   EXPECT_EQ(t[0].stamp_ns, 1'500'000'000);
   EXPECT_EQ(t[1].world_from_camera.translation(), Eigen::Vector3d(4, 5, -6));
-  // Quarter turn about z, w last: x goes to y. The quaternion's norm of 0.99 is mended.
+  // A quarter turn about z, w last: x turns into y. The quaternion's norm of 0.99 is normalized.
   EXPECT_LT(
       (t[0].world_from_camera.rotation() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY())
           .norm(),
@@ -109,14 +109,14 @@ TEST(Tum, EveryErrorNamesFileLineAndValue) {
   EXPECT_EQ(tum_error("1 0 0 0 0 0 0 2\n"), "f.txt:1: quaternion: norm 2, expected 1");
   EXPECT_EQ(tum_error(good + good), "f.txt:2: stamp: 1 does not come after 1.000000000");
   EXPECT_EQ(tum_error("-1 0 0 0 0 0 0 1\n"),
-            "f.txt:1: stamp: '-1' is no time in seconds from 0 to 9.2e9");
+            "f.txt:1: stamp: '-1' is not a time in seconds from 0 to 9.2e9");
   EXPECT_EQ(tum_error("# nothing\n"), "f.txt: contains no poses");
   EXPECT_EQ(tum_error(""), "f.txt: contains no poses");
   EXPECT_EQ(refusal_of([] { read_trajectory("/nowhere/f.txt"); }),
             "/nowhere/f.txt: cannot be read: no such file");
 }
 
-// The head and the first line of numbers of EuRoC's V1_01_easy, and what others make of the format.
+// The header and the first data line of EuRoC's V1_01_easy, and variants of the format.
 TEST(Euroc, ReadsNanosecondsAndQuaternionsThatBeginWithW) {
   const Trajectory read = parse_trajectory(
       "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
@@ -152,13 +152,13 @@ TEST(Euroc, EveryErrorNamesFileLineAndValue) {
   EXPECT_EQ(error(good + "6,1,2,3,0,0,0,0\n"), "f.csv:2: quaternion: norm 0, expected 1");
   EXPECT_EQ(error(good + good), "f.csv:2: stamp: 5 does not come after 0.000000005");
   EXPECT_EQ(error(good + "end,1,2,3,1,0,0,0\n"),
-            "f.csv:2: stamp: 'end' is no time in nanoseconds from 0 to 9.2e18");
+            "f.csv:2: stamp: 'end' is not a time in nanoseconds from 0 to 9.2e18");
   EXPECT_EQ(error("-5,1,2,3,1,0,0,0\n"),
-            "f.csv:1: stamp: '-5' is no time in nanoseconds from 0 to 9.2e18");
+            "f.csv:1: stamp: '-5' is not a time in nanoseconds from 0 to 9.2e18");
   EXPECT_EQ(error("timestamp,x\n"), "f.csv: contains no poses");
   EXPECT_EQ(error(",\n"), "f.csv: contains no poses");
   EXPECT_EQ(error(",1,2,3,1,0,0,0\n"),
-            "f.csv:1: stamp: '' is no time in nanoseconds from 0 to 9.2e18");
+            "f.csv:1: stamp: '' is not a time in nanoseconds from 0 to 9.2e18");
 }
 
 /// The quaternion (w, x, y, z) of the first pose.
@@ -192,7 +192,7 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
   for (const char* text :
        {"#timestamp x y z qx qy qz qw id\n5 1 2 3 0 0 0.6 0.8 7\n",  // rtabmap-export's format 11
         "timestamp tx ty tz qx qy qz qw\n5 1 2 3 0 0 0.6 0.8\n",     // without '#'
-        // of OpenVINS: with words before the names; with covariance from some line on
+        // OpenVINS: with words before the names; with a covariance from some line on
         "# format: timestamp tx ty tz qx qy qz qw Pt Pr\n5 1 2 3 0 0 0.6 0.8 9 9\n",
         "# timestamp(s) tx ty tz qx qy qz qw Pr Pt\n5 1 2 3 0 0 0.6 0.8\n6 1 2 3 0 0 0 1 9 9\n",
         "num,t,x,y,z,qx,qy,qz,qw\n1,5.0,1,2,3,0,0,0.6,0.8\n",
@@ -208,7 +208,7 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
         "Time,header.stamp.secs,header.stamp.nsecs,pose.position.x,pose.position.y,pose.position.z,"
         "pose.orientation.x,pose.orientation.y,pose.orientation.z,pose.orientation.w\n"
         "7.5,4,1000000000,1,2,3,0,0,0.6,0.8\n",
-        // pandas: its index has no name
+        // pandas, whose index has no name
         ",timestamp,tx,ty,tz,qx,qy,qz,qw\n0,5.0,1,2,3,0,0,0.6,0.8\n"}) {
     const Trajectory read = parse_trajectory(text, "f");
     EXPECT_EQ(read.at(0).stamp_ns, 5'000'000'000) << text;
@@ -217,15 +217,15 @@ TEST(Poses, AreFoundByNameAmongOtherColumns) {
   }
   EXPECT_EQ(
       refusal_of([] { parse_trajectory("a,b,x,y,z,qx,qy,qz,qw\n1,2,1,2,3,0,0,0,1\n", "f.csv"); }),
-      "f.csv:1: its columns are named, but none as a time");
+      "f.csv:1: its columns have names, but none of them is a time");
   EXPECT_EQ(refusal_of([] {
               parse_trajectory("t,x [mm],y [mm],z [mm],qx,qy,qz,qw\n1,1,2,3,0,0,0,1\n", "f.csv");
             }),
             "f.csv:1: its positions are in 'mm', not in m");
 }
 
-// PlotJuggler's names begin with _ and /, and it sorts them: without its names, the quaternion
-// would be taken for the position.
+// PlotJuggler's names begin with _ and /, and are sorted: if they were ignored, the quaternion
+// would be read as the position.
 TEST(Poses, AreFoundByNamesThatBeginWithASign) {
   const TimedPose pose = parse_trajectory(
       "__time,/odom/orientation/w,/odom/orientation/x,/odom/orientation/y,/odom/orientation/z,"
@@ -260,9 +260,9 @@ TEST(Poses, HaveStampsInTheUnitThatIsNamedOrThatTheirSizeTells) {
   EXPECT_EQ(
       notes,
       (std::vector<std::string>{
-          "f: its stamps are taken for nanoseconds", "f: its stamps are taken for nanoseconds",
-          "f: its stamps are taken for microseconds", "f: its stamps are taken for milliseconds",
-          "f: its stamps are taken for nanoseconds", "f: its stamps are taken for seconds"}));
+          "f: its stamps are taken as nanoseconds", "f: its stamps are taken as nanoseconds",
+          "f: its stamps are taken as microseconds", "f: its stamps are taken as milliseconds",
+          "f: its stamps are taken as nanoseconds", "f: its stamps are taken as seconds"}));
   EXPECT_EQ(stamp_of("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n", none), 2'000'000'000);
   EXPECT_TRUE(none.empty());
 }
@@ -279,7 +279,7 @@ TEST(Poses, ThatAreLostOrRepeatedAreLeftOutAndCountedInOneNote) {
       notes,
       std::vector<std::string>{
           "f.txt: 5 of 8 poses are left out: 2 are not finite, 1 has no rotation, 1 repeats a "
-          "stamp, 1 is no pose; the first in line 2: tx: 'nan' is not finite"});
+          "stamp, 1 is not a pose; the first in line 2: tx: 'nan' is not finite"});
   notes.clear();
   parse_trajectory("1,0,0,0,1,0,0,0\n2,,,,,,,,\n3,0,0,0,1,0,0,0\n", "f.csv", &notes);
   EXPECT_EQ(
@@ -299,7 +299,7 @@ TEST(Poses, ThatAreOutOfOrderAreSorted) {
             (std::vector<std::string>{
                 "f: 1 of 4 poses is left out: 1 repeats a stamp; the first in line 4: stamp: "
                 "3 does not come after 3.000000000",
-                "f: 2 poses stand behind a later one and are put in order of time"}));
+                "f: 2 poses come after a later one and are sorted by time"}));
   EXPECT_EQ(refusal_of([&] { parse_trajectory(text, "f"); }),
             "f:2: stamp: 1 does not come after 3.000000000")
       << "without notes, nothing is mended";
@@ -324,8 +324,8 @@ TEST(Poses, OfAnotherKindOfFileAreRefusedRatherThanLeftOut) {
 
 TEST(Poses, OfNoTextOrWithDecimalCommasAreRefused) {
   EXPECT_EQ(tum_error(std::string("#ROSBAG V2.0\n\x02\0\0", 16)),
-            "f.txt: is not text, as files of poses are");
-  // A decimal comma, between semicolons.
+            "f.txt: is not text, and a file of poses must be");
+  // A decimal comma, with semicolons as separators.
   EXPECT_EQ(tum_error("1;0,5;0;0;1;0;0;0\n"), "f.txt:1: tx: '0,5' is not a number");
 }
 
@@ -354,7 +354,7 @@ TEST(Kitti, EveryErrorNamesFileLineAndValue) {
     return refusal_of([&] { parse_kitti(text, "k.txt"); });
   };
   EXPECT_EQ(kitti_error("1 0 0 0 0 1 0 0 0 0 1 0\n1 2\n"),
-            "k.txt:2: pose: 2 values, expected 12 (3x4 matrix by rows)");
+            "k.txt:2: pose: 2 values, expected 12 (3x4 matrix, row by row)");
   EXPECT_EQ(kitti_error("1 0 0 0 0 1 0 0 0 0 -1 0\n"),
             "k.txt:1: matrix: its left 3x3 part is not a rotation");
   EXPECT_EQ(kitti_error("2 0 0 0 0 1 0 0 0 0 1 0\n"),

@@ -75,7 +75,8 @@ TEST_F(BoxFiles, OfMotCountFromOne) {
 }
 
 TEST_F(BoxFiles, MayHaveTheLineEndsOfOldMacs) {
-  const auto boxes = open("a.csv", "4,-1,11,21,30,20,0.8,57,1\r5,-1,11,21,30,20,0.8,57,1\r");
+  const auto boxes =
+      open("a.csv", "# of an old Mac\r4,-1,11,21,30,20,0.8,57,1\r5,-1,11,21,30,20,0.8,57,1\r");
   expect_chair(boxes->detect(image_, 3, 0));
   expect_chair(boxes->detect(image_, 4, 0));
 }
@@ -142,7 +143,7 @@ TEST_F(BoxFiles, MustBeOfFramesOfTheSequence) {
   const std::vector<Stamp> ten(10), five(5), none;
   EXPECT_EQ(by_index->check_frames(ten), "");
   EXPECT_NE(by_index->check_frames(five).find(
-                "1 of its 3 frames are none of the sequence's 5, the first is '9'"),
+                "1 of its 3 frames are not among the sequence's 5, the first is '9'"),
             std::string::npos);
   EXPECT_THROW(by_index->check_frames(none), InputError);
   const auto by_stamp =
@@ -160,25 +161,25 @@ TEST_F(BoxFiles, NameTheirFaultAndItsPlace) {
   says("a.csv", "1,-1,1,1,50,20,0.8,57\n1,-1,nan,1,50,20,0.8,57\n", "a.csv:2: left is nan");
   says("a.csv", "1,-1,1,1,0,20,0.8,57\n", "a.csv:1: a box of 0 x 20 has no area");
   says("a.csv", "1,-1,1,1,50,20,0.8,81\n",
-       "class 81 is none of the 80 that are named, which count from 1");
+       "class 81 is not one of the 80 named classes, which count from 1");
   says("a.csv", "1,-1,0x40,1,50,20,0.8,57\n", "'0x40' is not a number");
   says("a.csv", std::string("1,-1,4\0,1,50,20,0.8,57\n", 24), "is not a number");
   says("a.csv", "1,-1,1,1,50\n", "5 numbers, not frame");
   says("a.csv", "one,-1,1,1,50,20,0.8,57\n", "'one' is not a number; each line is frame, id");
   says("yolo/0.txt", "56 0.25 0.6 0.3 0.4 1.8\n", "0.txt:1: score 1.8 is outside [0, 1]");
   says("yolo/0.txt", "56 320 240 100 80\n",
-       "0.txt:1: box 320 240 100 80 is not in shares of the image");
+       "0.txt:1: box 320 240 100 80 is not given as fractions of the image size");
   says("other/first.txt", "56 0.25 0.6 0.3 0.4\n", "'first' is neither an index nor a stamp");
   says("a.json", "[{\"image_id\": 0, \"category_id\": 12, \"bbox\": [1,1,1,1], \"score\": 1}]",
-       "entry 0: category_id 12 is none of COCO's");
+       "entry 0: category_id 12 is not one of COCO's");
   says("a.json", "[{\"image_id\": 0, \"bbox\": [1,1,1,1], \"score\": 1}]",
        "entry 0: has no 'category_id'");
   says("a.json", "[{\"image_id\": 0, \"category_id\": 1, \"bbox\": [1,1,null,1], \"score\": 1}]",
        "bbox must be four numbers");
   says("a.json", "[{\"image_id\"", "a.json:1: is not JSON");
   says("a.json", "[{\"image_id\": 0, \"category_id\": 1, \"bbox\": [1,1,1,1], \"score\": 1e999}]",
-       "a.json: holds a number that is beyond a double's range");
-  says("a.json", R"({"images": [], "annotations": []})", "holds COCO's annotations");
+       "a.json: holds a number beyond the range of a double");
+  says("a.json", R"({"images": [], "annotations": []})", "holds COCO annotations");
   says("a.json", "{}", "is not a list of COCO's results");
 }
 

@@ -42,7 +42,7 @@ TEST(LabelsOf, ABoxOfNoClassOfOursIsVoid) {
   EXPECT_EQ(image.at(0, 0).most_probable(), kBackground);
 }
 
-/// A surface at 2 m in the box's middle, the wall at 3 m behind it.
+/// A surface at 2 m in the middle of the box, with a wall at 3 m behind it.
 Grid2d<float> surface_before_wall() {
   Grid2d<float> depth_m(40, 40, 3.0F);
   for (int y = 10; y < 30; ++y)
@@ -66,8 +66,8 @@ TEST(ForegroundDepth, IsTheWholeBoxWhereItHasOneSurface) {
   EXPECT_TRUE(range.contains(2.16F));
 }
 
-// A table seen along its length: half of it is nearer than two thirds of the other's depth, yet
-// nothing ends between.
+// A table seen along its length: half of it is closer than two thirds of the depth of the other
+// half, yet there is no edge in between.
 TEST(ForegroundDepth, KeepsALongThingWhole) {
   Grid2d<float> depth_m(40, 40, 0.0F);
   for (int y = 0; y < 40; ++y)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slam/detect/heads.hpp"
+#include "slam/detect/fit_image.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 
@@ -7,6 +8,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <opencv2/core.hpp>
+
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -41,7 +45,7 @@ TEST(RecognizeHead, GoesByTheOutputsShape) {
   EXPECT_EQ(of(Made({1, 41, 8})), Head::kAuto);
 }
 
-// Yolo-FastestV2's 22 x 22 x 95 were read as 22 classes, and YOLOv4's raw scales as 255.
+// Yolo-FastestV2's 22 x 22 x 95 must not be read as 22 classes, nor YOLOv4's raw scales as 255.
 TEST(RecognizeHead, TakesNoDetectorsScalesForSegmentation) {
   const auto of = [](const std::vector<Made>& made) {
     std::vector<Tensor> tensors;
@@ -69,7 +73,7 @@ TEST(RecognizeHead, TellsDecodedBoxesByTheirPlaces) {
   EXPECT_EQ(recognize_head({&tensor, 1}, kInput, false), Head::kYoloxDecoded);
 }
 
-// 84 cells of 84 values: 79 classes and objectness, or 80 classes by column.
+// 84 cells with 84 values: 79 classes and objectness by row, or 80 classes by column.
 TEST(RecognizeHead, TellsBoxesInColumnsOfASquareByTheirPlaces) {
   constexpr InputSize kSquare{64, 64};
   Made rows({1, 84, 84}), columns({1, 84, 84});
@@ -93,7 +97,7 @@ TEST(RecognizeHead, TellsBoxesInColumnsOfASquareByTheirPlaces) {
 
 TEST(Decode, YoloxAddsTheCellAndTakesTheExponent) {
   Made made({1, 42, 7});
-  float* row = made.values.data() + (32 + 4 + 1) * 7;  // of stride 16: second row, second cell
+  float* row = made.values.data() + (32 + 4 + 1) * 7;  // stride 16: second row, second cell
   const std::vector<float> values = {0.25F, -0.5F, std::log(2.0F), std::log(3.0F), 0.8F,
                                      0.1F,  0.5F};
   std::copy(values.begin(), values.end(), row);
@@ -175,9 +179,19 @@ TEST(Decode, ValuesThatAreNotFiniteMakeNoBox) {
               made.values.begin() + static_cast<std::ptrdiff_t>(7 * i));
   }
   made.values[0] = std::numeric_limits<float>::quiet_NaN();
-  made.values[7 + 2] = 1000;  // its exponent is infinite
+  made.values[7 + 2] = 1000;  // the exponential of this is infinite
   const Tensor tensor = made.tensor();
   EXPECT_EQ(decode(Head::kYolox, {&tensor, 1}, kInput, 0.3).size(), 1U);
+}
+
+TEST(Decode, OfEqualScoresTheFirstClassWins) {
+  Made made({1, 126, 7});
+  const std::vector<float> values = {10, 12, 4, 6, 1, 0.75F, 0.75F};
+  std::copy(values.begin(), values.end(), made.values.begin());
+  const Tensor tensor = made.tensor();
+  const auto found = decode(Head::kYolov5, {&tensor, 1}, kInput, 0.3);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].best, 0);
 }
 
 TEST(Decode, BoxesMayBeNarrowerThanAPixelButHaveASize) {
@@ -212,7 +226,7 @@ TEST(SelectBoxes, SuppressesWithinAClassAndBreaksTiesByOrder) {
   const auto select = [&](const std::vector<Candidate>& all) {
     return select_boxes(all, Placement{}, 100, 100, coco80(), settings);
   };
-  // 10 of 20 shared of 30: 1/3, stays; 15 of 25: 0.6, goes.
+  // An overlap of 10 out of 30 is 1/3: kept; 15 out of 25 is 0.6: removed.
   EXPECT_EQ(
       select({candidate(0, 20, kCocoChair, 0.9F), candidate(10, 30, kCocoChair, 0.8F)}).size(), 2U);
   EXPECT_EQ(select({candidate(0, 20, kCocoChair, 0.9F), candidate(5, 25, kCocoChair, 0.8F)}).size(),
@@ -241,7 +255,7 @@ TEST(SelectBoxes, CutsWhatIsOutsideTheImage) {
 TEST(OurClasses, SumThoseOfOneNameAndLeaveOutTheRest) {
   std::vector<float> scores(80, 0.0F);
   scores[24] = 0.5F, scores[26] = 0.2F, scores[56] = 0.1F,
-  scores[15] = 0.3F;  // two bags, chair, cat
+  scores[15] = 0.3F;  // two kinds of bags, a chair, a cat
   const ClassDistribution bag = our_classes(scores, 24, coco80());
   ASSERT_EQ(bag.entries.size(), 2U);
   EXPECT_EQ(bag.most_probable(), *class_by_name("bag"));
@@ -266,18 +280,38 @@ TEST(PlaceImage, ScalesIntoCornerOrCenterAndBack) {
   EXPECT_DOUBLE_EQ(stretched.image_y(208), 240);
 }
 
-// 333 of 500 rows, at a scale of 0.832, are 277.056; 335 are 278.72.
+// 333 rows scaled by 416 / 500 = 0.832 are 277.056 rows; 335 are 278.72.
 TEST(PlaceImage, RoundsInTheCenterAndCutsInTheCorner) {
   const auto place = [](int height, Letterbox letterbox) {
     return place_image(500, height, {416, 416}, letterbox);
   };
   EXPECT_EQ(place(333, Letterbox::kCorner).height, 277);
   EXPECT_EQ(place(333, Letterbox::kCenter).height, 277);
-  EXPECT_EQ(place(333, Letterbox::kCenter).top, 69);  // of 139 rows that remain
+  EXPECT_EQ(place(333, Letterbox::kCenter).top, 69);  // half of the 139 rows that remain
   EXPECT_EQ(place(335, Letterbox::kCorner).height, 278);
   EXPECT_EQ(place(335, Letterbox::kCenter).height, 279);
-  EXPECT_EQ(place(335, Letterbox::kCenter).top, 68);  // of 137
+  EXPECT_EQ(place(335, Letterbox::kCenter).top, 68);  // half of the 137 rows that remain
   EXPECT_EQ(place_image(1000, 1, {416, 416}, Letterbox::kCorner).height, 1);
+}
+
+TEST(NetworkInput, IsNormalizedAsTheNetworkWasTrained) {
+  const Grid2d<Rgb8> color(2, 2, {100, 150, 200});
+  const InputSize size{2, 2};
+  const auto planes = [&](Normalize normalize, Channels channels) {
+    DetectorSettings settings;
+    settings.normalize = normalize, settings.channels = channels;
+    settings.letterbox = Letterbox::kStretch;
+    const cv::Mat blob =
+        network_input(color, size, place_image(2, 2, size, Letterbox::kStretch), settings);
+    return std::array{*blob.ptr<float>(0, 0), *blob.ptr<float>(0, 1), *blob.ptr<float>(0, 2)};
+  };
+  EXPECT_EQ(planes(Normalize::kNone, Channels::kBgr), (std::array{200.0F, 150.0F, 100.0F}));
+  EXPECT_NEAR(planes(Normalize::kUnit, Channels::kRgb)[0], 100 / 255.0, 1e-6);
+  // Mean and deviation of ImageNet, as torchvision documents them.
+  const auto imagenet = planes(Normalize::kImagenet, Channels::kRgb);
+  EXPECT_NEAR(imagenet[0], (100 / 255.0 - 0.485) / 0.229, 1e-5);
+  EXPECT_NEAR(imagenet[1], (150 / 255.0 - 0.456) / 0.224, 1e-5);
+  EXPECT_NEAR(imagenet[2], (200 / 255.0 - 0.406) / 0.225, 1e-5);
 }
 
 TEST(ReadClassNames, TakesWhatPythonPrints) {
@@ -352,7 +386,7 @@ TEST(Segmented, TakesProbabilitiesOrValuesAndInterpolates) {
   EXPECT_NEAR(image.at(0, 8).entries[0].second, 0.9, 0.1);
   EXPECT_EQ(image.at(7, 0).most_probable(), 5);
   EXPECT_EQ(image.at(8, 0).most_probable(), 7);
-  for (float& value : made.values) value = 100 * value - 40;  // no longer shares of 1
+  for (float& value : made.values) value = 100 * value - 40;  // no longer probabilities
   EXPECT_GT(segmented(made.tensor(), at, input, {16, 16}, names, 0.25).at(0, 8).entries[0].second,
             0.95);
   const SemanticImage strict = segmented(made.tensor(), at, input, {16, 16}, names, 1.0);

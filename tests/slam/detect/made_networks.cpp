@@ -10,7 +10,7 @@ namespace mh::test {
 
 namespace {
 
-// Protocol Buffers, as far as onnx.proto needs them.
+// Protocol Buffers, as far as needed for onnx.proto.
 std::string varint(std::uint64_t value) {
   std::string bytes;
   for (; value >= 0x80; value >>= 7) bytes += static_cast<char>(value | 0x80);
@@ -112,7 +112,7 @@ std::string onnx_detection(int width, int height, const MadeHead& head) {
     if (!head.yolov8) bias.push_back(0);
     bias.insert(bias.end(), head.classes.begin(), head.classes.end());
     if (head.yolov8) bias[4] = 0;
-    // The fifth value: of blue, green, red the last plane, at the cell's center.
+    // The fifth value is the last of the planes (blue, green, red) at the center of the cell.
     const auto center = static_cast<std::size_t>((stride / 2) * stride + stride / 2);
     kernel[4 * 3 * area + 2 * area + center] = 1.0F / 255;
     for (int anchor = 0; anchor < head.boxes_per_cell; ++anchor) {
@@ -135,7 +135,8 @@ std::string onnx_detection(int width, int height, const MadeHead& head) {
 
 std::string onnx_yolov8_export(int width, int height, const MadeExport& as) {
   constexpr std::int64_t kBins = 16, kClasses = 2, kPerCell = 4 * kBins + kClasses;
-  constexpr std::array<std::int64_t, 4> kSides = {1, 2, 2, 4};  // left, top, right, bottom, cells
+  constexpr std::array<std::int64_t, 4> kSides = {1, 2, 2,
+                                                  4};  // left, top, right, bottom, in cells
   std::string nodes, weights;
   std::vector<std::string> scales;
   std::vector<float> xs, ys, strides;
@@ -182,7 +183,7 @@ std::string onnx_yolov8_export(int width, int height, const MadeExport& as) {
            node("Softmax", {"turned"}, {"shares"}, integer("axis", 1)) +
            node("Conv", {"shares", "bins"}, {"mean"}, list("kernel_shape", {1, 1})) +
            node("Reshape", {"mean", "by_side"}, {"sides"});
-  // As PyTorch writes chunk(2, 1): its half is computed from the shape.
+  // As PyTorch writes chunk(2, 1): half of the size is computed from the shape.
   nodes += node("Shape", {"sides"}, {"shape"}) + constant_node("one", {}, {1}) +
            constant_node("halves", {}, {2}) + constant_node("axis", {1}, {1}) +
            constant_node("zero", {1}, {0}) + constant_node("times_one", {1}, {1}) +
@@ -230,9 +231,9 @@ std::string darknet_weights() {
   for (int anchor = 0; anchor < 3; ++anchor) {
     float* bias = values.data() + anchor * kPerBox;
     bias[4] = -20;                // no object
-    bias[5] = 10, bias[6] = -10;  // if any, the first class
+    bias[5] = 10, bias[6] = -10;  // but if there is one, it has the first class
   }
-  // The objectness of the first anchor: mean red (0 to 1), the first plane, times 40.
+  // The objectness of the first anchor is 40 times the mean of the first plane, red (0 to 1).
   for (int p = 0; p < kPixels; ++p) kernel[(4 * 3 + 0) * kPixels + p] = 40.0F / kPixels;
   values.insert(values.end(), kernel.begin(), kernel.end());
   const std::vector<std::int32_t> head = {0, 2, 0, 0, 0};

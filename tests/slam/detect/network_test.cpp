@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What an error says about a detector that must not open.
+/// The error message of a detector that must not open.
 std::string refusal(const DetectorSpec& spec) {
   try {
     open_detector(spec);
@@ -43,7 +43,7 @@ class Networks : public testing::Test {
     write_atomically(folder_.path() / name, content);
     return folder_.path() / name;
   }
-  /// A network of two classes, chair and table.
+  /// A network with two classes, chair and table.
   DetectorSpec two_classes(const std::string& name, const std::string& content) {
     return {.network = write(name, content),
             .config = {},
@@ -66,8 +66,8 @@ class Networks : public testing::Test {
 TEST_F(Networks, YoloxFindsTheCellThatIsRed) {
   const auto detector = open_detector(two_classes("a.onnx", test::onnx_detection(64, 32, {})));
   EXPECT_EQ(detector->description(), "yolox, 2 classes, input 64 x 32");
-  // The image has twice the input's size: its pixel (88, 40) is (44, 20) there, the center of the
-  // cell (5, 2) of 8 px.
+  // The image is twice the size of the input: its pixel (88, 40) becomes (44, 20), the center of
+  // the cell (5, 2) of 8 px.
   const Detected found = detector->detect(red_at(128, 64, {{88, 40}}), 0, 0);
   ASSERT_EQ(found.boxes.size(), 1U);
   const DetectedBox& box = found.boxes[0];
@@ -79,14 +79,14 @@ TEST_F(Networks, YoloxFindsTheCellThatIsRed) {
 }
 
 TEST_F(Networks, YoloxIsBgrAndOthersAreRgb) {
-  // Scaled to shares of 1, the head's factor of 1 / 255 leaves 1 / 255 of a score.
+  // With values scaled to 0 to 1, the head's factor of 1 / 255 leaves 1 / 255 of a score.
   DetectorSpec spec =
       two_classes("a.onnx", test::onnx_detection(64, 32, {.box = {32, 16, 10, 8}, .yolov8 = true}));
   spec.settings.normalize = Normalize::kNone;
   const auto v8 = open_detector(spec);
   EXPECT_EQ(v8->description(), "yolov8, 2 classes, input 64 x 32");
   const Grid2d<Rgb8> red = red_at(64, 32, {{44, 20}});
-  EXPECT_TRUE(v8->detect(red, 0, 0).boxes.empty());  // its third plane is blue
+  EXPECT_TRUE(v8->detect(red, 0, 0).boxes.empty());  // here the third plane is blue
   Grid2d<Rgb8> blue = red;
   for (Rgb8& pixel : blue) std::swap(pixel.r, pixel.b);
   const Detected found = v8->detect(blue, 0, 0);
@@ -104,13 +104,13 @@ TEST_F(Networks, Yolov5HasThreeBoxesInACell) {
   const auto detector = open_detector(spec);
   EXPECT_EQ(detector->description(), "yolov5, 2 classes, input 64 x 32");
   const Detected found = detector->detect(red_at(64, 32, {{44, 20}}), 0, 0);
-  ASSERT_EQ(found.boxes.size(), 1U);  // the other two are the same
+  ASSERT_EQ(found.boxes.size(), 1U);  // the other two boxes are equal to it
   EXPECT_EQ(found.boxes[0].classes.most_probable(), *class_by_name("table"));
   EXPECT_NEAR(found.boxes[0].score, 1, 1e-6);
 }
 
-/// What onnx_yolov8_export() finds where the pixel (44, 20) is red: the center of the cell (5, 2)
-/// of 8 px.
+/// Expects what onnx_yolov8_export() finds if the pixel (44, 20) is red: the center of the cell (5,
+/// 2) of 8 px.
 void expect_the_red_cell(const Detector& detector, const Grid2d<Rgb8>& image) {
   const Detected found = detector.detect(image, 0, 0);
   ASSERT_EQ(found.boxes.size(), 1U);
@@ -158,11 +158,11 @@ TEST_F(Networks, WhoseMetadataSayThatTheyAreNotReadAreRefused) {
   };
   for (const char* task : {"segment", "pose", "obb", "classify"})
     EXPECT_SAYS(says(test::metadata("task", task)),
-                std::string("v8.onnx: is of the task '") + task + "'");
+                std::string("v8.onnx: is for the task '") + task + "'");
   EXPECT_SAYS(says(test::metadata("names", "{0: 'chair'}")),
               "has 2 classes, and its metadata names 1");
   EXPECT_SAYS(says(test::metadata("names", "chair, table")),
-              "its metadata's `names` is no list of classes: 'chair, table'");
+              "its metadata's `names` is not a list of classes: 'chair, table'");
 }
 
 TEST_F(Networks, ThatOpencvLacksAnOperatorForSayWhatToExport) {
@@ -201,7 +201,7 @@ TEST_F(Networks, DarknetFindsTheCellThatIsRed) {
     for (int x = 40; x < 48; ++x) image(x, y) = {255, 0, 0};
   const Detected found = detector->detect(image, 0, 0);
   ASSERT_EQ(found.boxes.size(), 1U);
-  EXPECT_NEAR(found.boxes[0].left, 40, 1e-3);  // 8 px wide, around the cell's middle
+  EXPECT_NEAR(found.boxes[0].left, 40, 1e-3);  // 8 px wide, around the center of the cell
   EXPECT_NEAR(found.boxes[0].right, 48, 1e-3);
   EXPECT_NEAR(found.boxes[0].top, 16, 1e-3);
   EXPECT_EQ(found.boxes[0].classes.most_probable(), *class_by_name("chair"));
@@ -276,15 +276,14 @@ TEST_F(Networks, ThatTakeSeveralImagesAtOnceAreRefused) {
   EXPECT_SAYS(refusal(two_classes("two.onnx", two)), "two.onnx: takes 2 images at once");
 }
 
-// OpenCV would read beyond the weights' end, and give other boxes each time.
+// OpenCV would read past the end of the weights, and give different boxes each time.
 TEST_F(Networks, WithFewerWeightsThanTheirShapeStatesAreRefused) {
   const std::string whole = test::onnx_segmentation(8, 8, {1, 0, 0, 0, 0, 1});
   std::string less = whole;
   const std::size_t shape = less.find(std::string("\x08\x02\x08\x03\x08\x01\x08\x01", 8));
   ASSERT_NE(shape, less.npos);
-  less[shape + 1] = '\x40';  // 64 x 3 x 1 x 1, with the weights of 2 x 3
-  EXPECT_SAYS(refusal(two_classes("less.onnx", less)),
-              "hold 6 values where their shape states 192");
+  less[shape + 1] = '\x40';  // 64 x 3 x 1 x 1, although there are only the weights of 2 x 3
+  EXPECT_SAYS(refusal(two_classes("less.onnx", less)), "hold 6 values, but their shape needs 192");
 }
 
 TEST(OnnxWeights, AreCountedByTheSizeOfTheirType) {
@@ -295,7 +294,7 @@ TEST(OnnxWeights, AreCountedByTheSizeOfTheirType) {
   EXPECT_EQ(fault(test::floats("w", {2}, {1, 2})), "");
   EXPECT_EQ(fault(test::integers("w", {1, 2})), "");
   EXPECT_SAYS(fault(test::halves("w", {4}, {0x3c00, 0x3c00})),
-              "hold 2 values where their shape states 4");
+              "hold 2 values, but their shape needs 4");
 }
 
 TEST_F(Networks, WhoseValuesAreNoNumbersAreRefused) {
@@ -328,7 +327,7 @@ TEST_F(Networks, CutShortAnywhereNeverCrash) {
     EXPECT_SAYS(refusal(spec), "cut.weights: ");
   }
   write("cut.weights", weights + "more");
-  EXPECT_SAYS(refusal(spec), "it is of another one");
+  EXPECT_SAYS(refusal(spec), "it belongs to another network");
   write("cut.weights", weights);
   const std::string config = test::darknet_config(64, 32);
   for (std::size_t size = 0; size + 30 < config.size(); size += 7) {
@@ -351,7 +350,7 @@ TEST_F(Networks, OfDarknetAreRefusedByTheConfigurationsLine) {
   spec.config = write("a.cfg", "\xef\xbb\xbf" + good);
   EXPECT_EQ(open_detector(spec)->description(), "darknet, 2 classes, input 64 x 32");
   EXPECT_SAYS(with("width=64", "width=9000"), "a.cfg:2: width = 9000: a side is a whole number");
-  EXPECT_SAYS(with("width=64", "Width=64"), "a.cfg: section [net] states no width");
+  EXPECT_SAYS(with("width=64", "Width=64"), "a.cfg: section [net] has no width");
   EXPECT_SAYS(with("mask=0,1,2", "mask=0,1,3"), "mask = 0,1,3: there is no anchor 3 among 3");
   EXPECT_SAYS(with("mask=0,1,2", "mask=-3,1,2"), "there is no anchor -3 among 3");
   EXPECT_SAYS(with("[yolo]", "[route]\nlayers=-9\n[yolo]"),
@@ -397,7 +396,7 @@ TEST_F(Networks, DetectionsAreKeptByContent) {
             *class_by_name("chair"));
 }
 
-/// YOLOX-Nano on a real frame, if both are there: README of ../shared/data/detector.
+/// YOLOX-Nano on a real frame, if both files exist (see the README of ../shared/data/detector).
 TEST(RealNetwork, TakesTheMonitorForALaptop) {
   const fs::path data = fs::path(MH_SOURCE_DIR) / "../shared/data";
   const fs::path image = data / "tum_fr1_rpy/rgb/1305031229.528748.png";

@@ -28,8 +28,8 @@ using test::node;
 
 constexpr int kChannels = 3, kRows = 2, kColumns = 4;
 
-/// What a graph from "image" (1 x 3 x 2 x 4, the values 1 to 24) to "output" gives when OpenCV runs
-/// it rewritten.
+/// The result of a graph from "image" (1 x 3 x 2 x 4, with the values 1 to 24) to "output" when
+/// OpenCV runs the rewritten graph.
 std::vector<float> result(const std::string& graph, int opset = 17, bool open = false) {
   const std::vector<std::int64_t> sides =
       open ? std::vector<std::int64_t>{0, 3, 0, 0} : std::vector<std::int64_t>{1, 3, 2, 4};
@@ -46,7 +46,7 @@ std::vector<float> result(const std::string& graph, int opset = 17, bool open = 
   return {out.ptr<float>(), out.ptr<float>() + out.total()};
 }
 
-/// The same from each value v at channel c, row y, column x.
+/// The function `of` applied to each value v at channel c, row y, column x.
 std::vector<float> each(const std::function<double(double v, int c, int y, int x)>& of) {
   std::vector<float> values;
   for (int i = 0; i < 24; ++i)
@@ -96,7 +96,7 @@ TEST(RewriteOnnx, TakesSizesOfSplitFromItsInput) {
   expect_near(result(integers("s", {1, 2}) +
                      node("Split", {"image", "s"}, {"a", "b"}, integer("axis", -3)) + joined),
               each(turned));
-  // Opset 18: the last part is smaller.
+  // With opset 18, the last part is smaller.
   expect_near(
       result(node("Split", {"image"}, {"b", "a"}, integer("axis", 1) + integer("num_outputs", 2)) +
                  node("Concat", {"a", "b"}, {"output"}, integer("axis", 1)),
@@ -124,6 +124,9 @@ TEST(RewriteOnnx, CutsAnyAxes) {
       result(integers("s", {1, 1}) + integers("e", {end, end}) + integers("a", {1, 3}) +
              integers("by", {1, 2}) + node("Slice", {"image", "s", "e", "a", "by"}, {"output"})),
       {10, 12, 14, 16, 18, 20, 22, 24});
+  expect_near(result(integers("s", {1, 1}) + integers("e", {2, 3}) + integers("a", {2, 3}) +
+                     node("Slice", {"image", "s", "e", "a"}, {"output"})),
+              {6, 7, 14, 15, 22, 23});  // by steps of one, if none are given
   expect_near(
       result(integers("i", {-2}) + node("Gather", {"image", "i"}, {"output"}, integer("axis", 3))),
       {3, 7, 11, 15, 19, 23});
@@ -140,7 +143,7 @@ TEST(RewriteOnnx, TakesLimitsOfClipFromInputs) {
               each([](double v, int, int, int) { return std::min(v, 20.5); }));
 }
 
-/// Centers of cells as networks with dynamic axes compute them, from the image's own shape.
+/// Centers of cells as networks with dynamic axes compute them, from the image's shape.
 TEST(RewriteOnnx, ComputesWhatDependsOnSizesAlone) {
   const std::string graph =
       node("Shape", {"image"}, {"shape"}) + constant_node("last", {}, {-1}) +
@@ -159,8 +162,18 @@ TEST(RewriteOnnx, ComputesWhatDependsOnSizesAlone) {
                 each([](double v, int, int, int x) { return v + x + 0.5; }));
 }
 
+// The second part of a constant that is split begins where the first ends.
+TEST(RewriteOnnx, SplitsConstants) {
+  const std::string parts =
+      floats("all", {8}, {1, 2, 4, 8, 10, 20, 30, 40}) + integers("sizes", {4, 4}) +
+      node("Split", {"all", "sizes"}, {"first", "second"}, integer("axis", 0)) +
+      node("Mul", {"image", "first"}, {"scaled"}) + node("Add", {"scaled", "second"}, {"output"});
+  expect_near(result(parts),
+              each([](double v, int, int, int x) { return v * (1 << x) + 10 * (x + 1); }));
+}
+
 TEST(RewriteOnnx, ReadsHalfPrecision) {
-  // 1, -2, 0.5, 2^-24 and 65504 by IEEE 754.
+  // 1, -2, 0.5, 2^-24 and 65504 in the format of IEEE 754.
   expect_near(result(test::halves("w", {1, 3, 1, 1}, {0x3c00, 0xc000, 0x3800}) +
                      node("Conv", {"image", "w"}, {"output"}, list("kernel_shape", {1, 1}))),
               {-8.5F, -9, -9.5F, -10, -10.5F, -11, -11.5F, -12});
@@ -180,12 +193,12 @@ TEST(RewriteOnnx, TakesWholeModelsAlone) {
     EXPECT_FALSE(rewrite_onnx(whole.substr(0, size), {64, 64})) << size;
 }
 
-/// Any byte may be wrong; the sanitizers watch.
+/// Any byte may be wrong; sanitizers check that this is safe.
 TEST(RewriteOnnx, SurvivesDamage) {
   const std::string whole = test::onnx_yolov8_export(32, 32, {.open_sides = true});
   int read = 0;
   for (std::size_t at = 0; at < whole.size(); at += 3) {
-    // Weights of kernels, long runs of zeros, are no structure.
+    // Long runs of zeros are weights of kernels, not structure.
     if (at > 8 && whole.compare(at - 8, 16, std::string(16, '\0')) == 0) continue;
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x55);
@@ -194,7 +207,8 @@ TEST(RewriteOnnx, SurvivesDamage) {
   EXPECT_GT(read, 100);
 }
 
-// What is pooled has one value a channel, which a constant of that shape joins as it is.
+// A pooled tensor has one value per channel, and a constant of that shape is combined with it as it
+// is.
 TEST(RewriteOnnx, KnowsTheShapeOfWhatIsPooled) {
   const std::string c = floats("c", {kChannels, 1, 1}, {2, 3, 5});
   expect_near(
@@ -206,7 +220,7 @@ TEST(RewriteOnnx, KnowsTheShapeOfWhatIsPooled) {
       }));
 }
 
-// What cannot be joined has no shape, whichever axis differs.
+// Tensors that cannot be concatenated give no shape, no matter which axis differs.
 TEST(OnnxShapes, JoinWhatDiffersAlongOneAxisAlone) {
   const auto joined = [](const OnnxShape& b) {
     const OnnxShape a = {1, 3, 4};
@@ -222,7 +236,7 @@ TEST(OnnxShapes, JoinWhatDiffersAlongOneAxisAlone) {
   EXPECT_FALSE(joined({1, 2}));
 }
 
-// Fields of 8 and of 4 bytes, as newer exporters may add them, are passed over whole.
+// Fields of 8 and of 4 bytes, which newer exporters may add, are skipped as a whole.
 TEST(Protobuf, PassesOverFieldsOfFixedSize) {
   const std::string eight(
       "\x09"

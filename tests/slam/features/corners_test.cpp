@@ -21,7 +21,7 @@ std::vector<Corner> random_corners(int count, int width, int height, std::uint64
     const RandomStream r = random.fork(static_cast<std::uint64_t>(i));
     corners.push_back({static_cast<std::int16_t>(r.below(0, static_cast<std::uint64_t>(width))),
                        static_cast<std::int16_t>(r.below(1, static_cast<std::uint64_t>(height))),
-                       static_cast<std::int16_t>(7 + r.below(2, 100)), 0, 0});
+                       static_cast<std::int16_t>(7 + r.below(2, 100))});
   }
   std::sort(corners.begin(), corners.end(), stronger);
   corners.erase(std::unique(corners.begin(), corners.end(),
@@ -55,8 +55,8 @@ TEST(Spread, KeepsTheStrongestAndWideSpacing) {
   const std::vector<Corner> corners = random_corners(3000, 640, 480, 2);
   const std::vector<Corner> picked = spread(corners, 200);
   EXPECT_EQ(picked.front(), corners.front());
-  // 200 squares of side 39 px tile the image; greedy picking reaches a good half of that, and
-  // half of what is possible is taken.
+  // 200 squares with sides of 39 px tile the image; greedy picking reaches about half of that
+  // spacing, and the test asks for half of that again.
   EXPECT_GE(closest_pair(picked), 10);
 }
 
@@ -81,11 +81,6 @@ cv::Mat blocks(int width, int height, std::uint64_t seed) {
   return image;
 }
 
-std::vector<Corner> without_offsets(std::vector<Corner> corners) {
-  for (Corner& c : corners) c.dx = c.dy = 0;
-  return corners;
-}
-
 void expect_equal_to_opencv(const cv::Mat& image, int edge_px, int threshold) {
   std::vector<cv::KeyPoint> all;
   cv::FAST(image, all, threshold, true);
@@ -96,25 +91,26 @@ void expect_equal_to_opencv(const cv::Mat& image, int edge_px, int threshold) {
       expected.push_back({.x = static_cast<std::int16_t>(k.pt.x),
                           .y = static_cast<std::int16_t>(k.pt.y),
                           .strength = static_cast<std::int16_t>(k.response)});
-  EXPECT_EQ(without_offsets(fast_corners(image, edge_px, threshold)), expected) << threshold;
+  EXPECT_EQ(fast_corners(image, edge_px, threshold), expected) << threshold;
   EXPECT_GT(expected.size(), 10U);
 }
 
 TEST(FastCorners, EqualThoseOfOpenCv) {
   const cv::Mat image = blocks(640, 480, 3);
   for (const int threshold : {1, 7, 20, 60}) expect_equal_to_opencv(image, 19, threshold);
-  // Widths that fill no whole number of SIMD registers, and windows of a larger image.
+  // Widths that are not a multiple of a SIMD register, and windows of a larger image.
   for (const int width : {71, 96, 127, 130}) {
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)), 4, 10);
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)).clone(), 4, 10);
   }
-  // Less than a register: pixel by pixel. 38 columns hold 30 to search and 32 to fill.
+  // Narrower than a register, so processed pixel by pixel. 38 columns have 30 to search and 32 to
+  // fill.
   for (const int width : {14, 20, 31, 37, 38, 39})
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 300)), 4, 10);
 }
 
 TEST(FastCorners, KnowsBlackFromWhite) {
-  // The extremes of contrast, bright on dark and dark on bright.
+  // The extremes of contrast: bright on dark and dark on bright.
   cv::Mat image(60, 60, CV_8U, cv::Scalar(0));
   image.at<std::uint8_t>(20, 20) = 255;
   image(cv::Rect(30, 0, 30, 60)).setTo(255);
@@ -131,7 +127,7 @@ TEST(FastCorners, ImagesThatHoldOnlyBorderHaveNone) {
 
 TEST(FindCorners, LowThresholdServesExactlyTheCellsWithoutStrongCorners) {
   cv::Mat image = blocks(640, 480, 4);
-  // The right half at an eighth of its contrast.
+  // The right half has an eighth of its contrast.
   cv::Mat right = image(cv::Rect(320, 0, 320, 480));
   right.convertTo(right, CV_8U, 0.12, 100);
   const std::vector<Corner> corners = find_corners(image, 19, 20, 7);

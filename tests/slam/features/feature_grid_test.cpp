@@ -12,11 +12,11 @@
 namespace mh {
 namespace {
 
-// Against a scan of all keypoints: those in the cells of 16 px that the square touches, cell by
-// cell from the upper left and each cell's in their order; none twice, none else.
+// Compared with a scan of all keypoints: the result is those in the cells of 16 px that the square
+// touches, cell by cell from the upper left and in order within a cell; none twice, and no others.
 TEST(FeatureGrid, VisitsExactlyWhatLiesInTheCellsThatASquareTouches) {
   Camera camera;
-  camera.width_px = 100, camera.height_px = 70;  // no whole number of cells
+  camera.width_px = 100, camera.height_px = 70;  // not a whole number of cells
   const auto column = [](float u) {
     return std::clamp(static_cast<int>(std::floor(u / 16)), 0, 6);
   };
@@ -24,7 +24,7 @@ TEST(FeatureGrid, VisitsExactlyWhatLiesInTheCellsThatASquareTouches) {
   const RandomStream draw(5);
   std::vector<Keypoint> keypoints;
   for (std::uint64_t i = 0; i < 400; ++i) {
-    // Undistorted ones may lie beyond the image; some lie on the cells' borders.
+    // Undistorted keypoints may be outside the image; some are on the borders of cells.
     Keypoint k;
     k.u_px = static_cast<float>(draw.uniform(2 * i, -20, 120));
     k.v_px = static_cast<float>(draw.uniform(2 * i + 1, -20, 90));
@@ -44,7 +44,8 @@ TEST(FeatureGrid, VisitsExactlyWhatLiesInTheCellsThatASquareTouches) {
         for (int x = column(u - radius); x <= column(u + radius); ++x)
           for (std::uint32_t i = 0; i < some.size(); ++i)
             if (column(some[i].u_px) == x && row(some[i].v_px) == y) expected.push_back(i);
-      grid.for_each_near(u, v, radius, [&](std::uint32_t i) { visited.push_back(i); });
+      grid.for_each_near(u, v, radius,
+                         [&](const FeatureGrid::Entry& k) { visited.push_back(k.index); });
       ASSERT_EQ(visited, expected) << u << " " << v << " " << radius;
       for (std::uint32_t i = 0; i < some.size(); ++i)
         if (std::abs(some[i].u_px - u) <= radius && std::abs(some[i].v_px - v) <= radius) {

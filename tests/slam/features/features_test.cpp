@@ -29,14 +29,14 @@ Features extract_from(const cv::Mat& gray, const FeatureConfig& config = {}) {
   return extract(frame, camera_of(frame), config);
 }
 
-// The pixel of its own pyramid level at which a keypoint was found.
+// The position of a keypoint in its own pyramid level, px.
 cv::Point2d on_its_level(const Keypoint& k, const FeatureConfig& config, cv::Size full) {
   const double scale = std::pow(config.scale, k.octave);
   const double width = std::round(full.width / scale), height = std::round(full.height / scale);
   return {(k.u_px + 0.5) * width / full.width - 0.5, (k.v_px + 0.5) * height / full.height - 0.5};
 }
 
-// Degrees that cv::ORB turns into exactly these radians. Several floats may do; the nearest one.
+// Degrees that cv::ORB converts to exactly these radians; if several floats do, the nearest one.
 float degrees_for(float radians) {
   const auto factor = static_cast<float>(CV_PI / 180.0);
   const auto guess = static_cast<float>(radians * 180.0 / CV_PI);
@@ -100,7 +100,7 @@ TEST(Extract, OrientationsEqualThoseOfOpenCv) {
   for (const Keypoint& k : features.keypoints)
     for (const cv::KeyPoint& t : theirs) {
       if (t.pt.x != std::round(k.u_px) || t.pt.y != std::round(k.v_px)) continue;
-      // cv::fastAtan2 is good to about 0.3 deg.
+      // cv::fastAtan2 is accurate to about 0.3 deg.
       EXPECT_LT(angle_difference(k.angle_rad, t.angle * CV_PI / 180.0), 0.006);
       ++compared;
     }
@@ -124,7 +124,8 @@ TEST(Extract, AQuarterTurnTurnsAnglesAndKeepsDescriptors) {
   cv::Mat turned;
   cv::rotate(image, turned, cv::ROTATE_90_CLOCKWISE);
   FeatureConfig config;
-  config.levels = 1;  // pyramid levels are sampled at the same places only where sizes divide
+  config.levels =
+      1;  // pyramid levels are sampled at the same positions only if sizes divide evenly
   const Features a = extract_from(image, config), b = extract_from(turned, config);
   ASSERT_EQ(a.size(), 1000U);
 
@@ -139,10 +140,10 @@ TEST(Extract, AQuarterTurnTurnsAnglesAndKeepsDescriptors) {
       EXPECT_LT(angle_difference(b.keypoints[j].angle_rad,
                                  a.keypoints[i].angle_rad + std::numbers::pi / 2),
                 1e-4);
-      // Only comparisons whose points fall between pixels can change: few.
+      // Only comparisons of points between pixels can change, and those are few.
       close += hamming(a.descriptors[i], b.descriptors[j]) <= 10;
     }
-  EXPECT_GT(found, 700);  // ties of strength are broken in image order, which the turn changes
+  EXPECT_GT(found, 700);  // ties in strength are broken in image order, which the rotation changes
   EXPECT_GE(close, 95 * found / 100);
 }
 
@@ -159,12 +160,12 @@ TEST(Extract, SpreadsKeypointsOverUnevenTexture) {
     in_patch += k.u_px < 160 && k.v_px < 120;
     ++per_tile[static_cast<std::size_t>(k.v_px / 160) * 4 + static_cast<std::size_t>(k.u_px / 160)];
   }
-  EXPECT_LT(in_patch, 200);  // its share of the area is 1/16
+  EXPECT_LT(in_patch, 200);  // the patch covers 1/16 of the area
   EXPECT_GT(*std::min_element(per_tile.begin(), per_tile.end()), 15);
 }
 
 TEST(Extract, LowThresholdServesCellsWithoutStrongCorners) {
-  // Squares 12 gray levels brighter than their ground: invisible at 20, visible at 7.
+  // Squares 12 gray levels brighter than the background: invisible at 20, visible at 7.
   cv::Mat image(kHeight, kWidth, CV_8U, cv::Scalar(100));
   for (int y = 30; y < kHeight - 40; y += 40)
     for (int x = 30; x < kWidth - 40; x += 40)
@@ -177,7 +178,7 @@ TEST(Extract, LowThresholdServesCellsWithoutStrongCorners) {
 }
 
 TEST(Extract, MirroredImagesHaveMirroredKeypointsOnEveryLevel) {
-  // Fails by scale - 1 px if levels are not mapped center to center (as u = x * scale does).
+  // This fails by scale - 1 px if levels are not mapped center to center (as with u = x * scale).
   const cv::Mat image = squares(kWidth, kHeight, 12);
   cv::Mat mirrored;
   cv::flip(image, mirrored, /*both axes=*/-1);
@@ -193,16 +194,16 @@ TEST(Extract, MirroredImagesHaveMirroredKeypointsOnEveryLevel) {
   }
   for (std::size_t l = 0; l < 8; ++l) {
     EXPECT_GE(all[l], 30);
-    EXPECT_GT(found[l], 0.6 * all[l]) << "level " << l;  // ties break in the order of the image
+    EXPECT_GT(found[l], 0.6 * all[l]) << "level " << l;  // ties are broken in image order
   }
 }
 
 TEST(Extract, FollowsShiftsOfAFractionOfAPixel) {
-  // Drawn at four times the size, moved by whole pixels, then reduced: moves by quarters of a
+  // Drawn at four times the size, shifted by whole pixels, then reduced: a shift by quarters of a
   // pixel.
   const auto reduced = [](int shift) {
     cv::Mat large = squares(4 * 324, 4 * 244, 13);
-    cv::GaussianBlur(large, large, {}, 3.0);  // a lens as sharp as the pixels
+    cv::GaussianBlur(large, large, {}, 3.0);  // a lens blur that matches the reduced pixels
     const cv::Mat window = large(cv::Rect(8 - shift, 8 - shift, 4 * 320, 4 * 240));
     cv::Mat image;
     cv::resize(window, image, {320, 240}, 0, 0, cv::INTER_AREA);
@@ -229,7 +230,7 @@ TEST(Extract, FollowsShiftsOfAFractionOfAPixel) {
       }
     ASSERT_GT(matched, 200);
     EXPECT_NEAR(sum / (2 * matched), 0.0, 0.05);
-    // Whole pixels would err by sqrt(q (1 - q)): 0.43, 0.5, 0.43 px.
+    // Rounding to whole pixels would give errors of sqrt(q (1 - q)): 0.43, 0.5, 0.43 px.
     EXPECT_LT(std::sqrt(squares_sum / (2 * matched)), 0.3) << quarters;
   }
 }
@@ -265,7 +266,7 @@ TEST(Extract, TakesDepthAndLabelAtTheKeypointsPixel) {
   constexpr ClassId kLabels[] = {kVoid, 5, 9};
   for (const Keypoint& k : features.keypoints) {
     const int x = static_cast<int>(std::lround(k.u_px)), y = static_cast<int>(std::lround(k.v_px));
-    // lround and OpenCV's rounding part ways at one half exactly.
+    // lround and OpenCV's rounding differ at exactly one half.
     if (std::abs(k.u_px - x) > 0.499F || std::abs(k.v_px - y) > 0.499F) continue;
     EXPECT_EQ(k.depth_m, frame.depth_m(x, y));
     EXPECT_EQ(k.label, kLabels[(x / 7 + y / 5) % 3]);
@@ -274,7 +275,7 @@ TEST(Extract, TakesDepthAndLabelAtTheKeypointsPixel) {
 
 TEST(Extract, TheCornerOfASilhouetteIsAsNearAsWhatStandsInFront) {
   RgbdFrame frame = frame_of(squares(kWidth, kHeight, 10));
-  // Columns 1 m and 3 m away in turn, each 4 pixels wide; one row in three has no depth.
+  // Columns alternately 1 m and 3 m away, each 4 pixels wide; one row in three has no depth.
   const auto surface = [](int x) { return x / 4 % 2 == 0 ? 1.0F : 3.0F; };
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) frame.depth_m(x, y) = y % 3 == 0 ? 0.0F : surface(x);
@@ -295,7 +296,7 @@ TEST(Extract, TheCornerOfASilhouetteIsAsNearAsWhatStandsInFront) {
   EXPECT_GT(behind, 100);
 }
 
-// Of one surface is what lies less than 5 % behind the nearest of the 3x3 pixels.
+// Pixels less than 5 % behind the nearest of the 3x3 pixels are on the same surface.
 TEST(Extract, ASurfaceEndsAtExactlyFivePercentBehindTheNearest) {
   RgbdFrame frame = frame_of(squares(kWidth, kHeight, 10));
   const float second = 1.05F;
@@ -335,7 +336,8 @@ TEST(Extract, UndistortedKeypointsDistortBackToTheirPixels) {
   const RgbdFrame frame = frame_of(squares(kWidth, kHeight, 10));
   Camera camera = camera_of(frame);
   const Features raw = extract(frame, camera, {});
-  // Freiburg 1 of the TUM benchmark: strong, with tangential terms. An Azure Kinect's color camera.
+  // Freiburg 1 of the TUM benchmark, which is strong and has tangential terms, and the color camera
+  // of an Azure Kinect.
   for (const Distortion& d :
        {Distortion{.k1 = 0.2624, .k2 = -0.9531, .p1 = -0.0054, .p2 = 0.0026, .k3 = 1.1633},
         Distortion{0.5286, -2.6450, 0.00082, -0.00022, 1.5006, 0.4073, -2.4695, 1.4282}}) {

@@ -27,7 +27,7 @@ TEST_P(ResizeExactly, GivesTheBitsOfOpenCv) {
   cv::Mat expected;
   cv::resize(source, expected, target_size, 0, 0, cv::INTER_LINEAR_EXACT);
 
-  // Into a window: what stands around it must stay.
+  // The target is a window: the pixels around it must not change.
   cv::Mat whole(target_size.height + 2, target_size.width + 40, CV_8U, cv::Scalar(77));
   cv::Mat window = whole(cv::Rect({20, 1}, target_size));
   resize_exactly(source, window);
@@ -36,8 +36,8 @@ TEST_P(ResizeExactly, GivesTheBitsOfOpenCv) {
   EXPECT_EQ(cv::countNonZero(whole != 77), 0);
 }
 
-// The levels of the usual pyramid, odd sizes, hardly smaller, the widest step, wider (OpenCV's
-// own), larger, and the least that is done here.
+// Levels of the usual pyramid, odd sizes, a hardly smaller image, an equal one, the widest step, a
+// wider one (done by OpenCV), a larger image, and the smallest one that is handled here.
 INSTANTIATE_TEST_SUITE_P(Sizes, ResizeExactly,
                          ::testing::Values(std::pair{cv::Size(640, 480), cv::Size(533, 400)},
                                            std::pair{cv::Size(533, 400), cv::Size(444, 333)},

@@ -12,8 +12,8 @@
 
 namespace mh::testing {
 
-// A lens and a sensor: without them neighboring pixels are equally good corners, and non-maximal
-// suppression drops both.
+// Imitates a lens and a sensor: without them, neighboring pixels are equally good corners, and
+// non-maximal suppression drops both.
 inline void soften(cv::Mat& image) {
   cv::GaussianBlur(image, image, {5, 5}, 0.8);
   for (int y = 0; y < image.rows; ++y)
@@ -24,7 +24,7 @@ inline void soften(cv::Mat& image) {
     }
 }
 
-// Overlapping squares of random brightness: corners of every strength and size. Contrast falls
+// Overlapping squares of random brightness: corners of every strength and size. Contrast decreases
 // linearly from left (strong) to right (weak).
 inline cv::Mat squares(int width, int height, std::uint64_t seed, double weakest = 0.2) {
   cv::Mat image(height, width, CV_8U, cv::Scalar(128));

@@ -26,7 +26,7 @@ Keyframe keyframe_at(const Eigen::Vector3d& place, Stamp stamp_ns, int features)
 }
 
 /// Three keyframes, the middle one erased; the others share 15 landmarks at (i, -i / 2, 100 + i).
-/// One more stands in the first alone, and one is erased.
+/// One more landmark is seen only from the first, and one is erased.
 Map made_map() {
   Map map;
   map.add(keyframe_at({1, 2, 3}, 10, 20));

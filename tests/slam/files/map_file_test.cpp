@@ -25,8 +25,8 @@ using testing_support::vocabulary;
 
 SlamState start() {
   SlamConfig config = testing_support::box_room_settings();
-  config.keyframe.max_interval = 6;       // so that keyframes come
-  config.keyframe.redundant_share = 0.5;  // and go
+  config.keyframe.max_interval = 6;       // so that keyframes are added
+  config.keyframe.redundant_share = 0.5;  // and removed
   return make_slam(BoxRoom::camera(), config, vocabulary());
 }
 
@@ -34,7 +34,7 @@ void run(SlamState& state, int first, int last) {
   for (int i = first; i < last; ++i) step(state, box_room_frame(i), RandomStream(7).fork(i));
 }
 
-/// The middle of a run, with erased keyframes and landmarks in it.
+/// The state in the middle of a run, with erased keyframes and landmarks.
 const SlamState& midway() {
   static const SlamState state = [] {
     SlamState s = start();
@@ -49,7 +49,7 @@ const std::string& midway_bytes() {
   return bytes;
 }
 
-/// What decoding says against these bytes; empty if it finds nothing wrong.
+/// The error of decoding these bytes; empty if there is none.
 std::string refusal_of(const std::string& bytes) {
   try {
     decode_slam(bytes, "room.mhmap", vocabulary());
@@ -74,13 +74,13 @@ TEST(MapFile, LoadingChangesNothing) {
   EXPECT_EQ(loaded.map.digest(), midway().map.digest());
 }
 
-/// The content of a map file, written out a second time: a reader in another language would have
-/// nothing but this to go by. Whoever has to change it raises kMapFileVersion.
+/// Writes the content of a map file independently of the code under test: readers in other
+/// languages can go by it. If it has to change, kMapFileVersion must be raised.
 class Layout {
  public:
   explicit Layout(const SlamState& s)
       : Layout(s, s.map.keyframes(), {s.map.landmarks().begin(), s.map.landmarks().end()}) {}
-  /// @param keyframes, landmarks  in the place of the map's
+  /// @param keyframes, landmarks  replace those of the map
   Layout(const SlamState& s, const std::vector<Keyframe>& keyframes,
          const std::vector<Landmark>& landmarks) {
     const std::string settings = format_slam_config(s.config);
@@ -129,7 +129,7 @@ class Layout {
     (one(static_cast<T>(values)), ...);
   }
   void vector(const Eigen::Vector3d& v) { put<double>(v.x(), v.y(), v.z()); }
-  void pose(const SE3& p) {  // the rotation by columns
+  void pose(const SE3& p) {  // the rotation column by column
     const Eigen::Matrix3d r = p.rotation();
     for (int column = 0; column < 3; ++column) vector(r.col(column));
     vector(p.translation());
@@ -141,7 +141,7 @@ class Layout {
   void twist(const Vector6d& v) {
     for (int i = 0; i < 6; ++i) put<double>(v[i]);
   }
-  void matrix(const Matrix6d& m) {  // by rows
+  void matrix(const Matrix6d& m) {  // row by row
     for (int row = 0; row < 6; ++row) twist(m.row(row));
   }
   void features(const Features& f) {
@@ -221,7 +221,7 @@ class Layout {
     put<std::int32_t>(t.frames_since_keyframe);
     put<std::uint8_t>(t.coasting);
     put<double>(t.reckoning.distance_m, t.reckoning.turn_rad);
-    put<std::uint8_t>(t.inertial.has_value(), t.inertial_known.has_value());  // here false
+    put<std::uint8_t>(t.inertial.has_value(), t.inertial_known.has_value());  // both are false here
     put<std::uint64_t>(t.stale_scores.of.size());
     for (const auto& [similarity, query] : t.stale_scores.of) {
       put<double>(similarity);
@@ -233,7 +233,7 @@ class Layout {
   std::string out_;
 };
 
-/// A whole file around a content.
+/// A complete file with this content.
 std::string framed(const std::string& content, std::uint32_t version = kMapFileVersion) {
   std::string bytes("MHMAP\n\0\0", 8);
   const auto append = [&](auto value) {
@@ -247,7 +247,8 @@ std::string framed(const std::string& content, std::uint32_t version = kMapFileV
   return bytes;
 }
 
-// One lie at a time, each with a right checksum; what would point nowhere is refused by its name.
+// One wrong value at a time, each with a correct checksum; a reference to nothing is refused, and
+// the error names it.
 TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
   struct Parts {
     SlamState state;
@@ -255,7 +256,7 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
     std::vector<Landmark> landmarks;
     Keyframe* standing;  ///< with words, labels and neighbors
     Keyframe* fallen;
-    Landmark* seen;  ///< twice at least
+    Landmark* seen;  ///< by two keyframes or more
   };
   const auto said = [](const std::function<void(Parts&)>& lie) {
     Parts p{midway(),
@@ -353,11 +354,11 @@ TEST(MapFile, WhatPointsNowhereIsRefusedByItsName) {
           [=](Parts& p) { p.state.tracker.stale_scores.of.resize(keyframes + 1); });
   refuses("a tracked frame's keyframe",
           [=](Parts& p) { p.state.tracked_frames.begin()->second.reference.value = keyframes; });
-  // Both sides store which keyframe sees which landmark.
+  // Keyframes and landmarks both store which keyframe sees which landmark.
   EXPECT_NE(said([](Parts& p) { p.seen->observations.pop_back(); }), "");
   EXPECT_NE(said([](Parts& p) { p.standing->covisible.pop_back(); }), "");
   EXPECT_EQ(refusal_of(framed(Layout(midway()).bytes() + "x")),
-            "room.mhmap: is not a consistent map: it goes on after its end");
+            "room.mhmap: is not a consistent map: it has data after its end");
 }
 
 TEST(MapFile, LiesAsAnotherReaderWouldExpect) {
@@ -431,8 +432,8 @@ TEST(MapFile, DigestsTellEveryPartOfAMapApart) {
 }
 
 TEST(MapFile, SaysWhatIsWrong) {
-  EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a map of Modelhouse's");
-  EXPECT_EQ(refusal_of(""), "room.mhmap: is not a map of Modelhouse's");
+  EXPECT_EQ(refusal_of("P5 an image"), "room.mhmap: is not a Modelhouse map");
+  EXPECT_EQ(refusal_of(""), "room.mhmap: is not a Modelhouse map");
   std::string other = midway_bytes();
   other[8] = 13;
   EXPECT_EQ(refusal_of(other), "room.mhmap: is a map of version 13, but this program reads 12");
@@ -449,11 +450,11 @@ TEST(MapFile, SaysWhatIsWrong) {
 TEST(MapFile, EveryCutIsNoticed) {
   const RandomStream draws(1);
   for (std::uint64_t i = 0; i < 300; ++i) {
-    // Half of them near the front, where the header is.
+    // Half of the lengths are near the front, where the header is.
     const std::size_t length = draws.below(i, i % 2 ? 200 : midway_bytes().size());
     const std::string said = refusal_of(midway_bytes().substr(0, length));
     EXPECT_TRUE(said.find("truncated") != std::string::npos ||
-                (length == 0 && said.find("not a map") != std::string::npos))
+                (length == 0 && said.find("not a Modelhouse map") != std::string::npos))
         << length << ": " << said;
   }
 }
@@ -471,8 +472,8 @@ TEST(MapFile, EveryFlippedBitIsNoticed) {
   EXPECT_EQ(refusal_of(bytes), "");
 }
 
-// A file that was made wrong, its checksum right: whatever it says, it is refused or it can be
-// worked with. (Under -DCMAKE_BUILD_TYPE=asan this test sees reads beyond the end, too.)
+// A wrongly made file with a correct checksum: whatever it contains, it is either refused or
+// usable. (With -DCMAKE_BUILD_TYPE=asan, this test also detects reads beyond the end.)
 TEST(MapFile, AFileThatLiesIsRefusedOrHarmless) {
   const RandomStream draws(3);
   int refused = 0;

@@ -128,12 +128,13 @@ TEST(Settings, NamesFileLinePlaceAndValue) {
                 .find("'all' is not one"),
             std::string::npos);
   EXPECT_NE(complaint("camera: {fx_px: 500}").find("'fy_px' is missing"), std::string::npos);
-  EXPECT_NE(complaint("").find("the file holds nothing"), std::string::npos);
+  EXPECT_NE(complaint("").find("the file is empty"), std::string::npos);
   EXPECT_EQ(complaint("camera: {fx_px: 500, fy_px: 500, cx_px: 700, cy_px: 200}"),
             "s.yaml:1: camera.cx_px: 700 is outside [0, 639]");
 }
 
-// The docs are the oracle: whatever range they print holds at both of its ends, and not beyond.
+// The docs are the reference: each range that they print is accepted at both ends and refused
+// beyond them.
 TEST(Settings, EveryRangeOfTheDocsEndsWhereItSays) {
   std::istringstream docs(read_file(std::string(MH_SOURCE_DIR) + "/docs/reference/slam.md"));
   const std::regex section_line("## ([a-z]+)"),
@@ -170,7 +171,7 @@ TEST(Settings, EveryRangeOfTheDocsEndsWhereItSays) {
   EXPECT_GT(ranges, 50) << "the docs' table is not found";
 }
 
-// As it stands in the original's Examples/RGB-D folder, but for its comments.
+// As in the original's Examples/RGB-D folder, without its comments.
 constexpr const char* kTum1 = R"(%YAML:1.0
 
 Camera.fx: 517.306408
@@ -218,10 +219,10 @@ TEST(Settings, TakesOrbSlamsFilesAsTheyAre) {
   EXPECT_EQ(s.depth_per_meter, 5000);
   EXPECT_TRUE(s.exchange_red_blue);
   ASSERT_EQ(s.notes.size(), 2U);
-  EXPECT_EQ(s.notes[1], "TUM1.yaml: passed over: Somebody.Else");
+  EXPECT_EQ(s.notes[1], "TUM1.yaml: ignored: Somebody.Else");
 }
 
-// What a file does not specify is the program's default.
+// Settings that a file does not specify have the program's defaults.
 TEST(Settings, OfAnOrbSlamFileWithoutARowThatRowIsTheDefault) {
   const Settings s =
       parse_settings("Camera.fx: 250\nCamera.fy: 251\nCamera.cx: 319\nCamera.cy: 239\n", "s.yaml");
@@ -256,18 +257,19 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
             std::string::npos);
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.type: \"PinHole\"\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
-  // Of ORB-SLAM3 before 1.0, as its RealSense_D435i.yaml has it.
+  // A key of ORB-SLAM3 before 1.0, as in its RealSense_D435i.yaml.
   EXPECT_EQ(parse_settings(std::string(kTum1) + "InsertKFsWhenLost: 0\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
 
-  // As the original's other files have them: a key twice with one value, a matrix without blanks.
+  // As in other files of the original: a key that occurs twice with the same value, a matrix
+  // without spaces.
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.width: 640\nCamera.bFishEye: 0\n" +
                                "LEFT.D: !!opencv-matrix\n   rows: 1\n   cols: 2\n   dt: d\n" +
                                "   data:[-0.28, 0.07]\n",
                            "s.yaml")
                 .camera,
             parse_settings(kTum1, "s.yaml").camera);
-  EXPECT_NE(complaint(std::string(kTum1) + "Camera.width: 320\n").find("stands twice"),
+  EXPECT_NE(complaint(std::string(kTum1) + "Camera.width: 320\n").find("appears twice"),
             std::string::npos);
   bad = kTum1;
   bad.replace(bad.find("Camera.fps: 30.0"), 16, "Camera.fps: 0");
@@ -312,7 +314,7 @@ TEST(Settings, TakesOrbSlam3sFilesAsTheyAre) {
   EXPECT_TRUE(s.has_depth_per_meter);
   EXPECT_EQ(s.slam.features.count, 1500);
   ASSERT_EQ(s.notes.size(), 1U);
-  EXPECT_EQ(s.notes[0], "TUM1.yaml: passed over: Camera.newWidth, System.SaveAtlasToFile");
+  EXPECT_EQ(s.notes[0], "TUM1.yaml: ignored: Camera.newWidth, System.SaveAtlasToFile");
 }
 
 TEST(Settings, OrbSlam3sFilesAreCheckedToo) {
@@ -347,7 +349,7 @@ TEST(Settings, OursMayStandBesideRosKeys) {
   EXPECT_EQ(s.depth_per_meter, 4000);
   EXPECT_EQ(s.slam.features.count, 500);
   EXPECT_FALSE(parse_settings(ros, "s.yaml").has_depth_per_meter);
-  EXPECT_NE(complaint(ros + kSettingsCamera).find("which one is meant?"), std::string::npos);
+  EXPECT_NE(complaint(ros + kSettingsCamera).find("keep only one"), std::string::npos);
   std::string bad = ros;
   bad.replace(bad.find("rational_polynomial"), 19, "plumb_bob");
   EXPECT_NE(complaint(bad).find("8 coefficients; plumb_bob has 5"), std::string::npos)
@@ -367,7 +369,7 @@ TEST(Settings, EightCoefficientsReadBackBitForBit) {
   const std::string folded = complaint(
       "camera: {fx_px: 525, fy_px: 525, cx_px: 319.5, cy_px: 239.5,\n  "
       "distortion: {k4: 40}}\n");
-  EXPECT_NE(folded.find("k4 40, k5 0, k6 0: a distortion that cannot be undone"), std::string::npos)
+  EXPECT_NE(folded.find("k4 40, k5 0, k6 0: the distortion cannot be inverted"), std::string::npos)
       << folded;
 }
 
@@ -391,7 +393,7 @@ TEST(Settings, RosCalibrationsAreReadStrictly) {
       << complaint(bad);
 }
 
-// Of one camera, as four programs write it.
+// One camera in the formats of four programs.
 TEST(Settings, CalibrationsOfOtherProgramsAreReadAsTheyAre) {
   const std::string opencv =
       "%YAML:1.0\n---\ncalibration_time: \"Tue 12 May 2020\"\nnr_of_frames: 20\nimage_width: "
@@ -443,12 +445,11 @@ TEST(Settings, ADistortionThatCannotBeUndoneIsRefused) {
     return std::string("camera: {fx_px: 525, fy_px: 525, cx_px: 319.5, cy_px: 239.5,\n  ") +
            "distortion: " + distortion + "}\n";
   };
-  // So strong that the corners have no ray: the image ends at 0.703 of the focal length.
-  EXPECT_EQ(
-      complaint(with("{k1: -0.3}")),
-      "s.yaml:2: camera.distortion: k1 -0.3, k2 0, p1 0, p2 0, k3 0: a distortion that cannot "
-      "be undone at pixel (0, 0)");
-  EXPECT_NE(complaint(with("{k1: 1e6}")).find("cannot be undone"), std::string::npos);
+  // So strong that the corners have no ray: the image ends at 0.703 times the focal length.
+  EXPECT_EQ(complaint(with("{k1: -0.3}")),
+            "s.yaml:2: camera.distortion: k1 -0.3, k2 0, p1 0, p2 0, k3 0: the distortion cannot "
+            "be inverted at pixel (0, 0)");
+  EXPECT_NE(complaint(with("{k1: 1e6}")).find("cannot be inverted"), std::string::npos);
   EXPECT_EQ(parse_settings(with("{k1: -0.2, p1: 0.01}"), "s.yaml").camera.distortion.k1, -0.2);
   std::string bad = kTum1;
   bad.replace(bad.find("-0.953104"), 9, "-9.53104");

@@ -39,7 +39,7 @@ TEST(WriteAtomically, KeepsTheOldFileWhenWritingFails) {
 TEST(ReadFile, MoreThanFourGigabytesAreNotReadAtOnce) {
   const fs::path file = fs::path(testing::TempDir()) / "enormous";
   std::ofstream{file};
-  fs::resize_file(file, kMostReadAtOnce_bytes + 1);  // of nothing: it takes no room
+  fs::resize_file(file, kMostReadAtOnce_bytes + 1);  // a hole, which takes no space on disk
   for (const auto& read :
        {+[](const fs::path& f) { read_file(f); }, +[](const fs::path& f) { map_file(f); }}) {
     try {
@@ -47,7 +47,7 @@ TEST(ReadFile, MoreThanFourGigabytesAreNotReadAtOnce) {
       ADD_FAILURE();
     } catch (const InputError& error) {
       EXPECT_EQ(error.what(),
-                file.string() + ": cannot be read: it has 4.3 GB, 4.3 GB is the most");
+                file.string() + ": cannot be read: it has 4.3 GB, at most 4.3 GB can be read");
     }
   }
   EXPECT_EQ(map_file(file, MapPages::kAsTouched).view.size(), kMostReadAtOnce_bytes + 1);
@@ -60,7 +60,7 @@ TEST(WriteAtomically, AFullDiskIsNoBadInput) {
   make_output_folder(folder);
   const fs::path file = folder / "result.json";
   write_atomically(file, "old");
-  // What is written to the temporary meets a full disk.
+  // Writing to the temporary file fails because the disk is full.
   EXPECT_THROW(write_atomically(file,
                                 [](const fs::path& temporary) {
                                   fs::remove(temporary);
@@ -108,7 +108,7 @@ TEST(WriteAtomically, WritesThroughASymbolicLink) {
   const fs::path folder = fs::path(testing::TempDir()) / "write_through_link";
   fs::remove_all(folder);
   make_output_folder(folder / "disk");
-  fs::create_symlink("disk/map", folder / "link");  // relative, to a file that is not there yet
+  fs::create_symlink("disk/map", folder / "link");  // relative, to a file that does not exist yet
   for (const char* content : {"first", "second"}) {
     write_atomically(folder / "link", content);
     EXPECT_TRUE(fs::is_symlink(folder / "link"));

@@ -32,7 +32,7 @@ TEST(JsonText, IsReadToACertainDepth) {
   EXPECT_EQ(fault_of(nested(1'000'000, "{\"a\":", "}")), "is nested more than 200 levels deep");
   EXPECT_TRUE(parse_json_or_discard<nlohmann::ordered_json>("[" + lists + "]").is_discarded());
   EXPECT_TRUE(parse_json_or_discard<Json>(lists).is_array());
-  // Beside each other, or in a string, they nest nothing.
+  // Side by side or inside a string, brackets do not count as nested.
   std::string many = "[";
   for (int i = 0; i < 1000; ++i) many += "[{}],";
   EXPECT_EQ(fault_of(many + "[]]"), "no error");
@@ -42,7 +42,7 @@ TEST(JsonText, IsReadToACertainDepth) {
 TEST(JsonText, FaultsAreToldInOurOwnWords) {
   EXPECT_EQ(fault_of("{\n  oops"), "2:3: is not JSON");
   EXPECT_EQ(fault_of(""), "1:1: is not JSON");
-  EXPECT_EQ(fault_of("[1e999]"), "holds a number that is beyond a double's range");
+  EXPECT_EQ(fault_of("[1e999]"), "holds a number beyond the range of a double");
   const auto fault = [](const auto& use) -> std::string {
     try {
       use(parse_json<Json>(R"({"id": "chair", "list": [1]})"));

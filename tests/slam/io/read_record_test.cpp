@@ -43,7 +43,7 @@ std::vector<Kind> kinds(const ReadRecord& record) {
   return all;
 }
 
-/// Looks at a folder in every way that there is.
+/// Accesses a folder in every way that is recorded.
 ReadRecord look_around(const fs::path& folder) {
   return recorded([&] {
     YamlReader::load(folder / "scene");
@@ -84,7 +84,7 @@ TEST(ReadScope, OuterScopesNoteWhatInnerOnesDoAndOtherThreadsNothing) {
       EXPECT_FALSE(ReadScope::is_open());
       read_file(folder / "scene");
     }).join();
-    ReadScope::report(inner);  // as of another process
+    ReadScope::report(inner);  // as if from another process
   });
   EXPECT_EQ(inner.observations.size(), 1U);
   ASSERT_EQ(outer.observations.size(), 3U);
@@ -121,12 +121,14 @@ TEST(ReadRecord, SurvivesTheWayToAnotherProcess) {
     EXPECT_THROW(decode_read_record(std::string_view(bytes).substr(0, size)), InputError);
 }
 
-// A reader that opens or looks for files past the recorder makes results that are silently old.
+// A reader that opened or looked for files without the recorder would make results that are
+// outdated without notice.
 TEST(ReadScope, NoReaderLooksAtFilesPastIt) {
   const std::regex past(
       R"(ifstream|fopen|imread|LoadFile|directory_iterator|zip_open\(|(fs|filesystem)::(exists|is_\w+|status)\()");
-  // What writes a zip; what looks at the process itself; what looks whether its own file is there;
-  // the cache of exposures, whose files are found by the key of all that they depend on.
+  // Exceptions: code that writes a zip, that inspects the process itself, or that checks for its
+  // own file; and the cache of exposures, whose files are found by a key of everything that they
+  // depend on.
   const std::set<std::string> allowed = {"frame_files.cpp",      "guarded_child.cpp",
                                          "label_images.cpp",     "sequence_writer.cpp",
                                          "shared_exposures.cpp", "write_image.cpp"};
@@ -151,13 +153,14 @@ TEST(RequireUnchanged, SeesEveryChangeAlsoOneThatWasTakenBack) {
       std::function<void(const fs::path&)>(
           [](const fs::path& f) { write_atomically(f, "a: 2\n"); }),
       std::function<void(const fs::path&)>([](const fs::path& f) { fs::remove(f); }),
-      std::function<void(const fs::path&)>([](const fs::path& f) {  // and the old times
-        const auto time = fs::last_write_time(f);
-        std::ofstream(f) << "a: 2\n";
-        std::ofstream(f) << "a: 1\n";
-        fs::last_write_time(f, time);
-      }),
-      std::function<void(const fs::path&)>([](const fs::path& f) {  // equal in every byte
+      std::function<void(const fs::path&)>(
+          [](const fs::path& f) {  // changed and changed back, with the old time
+            const auto time = fs::last_write_time(f);
+            std::ofstream(f) << "a: 2\n";
+            std::ofstream(f) << "a: 1\n";
+            fs::last_write_time(f, time);
+          }),
+      std::function<void(const fs::path&)>([](const fs::path& f) {  // replaced by an equal copy
         const fs::path copy = f.string() + ".copy";
         fs::copy_file(f, copy);
         fs::rename(copy, f);
@@ -169,7 +172,7 @@ TEST(RequireUnchanged, SeesEveryChangeAlsoOneThatWasTakenBack) {
       map_file(folder / "table");
       is_there(folder / "labels");
     });
-    // As another process passes it on.
+    // As passed on by another process.
     record = decode_read_record(encode(record));
     EXPECT_NO_THROW(require_unchanged(record));
     write_atomically(folder / "other", "was not looked for");
@@ -194,7 +197,7 @@ TEST(ListFolder, GivesWhatMatchesSorted) {
   write_atomically(folder / ".c.ply", "");
   EXPECT_EQ(list_folder(folder, "*.ply"), (std::vector<std::string>{"a.ply", "b.ply"}));
   EXPECT_TRUE(list_folder(folder / "none", "*").empty());
-  // What does not match changes nothing.
+  // Files that do not match change nothing.
   const auto listing = [&] { return digest(recorded([&] { list_folder(folder, "*.ply"); })); };
   const std::uint64_t before = listing();
   write_atomically(folder / "views.png", "");

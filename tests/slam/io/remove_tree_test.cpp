@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Does something in a process of its own, which is no longer root's: root may do anything.
+/// Does `work` in a separate process without the rights of root, since root may do anything.
 void as_nobody(const std::function<void()>& work) {
   const pid_t process = fork();
   if (process == 0) {
@@ -42,7 +42,7 @@ TEST(RemoveTree, RemovesWhatAProgramMadeOfIt) {
     mkfifo((tree / "pipe").c_str(), 0600);
     fs::create_symlink(outside, tree / "link");
     fs::create_directory_symlink(tree, tree / "locked" / "circle");
-    // Deeper than any path may be long, and than files may be open.
+    // Deeper than the longest possible path, and than the number of files that can be open.
     int here = open(tree.c_str(), O_RDONLY | O_DIRECTORY);
     for (int depth = 0; depth < 3000; ++depth) {
       mkdirat(here, "deep", 0700);

@@ -28,7 +28,7 @@ class TemporaryFolders : public testing::Test {
   }
   ~TemporaryFolders() override { fs::remove_all(folder_); }
 
-  /// What a process that was killed leaves, with a file in it.
+  /// The folder that a killed process leaves behind, with a file in it.
   fs::path left_by_a_killed_process() const {
     if (const pid_t process = fork(); process == 0) {
       const TemporaryFolder work(folder_);
@@ -66,7 +66,7 @@ TEST_F(TemporaryFolders, WhatOthersNamedAlikeStays) {
   fs::create_directories(elsewhere);
   std::ofstream(elsewhere / "cat.jpg") << "mine";
   fs::copy(left / OwnedFolder::kMarker, elsewhere / OwnedFolder::kMarker);
-  // Of a process that cannot be: numbers end at 2^22.
+  // For a process that cannot exist: ids end at 2^22.
   const fs::path no_marker = folder_ / (host + ".99999999.0");
   fs::create_directories(no_marker);
   std::ofstream(no_marker / "notes.txt") << "mine";
@@ -77,7 +77,7 @@ TEST_F(TemporaryFolders, WhatOthersNamedAlikeStays) {
   fs::create_directory_symlink(elsewhere, link);
   const fs::path file = folder_ / (host + ".99999999.3");
   std::ofstream(file) << "mine";
-  // A link within one that is ours goes, what it names stays.
+  // A link inside a folder of ours is removed, but not the folder that it points to.
   fs::create_directory_symlink(elsewhere, left / "linked");
   { const TemporaryFolder work(folder_); }
   EXPECT_FALSE(fs::exists(left));

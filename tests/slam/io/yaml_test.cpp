@@ -43,9 +43,9 @@ TEST(YamlReader, UnknownAndDoubledKeysAreErrors) {
             }),
             "f.yaml:2: unknown key 'sede' (known here: labels, seed); did you mean 'seed'?");
   EXPECT_EQ(error_of([] { YamlReader::parse("sytems: 1\n", "f.yaml").at("systems"); }),
-            "f.yaml:1: key 'systems' is missing; is 'sytems' meant to be it?");
+            "f.yaml:1: key 'systems' is missing; is 'sytems' a typo for it?");
   EXPECT_EQ(error_of([] { YamlReader::parse("a: 1\na: 2\n", "f.yaml"); }),
-            "f.yaml:2: key 'a' stands twice");
+            "f.yaml:2: key 'a' appears twice");
 }
 
 TEST(YamlReader, AliasesMayNotHoldThemselvesNorMultiply) {

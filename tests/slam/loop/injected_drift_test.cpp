@@ -15,7 +15,7 @@ namespace {
 using testing_support::BoxRoom;
 using testing_support::kTurnFrames;
 
-/// Bends the map as drift would: nothing at the first keyframe, all of it at the newest, evenly in
+/// Bends the map like drift: not at the first keyframe, fully at the newest one, and evenly in
 /// between. Tracking continues from the bent end.
 void inject_drift(SlamState& state, const Vector6d& drift) {
   const double last = static_cast<double>(state.map.keyframes().size() - 1);
@@ -30,7 +30,7 @@ void inject_drift(SlamState& state, const Vector6d& drift) {
   camera_from_world = camera_from_world * SE3::exp(drift).inverse();
 }
 
-/// Distance of the newest frame from the truth, both starting from the first.
+/// Distance of the newest frame from the truth, when both start at the first frame.
 double end_error_m(const SlamState& state, int frame) {
   return (BoxRoom::round_trip(0, kTurnFrames) *
               trajectory(state).back().world_from_camera.translation() -
@@ -40,11 +40,12 @@ double end_error_m(const SlamState& state, int frame) {
 
 Vector6d injected() {
   Vector6d drift;
-  drift << 0.20, -0.05, 0.10, 0.0, 0.05, 0.0;  // m, rad: more than any tour of this house gathers
+  drift << 0.20, -0.05, 0.10, 0.0, 0.05,
+      0.0;  // m, rad: more than any tour of this house accumulates
   return drift;
 }
 
-// The local map's look around is off: what comes back into view is a loop.
+// The local map does not look for nearby keyframes: what comes back into view is a loop.
 TEST(Loop, CutsInjectedDriftByFiveTimes) {
   SlamConfig config = testing_support::box_room_settings(SemanticConfig{});
   config.track.near_distance_m = 0;
@@ -64,7 +65,7 @@ TEST(Loop, CutsInjectedDriftByFiveTimes) {
     closed_at = i;
     after_m = end_error_m(state, i);
     ASSERT_TRUE(report.loop);
-    // What the loop says of its ends is what is true of them.
+    // The relative pose that the loop reports is true.
     const auto truth_at = [](Stamp stamp_ns) {
       return BoxRoom::round_trip(static_cast<int>(stamp_ns / testing_support::kFrame_ns),
                                  kTurnFrames);
@@ -83,7 +84,8 @@ TEST(Loop, CutsInjectedDriftByFiveTimes) {
 TEST(Loop, IsRefusedWhereItTellsOfMoreDriftThanCanBe) {
   SlamConfig config = testing_support::box_room_settings(SemanticConfig{});
   config.track.near_distance_m = 0;
-  config.loop.max_drift_m = 0.02;  // less than what any two ends of the bent map are apart
+  config.loop.max_drift_m =
+      0.02;  // less than the distance between the ends of any loop in the bent map
   config.loop.max_drift_share = 0;
   SlamState state = make_slam(BoxRoom::camera(), config, testing_support::vocabulary());
   for (int i = 0; i < kTurnFrames + 60; ++i) {
@@ -94,9 +96,9 @@ TEST(Loop, IsRefusedWhereItTellsOfMoreDriftThanCanBe) {
   }
 }
 
-/// Cameras in a row, 0.2 m apart and all looking along z, each with 20 landmarks that the next one
-/// sees too. The row has grown too long: where the map has the last one, it has gone `drift_m` too
-/// far, evenly. It sees the first one's landmarks and reports them: a loop.
+/// Cameras in a row, 0.2 m apart and all looking along z; each has 20 landmarks that the next one
+/// sees, too. The row is too long in the map: the last camera is too far by `drift_m`, which
+/// accumulates evenly. It sees and reports the first camera's landmarks: a loop.
 struct StretchedRow {
   static constexpr std::uint32_t kKeyframes = 6, kShared = 20, kLast = kKeyframes - 1;
   static constexpr double kStep_m = 0.2;
@@ -107,7 +109,7 @@ struct StretchedRow {
   Loop loop;
 
   explicit StretchedRow(double drift_m) {
-    config.bundle.iterations = config.bundle.refine_iterations = 0;  // what bending does by itself
+    config.bundle.iterations = config.bundle.refine_iterations = 0;  // tests only the bending
     const double step_m = kStep_m + drift_m / kLast;
     const RandomStream draw(3);
     const auto descriptor = [&](std::uint32_t owner, std::uint32_t i) {
@@ -161,8 +163,8 @@ struct StretchedRow {
   }
 };
 
-// Five steps and the loop hold by 20 landmarks each: each of the six gives a sixth of what is too
-// much.
+// Each of the five steps and the loop has 20 landmarks, so each of the six takes a sixth of the
+// excess.
 TEST(CloseLoop, BendsARowEvenlyAndItsLandmarksWithIt) {
   constexpr double kDrift_m = 0.06;
   StretchedRow row(kDrift_m);

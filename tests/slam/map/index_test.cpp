@@ -27,7 +27,7 @@ TEST(IdSet, HoldsWhatAStandardSetHolds) {
   IdSet<LandmarkId> ours;
   std::set<std::uint32_t> standard;
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    // Few and far between at first, then crowded, so that pages are made and met again.
+    // Sparse and dense ids in turn, so that pages are both created and found again.
     const auto id = static_cast<std::uint32_t>(random.below(i, i % 2 == 0 ? 1000000 : 3000));
     EXPECT_EQ(ours.insert(LandmarkId{id}), standard.insert(id).second) << id;
   }
@@ -58,7 +58,7 @@ TEST(PositionIndex, FindsAllThatIsNearAndLittleElse) {
         if (stands && distance <= radius) {
           EXPECT_TRUE(listed) << i << " at " << distance;
         }
-        // A cube that the ball's own box touches reaches no farther than two cubes' diagonals.
+        // The cubes that the ball's bounding box touches reach no farther than this.
         if (!stands || distance > 2 * (radius + 2.5) * std::sqrt(3.0)) {
           EXPECT_FALSE(listed) << i << " at " << distance;
         }
@@ -74,7 +74,7 @@ TEST(Map, IndicesFollowKeyframesThatMoveAndGo) {
     map.add(std::move(keyframe));
   }
   const Eigen::Vector3d far(100, 0, 0);
-  map.set_pose(KeyframeId{1}, SE3(Eigen::Matrix3d::Identity(), -far));  // the camera stands there
+  map.set_pose(KeyframeId{1}, SE3(Eigen::Matrix3d::Identity(), -far));  // the camera is at `far`
   EXPECT_EQ(map.keyframes_near(far, 1.0), std::vector{KeyframeId{1}});
   map.erase(KeyframeId{2});
   EXPECT_EQ(map.keyframes_near(Eigen::Vector3d::Zero(), 1.0), std::vector{KeyframeId{0}});

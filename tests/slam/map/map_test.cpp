@@ -61,7 +61,7 @@ TEST(Map, FifteenSharedLandmarksMakeNeighborsAndFourteenDoNot) {
 TEST(Map, CovisibleAreByWhatTheyShareThenById) {
   Map map;
   for (int i = 0; i < 5; ++i) map.add(keyframe_with(100));
-  const std::uint32_t shared[] = {0, 16, 17, 16, 17};  // of keyframe 0 with the others
+  const std::uint32_t shared[] = {0, 16, 17, 16, 17};  // number shared with keyframe 0
   std::uint32_t feature = 0;
   for (const std::uint32_t other : {4U, 3U, 2U, 1U})
     for (std::uint32_t i = 0; i < shared[other]; ++i, ++feature)
@@ -80,7 +80,7 @@ TEST(Map, FuseMovesObservationsAndKeepsInvariants) {
   map.fuse(from, into);
   map.check_invariants();
   EXPECT_TRUE(map.at(from).erased);
-  // Keyframe 1 saw both: its observation of `into` stays, that of `from` goes.
+  // Keyframe 1 saw both: it keeps the observation of `into` and loses that of `from`.
   EXPECT_EQ(map.at(into).observations.size(), 3U);
   EXPECT_EQ(map.at(KeyframeId{0}).landmarks[3], into);
   EXPECT_EQ(map.at(KeyframeId{1}).landmarks[25], into);

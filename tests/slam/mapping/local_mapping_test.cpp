@@ -15,7 +15,7 @@ namespace {
 
 const Camera kCamera;
 
-/// A keyframe at x_m that sees these points, exactly.
+/// Adds a keyframe at x_m that sees these points without noise.
 KeyframeId add_view(Map& map, double x_m, const std::vector<Eigen::Vector3d>& points) {
   Keyframe k;
   k.camera_from_world =
@@ -48,7 +48,7 @@ struct TwoViews {
   MatchCounts counts{};
   SlamContext context() { return {kCamera, config, map, counts}; }
 
-  /// @param shared  whether the second sees the first one's landmarks, or those of its own alone
+  /// @param shared  whether the second view sees the first one's landmarks, or only its own
   explicit TwoViews(bool shared) {
     const std::vector<Eigen::Vector3d> points = cloud(1), others = cloud(2);
     add_view(map, 0, points);
@@ -65,7 +65,8 @@ struct TwoViews {
   }
 };
 
-// All that is close, the limit included, and of what is beyond the nearest until there are 100.
+// All close points, including those at the limit, and the nearest ones beyond it up to a total of
+// 100.
 TEST(AddLandmarksFromDepth, TakesWhatIsCloseAndElseTheNearestHundred) {
   SlamConfig config;
   config.keyframe.close_depth_m = 3;
@@ -78,7 +79,7 @@ TEST(AddLandmarksFromDepth, TakesWhatIsCloseAndElseTheNearestHundred) {
     for (int i = 0; i < at_the_limit; ++i) points.emplace_back(0.01 * i, 0, 3);
     points.emplace_back(0.1, 0.1, 1);
     const KeyframeId id = add_view(map, 0.5, points);
-    // The last has lost its depth.
+    // The last point has lost its depth.
     Keyframe without = map.at(id);
     without.features.keypoints.back().depth_m = 0;
     Map again;
@@ -118,7 +119,7 @@ TEST(AdjustNeighborhood, BringsPointsBackThatAKeyframeOutsideHolds) {
       1e-4);
 }
 
-// With nothing that holds it, the keyframe would go wherever its points pull it.
+// If no other keyframe holds it, the keyframe would move wherever its points pull it.
 TEST(AdjustNeighborhood, MovesNothingThatNoOtherKeyframeHolds) {
   TwoViews views(false);
   const std::uint64_t digest = views.map.digest();

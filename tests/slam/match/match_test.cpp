@@ -68,7 +68,7 @@ TEST(MatchByProjection, LogsWhatBecameOfEachPair) {
                                               target(200, kBase), target(301, kBase),
                                               target(500, kBase)};
   MatcherCounts counts;
-  GateLog log{{7, 7, MatchGate::kKept}};  // of a search before
+  GateLog log{{7, 7, MatchGate::kKept}};  // from an earlier search
   const auto match =
       match_by_projection(targets, frame.features, grid, taken, {.max_distance = 50, .ratio = 0.8F},
                           SemanticMatcher(SemanticConfig{}, counts, &log));
@@ -83,12 +83,12 @@ TEST(MatchByProjection, LogsWhatBecameOfEachPair) {
 TEST(SemanticMatcher, CountsThresholdAndRatioEffectsApart) {
   MatcherCounts counts;
   SemanticMatcher matcher(SemanticConfig{.xi = 2.0}, counts);
-  // Best 30 -> 60 by the penalty, over the gate of 50.
+  // The penalty increases the best distance from 30 to 60, above the gate of 50.
   SemanticMatcher::Best best;
   best.offer(0, matcher({flipped(kBase, 30), ClassId{1}}, {kBase, ClassId{2}}), 0);
   EXPECT_FALSE(matcher.accept(best, 50, 0.75F));
   EXPECT_EQ(counts.rejected_by_xi, 1);
-  // Best 40, second 44 -> 88: the ratio test passes only because the second was inflated.
+  // Best 40, second best 44 -> 88: the ratio test passes only because the second was increased.
   best = {};
   best.offer(0, matcher({flipped(kBase, 40), ClassId{1}}, {kBase, ClassId{1}}), 0);
   best.offer(1, matcher({flipped(kBase, 44), ClassId{1}}, {kBase, ClassId{2}}), 0);
@@ -148,8 +148,8 @@ TEST(FeatureGrid, FindsWhatAScanFinds) {
         return std::abs(keypoints[i].u_px - u) <= radius &&
                std::abs(keypoints[i].v_px - v) <= radius;
       };
-      grid.for_each_near(u, v, radius, [&](std::uint32_t i) {
-        if (within(i)) found.push_back(i);
+      grid.for_each_near(u, v, radius, [&](const FeatureGrid::Entry& k) {
+        if (within(k.index)) found.push_back(k.index);
       });
       for (std::uint32_t i = 0; i < keypoints.size(); ++i)
         if (within(i)) scanned.push_back(i);
@@ -166,10 +166,10 @@ TEST(MatchByWords, MatchesWithinNodesOnceAndByDominantRotation) {
     const Descriptor d{random.bits(4 * i), random.bits(4 * i + 1), random.bits(4 * i + 2),
                        random.bits(4 * i + 3)};
     a.add(0, 0, d, kVoid, 0, 1.0F);
-    // All turn by 0.5 rad but the last, which turns by 3.
+    // All rotate by 0.5 rad except the last, which rotates by 3.
     b.add(0, 0, flipped(d, 6), kVoid, 0, i == 39 ? 4.0F : 1.5F);
     words_a.by_node.emplace_back(i % 4, i);
-    words_b.by_node.emplace_back(i == 7 ? 9 : i % 4, i);  // feature 7 falls under another node
+    words_b.by_node.emplace_back(i == 7 ? 9 : i % 4, i);  // feature 7 is under a different node
   }
   std::sort(words_a.by_node.begin(), words_a.by_node.end());
   std::sort(words_b.by_node.begin(), words_b.by_node.end());
@@ -177,7 +177,9 @@ TEST(MatchByWords, MatchesWithinNodesOnceAndByDominantRotation) {
   const std::vector<std::uint8_t> all(40, 1);
   const auto matches = match_by_words({a.features, words_a, all}, {b.features, words_b, all},
                                       {50, 0.75F}, SemanticMatcher(SemanticConfig{}, counts));
-  EXPECT_EQ(matches.size(), 38U);  // 40 but the other node's and the other rotation's
+  EXPECT_EQ(
+      matches.size(),
+      38U);  // 40 without the one under a different node and the one with a different rotation
   for (const FeatureMatch& m : matches) {
     EXPECT_EQ(m.a, m.b);
     EXPECT_NE(m.a, 7U);
@@ -185,8 +187,8 @@ TEST(MatchByWords, MatchesWithinNodesOnceAndByDominantRotation) {
   }
 }
 
-/// Matches of 40 features of which all turn by 0.5 rad but the last, which goes from one angle to
-/// another.
+/// Number of matches of 40 features that all rotate by 0.5 rad, except the last, which rotates from
+/// one given angle to another.
 std::size_t matches_with_last_turn(float from_rad, float to_rad) {
   Frame a, b;
   WordIndex words;
@@ -222,14 +224,14 @@ TEST(MatchByWords, LabelsThatDisagreePayXi) {
                        random.bits(4 * i + 3)};
     a.add(0, 0, d, kChair, 0, 0.0F);
     b.add(0, 0, flipped(d, 40), i % 3 == 0 ? kTable : i % 3 == 1 ? kChair : kVoid, 0, 0.0F);
-    words.by_node.emplace_back(i, i);  // each pair under a node of its own
+    words.by_node.emplace_back(i, i);  // each pair has its own node
   }
   MatcherCounts counts;
   const std::vector<std::uint8_t> all(12, 1);
   const auto matches =
       match_by_words({a.features, words, all}, {b.features, words, all}, {50, 0.75F},
                      SemanticMatcher(SemanticConfig{.xi = 1.5}, counts));
-  EXPECT_EQ(matches.size(), 8U);  // 40 bits are under 50, 1.5 times 40 are not
+  EXPECT_EQ(matches.size(), 8U);  // 40 bits are below 50, 1.5 times 40 are not
   for (const FeatureMatch& m : matches) EXPECT_NE(m.b % 3, 0U);
   EXPECT_EQ(counts.compared, 12);
   EXPECT_EQ(counts.penalized, 4);

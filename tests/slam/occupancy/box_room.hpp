@@ -14,9 +14,8 @@
 
 namespace mh {
 
-// A box room, seen from inside: every ray ends at the nearest of six planes. The planes stand
-// clear of the borders of voxels. The room is labeled: floor, ceiling, wall, and a door on one
-// wall.
+// A box room, seen from inside: every ray ends at the nearest of six planes. The planes are not at
+// borders of voxels. The room is labeled: floor, ceiling, wall, and a door on one wall.
 inline const Eigen::Vector3d kRoomMin(-1.52, -1.02, 0.02), kRoomMax(2.02, 1.27, 2.52);
 inline const Eigen::Vector3d kEye(0.01, 0.01, 0.51);
 inline constexpr ClassId kWallLabel = 1, kFloorLabel = 2, kCeilingLabel = 22;
@@ -31,7 +30,7 @@ inline Camera room_camera() {
   return camera;
 }
 
-/// A level camera; `aside_m` moves it along y.
+/// The pose of a level camera; `aside_m` moves it along y.
 inline SE3 room_pose(double heading_rad, double aside_m = 0) {
   Eigen::Matrix3d body_from_optical;
   body_from_optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -74,14 +73,14 @@ inline OccupancyConfig every_pixel(double max_range_m = 4.0) {
   return config;
 }
 
-/// The poses of one look around.
+/// The poses of one full turn.
 inline Trajectory look_around(double aside_m = 0) {
   Trajectory poses;
   for (int i = 0; i < 16; ++i) poses.push_back({i, room_pose(i * std::numbers::pi / 8, aside_m)});
   return poses;
 }
 
-/// The room mapped by one look around.
+/// The room mapped in one full turn.
 inline OccupancyMapper mapped_room(double max_range_m = 4.0) {
   OccupancyMapper mapper(room_camera(), every_pixel(max_range_m));
   for (const TimedPose& pose : look_around())

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3i;
 
-/// A view of two chairs that touch, 9 voxels wide each: `numbers` tells which detection each third
-/// of each is of, from left to right; 0 = not seen.
+/// A view of two chairs that touch, 9 voxels wide each: `numbers` gives the detection of each third
+/// of each chair, from left to right; 0 = not seen.
 VoxelView chairs(const std::array<std::uint8_t, 6>& numbers, ClassId class_id = kChair) {
   MadeMap made;
   for (int third = 0; third < 6; ++third)
@@ -25,7 +25,7 @@ VoxelView chairs(const std::array<std::uint8_t, 6>& numbers, ClassId class_id = 
   return made.view();
 }
 
-/// What is found after such views: objects' boxes along x, in voxels.
+/// The extents along x, in voxels, of the objects found after these views.
 std::vector<std::pair<int, int>> found_after(
     const std::vector<std::array<std::uint8_t, 6>>& views) {
   VoxelMap map(0.05);
@@ -57,13 +57,13 @@ TEST(DetectionAssociation, NumbersMeanNothingBeyondTheirView) {
 }
 
 TEST(DetectionAssociation, MostViewsDecide) {
-  EXPECT_EQ(found_after({{1, 1, 1, 2, 2, 2}, {3, 3, 3, 3, 3, 3}}), kOne);  // undecided
+  EXPECT_EQ(found_after({{1, 1, 1, 2, 2, 2}, {3, 3, 3, 3, 3, 3}}), kOne);  // a tie
   EXPECT_EQ(found_after({{1, 1, 1, 2, 2, 2}, {3, 3, 3, 3, 3, 3}, {7, 7, 7, 9, 9, 9}}), kTwo);
 }
 
 TEST(DetectionAssociation, WhatBeganAsOneComesApart) {
   EXPECT_EQ(found_after({{1, 1, 1, 1, 1, 1}, {1, 1, 1, 2, 2, 2}, {1, 1, 1, 2, 2, 2}}), kTwo);
-  // A box that hangs over the other chair's first third.
+  // A box extends over the first third of the other chair.
   EXPECT_EQ(found_after({{1, 1, 1, 1, 0, 0},
                          {0, 0, 0, 1, 1, 1},
                          {1, 1, 1, 2, 2, 2},
@@ -118,7 +118,7 @@ TEST(DetectedObjects, PairsAreFoundEitherWay) {
   EXPECT_TRUE(objects.are_apart(1, 2));
   EXPECT_TRUE(objects.are_apart(2, 1));
   EXPECT_FALSE(objects.are_apart(1, 3));
-  EXPECT_EQ(objects.entries().front().object, 1);  // by place
+  EXPECT_EQ(objects.entries().front().object, 1);  // ordered by place
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ int count(const OccupancyGrid& grid, std::int8_t value) {
 
 TEST(ObstacleGrid, ABoxRoomIsFreeAmidItsWalls) {
   const OccupancyGrid grid = obstacle_grid(mapped_room().map(), {.floor_z_m = 0.02});
-  // 3.54 x 2.29 m; walls of one cell around it.
+  // 3.54 x 2.29 m, surrounded by walls of one cell.
   EXPECT_EQ(grid.cells.width(), 72);
   EXPECT_EQ(grid.cells.height(), 47);
   const auto at = [&](double x, double y) {
@@ -37,8 +37,8 @@ TEST(ObstacleGrid, ABoxRoomIsFreeAmidItsWalls) {
   EXPECT_FALSE(grid.cell_of({2.3, 0.0}));
 }
 
-// A table top is an obstacle though the robot's base fits below; a lintel over its head is not, nor
-// what lies flat on the floor.
+// A table top is an obstacle although the robot's base fits under it; a lintel above the robot's
+// head is not, and neither is something flat on the floor.
 TEST(ObstacleGrid, CountsWhatIsBetweenGroundAndHead) {
   MadeMap made;
   for (int x = 0; x < 20; ++x)
@@ -54,7 +54,7 @@ TEST(ObstacleGrid, CountsWhatIsBetweenGroundAndHead) {
   EXPECT_EQ(grid.cells(9, 0), kFreeCell);
   EXPECT_EQ(grid.cells(12, 0), kOccupiedCell);
   EXPECT_EQ(count(grid, kFreeCell), 18);
-  // A higher floor: nothing of it is in the way.
+  // With a higher floor, none of it is an obstacle.
   EXPECT_EQ(count(obstacle_grid(map, {.floor_z_m = 0.05}), kOccupiedCell), 1);
   EXPECT_EQ(count(obstacle_grid(map, {.robot_height_m = 1.6}), kOccupiedCell), 3);
   EXPECT_THROW(obstacle_grid(map, {.robot_height_m = 0.05}), InputError);
@@ -77,7 +77,7 @@ TEST(ObstacleGrid, LargeVoxelsThatHoldTheFloorAreNoObstacles) {
 
 TEST(ObstacleGrid, WhatWasSeenOnlyAboveIsNotFree) {
   MadeMap made;
-  for (int z = 10; z < 24; ++z) made.free({0, 0, z});  // from 0.5 m on
+  for (int z = 10; z < 24; ++z) made.free({0, 0, z});  // from 0.5 m upward
   for (int z = 2; z < 24; ++z) made.free({1, 0, z});
   const OccupancyGrid grid = obstacle_grid(made.map());
   EXPECT_EQ(grid.cells(0, 0), kUnknownCell);
@@ -107,9 +107,9 @@ TEST(ScanGrid, ALaserIsASecondSource) {
   EXPECT_EQ(at(0.025, 0.525), kOccupiedCell);
   EXPECT_EQ(at(0.125, 0.025), kFreeCell);
   EXPECT_EQ(at(0.025, 0.125), kFreeCell);
-  EXPECT_EQ(at(0.075, 0.025), kOccupiedCell);  // stays
+  EXPECT_EQ(at(0.075, 0.025), kOccupiedCell);  // unchanged
   EXPECT_EQ(at(0.125, 0.125), kUnknownCell);
-  EXPECT_EQ(at(-0.1, 0.025), kUnknownCell);  // 0 and infinity tell nothing
+  EXPECT_EQ(at(-0.1, 0.025), kUnknownCell);  // ranges of 0 and infinity give no information
   EXPECT_EQ(count(grid, kOccupiedCell), 3);
 
   OccupancyGrid empty;
@@ -119,7 +119,7 @@ TEST(ScanGrid, ALaserIsASecondSource) {
   EXPECT_THROW(scans.add_to(other), InputError);
 }
 
-// 8 hits of 0.85 and 17 misses of -0.4 cancel each other: what may be there is not driven over.
+// 8 hits of 0.85 and 17 misses of -0.4 cancel out: what may be an obstacle is not driven over.
 TEST(ScanGrid, HitsAndMissesThatSumToZeroAreAnObstacle) {
   const SE3 pose(Eigen::Matrix3d::Identity(), {0.025, 0.025, 0.3});
   const auto ahead = [](float range_m) { return RangeScan{.ranges_m = {range_m}}; };
@@ -168,11 +168,12 @@ TEST(CostMap, CostsDecayAsNav2PublishesIt) {
     for (int x = 0; x < 61; ++x) {
       const double away_m = 0.05 * std::min(std::hypot(x - 30, y - 20), std::hypot(x - 31, y - 20));
       const int expected = x == 60 && y == 0 ? 255 : cost_at_distance(away_m, config);
-      EXPECT_EQ(costs.costs(x, y), expected) << x << " " << y;  // (33, 20): the disc would touch
+      EXPECT_EQ(costs.costs(x, y), expected)
+          << x << " " << y;  // unknown (33, 20) is too close, so it gets a cost, too
     }
 }
 
-// inflation_layer.cpp: the radius is rounded up to whole cells, cells at most so far get a cost.
+// inflation_layer.cpp: the radius is rounded up to whole cells, and cells within it get a cost.
 TEST(CostMap, EndsAtWholeCells) {
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(61, 1, kFreeCell)};
   grid.cells(0, 0) = kOccupiedCell;
@@ -183,7 +184,7 @@ TEST(CostMap, EndsAtWholeCells) {
   }
 }
 
-// At Nav2's defaults and Pepper's radius, by steps of 5 cm from the obstacle.
+// With Nav2's defaults and Pepper's radius, in steps of 5 cm from the obstacle.
 TEST(CostMap, CostsAndWhatIsPublishedOfThemAtStatedDistances) {
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(14, 1, kFreeCell)};
   grid.cells(0, 0) = kOccupiedCell;
@@ -196,7 +197,7 @@ TEST(CostMap, CostsAndWhatIsPublishedOfThemAtStatedDistances) {
   EXPECT_EQ(std::vector<int>(shown.cells.begin(), shown.cells.end()), published);
 }
 
-// costmap_2d_publisher.cpp: 1 to 252 become 1 to 98, cut to integers.
+// costmap_2d_publisher.cpp: 1 to 252 become 1 to 98, truncated to integers.
 TEST(CostMap, InflatedCostsArePublishedAsOneToNinetyEight) {
   const std::vector<std::pair<int, int>> known{{1, 1},    {2, 1},    {3, 1},    {4, 2},   {100, 39},
                                                {126, 49}, {200, 77}, {251, 97}, {252, 98}};
@@ -252,10 +253,10 @@ TEST(MapServer, RoundTripKeepsCellsAndPlace) {
   EXPECT_EQ(back.cells, grid.cells);
   EXPECT_EQ(back.origin_m, grid.origin_m);
   EXPECT_EQ(back.resolution_m, grid.resolution_m);
-  // The origin is the lower left pixel: the first of the last row.
+  // The origin is at the lower left pixel: the first one of the last row.
   EXPECT_EQ(read_file(stem + ".pgm"),
             std::string("P5\n3 2\n255\n") + "\xCD\xCD\xFE" + std::string(1, '\0') + "\xCD\xCD");
-  // Every field that nav2_map_server requires or documents, in its words.
+  // Every field that nav2_map_server requires or documents, by its name there.
   EXPECT_EQ(read_file(stem + ".yaml"),
             "# Written by modelhouse\nimage: map.v1.pgm\nmode: trinary\nresolution: 0.05\norigin: "
             "[-1.25, 0.1, 0]\n"
@@ -289,7 +290,7 @@ TEST(MapServer, RefusesWhatItCannotRead) {
   expect_map_refused(good, ".yaml:1: image: " + pgm + ": no such file");
   write_atomically(pgm, "P5\n3 2\n255\nab");
   expect_map_refused(good, "truncated");
-  write_atomically(pgm, "P5\n65536 65536\n255\nab");  // 4 GB that are not there
+  write_atomically(pgm, "P5\n65536 65536\n255\nab");  // declares 4 GB that the file does not have
   expect_map_refused(good, "truncated");
   write_atomically(pgm, "P5\n1 1\n255");
   expect_map_refused(good, "truncated");
@@ -308,7 +309,7 @@ TEST(MapServer, RefusesWhatItCannotRead) {
     expect_map_refused(good, "pixels, not 1 to 65536 each");
   }
   for (const auto& [image, message] : std::vector<std::pair<std::string, std::string>>{
-           {"P6\n1 1\n255\nabc", "is no PGM image (P5 or P2)"},
+           {"P6\n1 1\n255\nabc", "is not a PGM image (P5 or P2)"},
            {"P2\n2 1\n255\n7\n", "is truncated"},
            {"P2\n2 1\n255\n7 # 8\n", "is truncated"},
            {"P2\n2 1\n255\n7 8x", "pixel 2 is '8x', not a number"},
@@ -321,7 +322,7 @@ TEST(MapServer, RefusesWhatItCannotRead) {
   }
 }
 
-/// Writes a map of that image and of further keys, and loads it.
+/// Writes a map with this image and additional keys, and loads it.
 OccupancyGrid loaded(const std::string& image, const std::string& keys,
                      const ImageDecoder& decode = nullptr) {
   write_atomically(testing::TempDir() + "made.pgm", image);
@@ -336,7 +337,7 @@ std::vector<int> cells_of(const OccupancyGrid& grid) {
 
 TEST(MapServer, PgmMayBeTextOrOfAnotherMaximum) {
   const std::string keys = "origin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-  const std::vector<int> expected{-1, 100, 0, 100};  // the lower row first
+  const std::vector<int> expected{-1, 100, 0, 100};  // the lower row is first
   EXPECT_EQ(cells_of(loaded("P2\n# GIMP\n2 2\n255\n254 0 # a row\n205\n0\n", keys)), expected);
   EXPECT_EQ(cells_of(loaded("P2 2 2 100 100 0 80 0", keys)), expected);
   const std::string nul(1, '\0');
@@ -407,7 +408,7 @@ TEST(MapServer, LevelsOnAThresholdAreBeyondIt) {
   write_atomically(pgm, std::string("P5\n3 1\n255\n") + "\xFF\x80" + std::string(1, '\0'));
   write_atomically(file,
                    "image: tie.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n"
-                   "occupied_thresh: 1.0\nfree_thresh: 0.0\n");  // of Nav2's depot_speed.yaml
+                   "occupied_thresh: 1.0\nfree_thresh: 0.0\n");  // as in Nav2's depot_speed.yaml
   const OccupancyGrid grid = load_map_server(file);
   EXPECT_EQ(grid.cells(0, 0), kFreeCell);
   EXPECT_EQ(grid.cells(1, 0), kUnknownCell);
@@ -437,20 +438,21 @@ TEST(MapServer, DirtyFilesAreReadWithAWarning) {
   write("P5\r\n2 1\r\n255\r\n" + pixels, "mode: Trinary\n");
   EXPECT_EQ(read({}), right);
   write("P5\n2 1\n255\n" + pixels + "\n", "");
-  EXPECT_EQ(read({"1 byte behind its 2 x 1 pixels is ignored"}), right);
+  EXPECT_EQ(read({"1 byte after its 2 x 1 pixels is ignored"}), right);
   write("P5\n2 1\n255\n" + pixels, "mdoe: raw\n");
-  EXPECT_EQ(read({"dirty.yaml:7: key 'mdoe' is none of map_server's and is ignored; did you mean "
-                  "'mode'?"}),
-            right);
+  EXPECT_EQ(
+      read({"dirty.yaml:7: key 'mdoe' is not one of map_server's and is ignored; did you mean "
+            "'mode'?"}),
+      right);
   write("P5\n2 1\n255\n" + pixels, "");
   const auto turn = [&](const std::string& yaw) {
     write_atomically(file, "image: dirty.pgm\nresolution: 1\norigin: [0, 0, " + yaw +
                                "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   };
-  turn("-nan");  // map_saver, where a mapper sent no valid quaternion
-  EXPECT_EQ(read({"dirty.yaml:3: origin: its turn '-nan' is taken for 0"}), right);
+  turn("-nan");  // written by map_saver if a mapper sent no valid quaternion
+  EXPECT_EQ(read({"dirty.yaml:3: origin: its yaw '-nan' is taken as 0"}), right);
   turn("90");
-  EXPECT_EQ(read({"its turn of 90 is read in radians"}), right);
+  EXPECT_EQ(read({"its yaw of 90 is read in radians"}), right);
   write("P5\n2 1\n255\n" + pixels, "mode: raw\n");
   EXPECT_EQ(read({"1 cell is from 101 to 254"}), std::pair(-1, 0));
 }
@@ -471,7 +473,7 @@ TEST(MapServer, FilesOfOthersAreNotReplaced) {
   require_replaceable_map_image(stem);
   write_atomically(stem + ".yaml", "image: replaceable.pgm\n");
   EXPECT_THROW(require_replaceable_map_image(stem), InputError);
-  std::filesystem::remove(stem + ".yaml");  // somebody's image
+  std::filesystem::remove(stem + ".yaml");  // an image of a user
   EXPECT_THROW(require_replaceable_map_image(stem), InputError);
   EXPECT_THROW(require_replaceable_map_image(testing::TempDir() + "folder/"), InputError);
   EXPECT_THROW(require_replaceable_map_image(""), InputError);

@@ -25,7 +25,7 @@ class MadeMap {
       for (int y = low.y(); y <= high.y(); ++y)
         for (int x = low.x(); x <= high.x(); ++x) hit({x, y, z}, label, detection);
   }
-  /// As one view would tell it.
+  /// The voxels as seen in a single view.
   VoxelView view() const {
     std::map<std::tuple<int, int, int>, VoxelBlock> blocks;
     for (const auto& [at, state] : states_) {

@@ -27,7 +27,7 @@ MadeMap furnished(const Vector3i& by) {
   for (const int x : {52, 72}) made.box(Vector3i(x, 12, 0) + by, Vector3i(x, 12, 10) + by, kTable);
   made.box(Vector3i(10, 60, 0) + by, Vector3i(22, 72, 34) + by, kFridge);
   made.box(Vector3i(60, 60, 0) + by, Vector3i(68, 68, 34) + by, kPerson);
-  made.box(Vector3i(40, 40, 3) + by, Vector3i(41, 40, 3) + by, kFridge);  // noise of labels
+  made.box(Vector3i(40, 40, 3) + by, Vector3i(41, 40, 3) + by, kFridge);  // label noise
   return made;
 }
 
@@ -76,11 +76,11 @@ TEST(ObjectsNamed, FindsByClassSynonymAndName) {
   EXPECT_NE(why_not(objects, "sofa").find("the map holds none"), std::string::npos);
   EXPECT_EQ(objects_named(objects, "FRIDGE"), std::vector<std::size_t>{3});
   EXPECT_EQ(objects_named(objects, "Chair_2"), std::vector<std::size_t>{1});
-  EXPECT_NE(why_not(objects, "wall").find("is never an object of a map"), std::string::npos);
+  EXPECT_NE(why_not(objects, "wall").find("is never an object in a map"), std::string::npos);
   EXPECT_NE(objects_json(objects, 0.05).find("\"name\": \"chair 2\""), std::string::npos);
 }
 
-/// Points of a room whose frame is turned against gravity, as a first camera's is.
+/// Points of a room whose frame is tilted against gravity, like the frame of a first camera.
 struct MadeRoom {
   explicit MadeRoom(ClassId of_floor, ClassId of_table = kTable) {
     const RandomStream draws(3);
@@ -112,7 +112,7 @@ void expect_floor(const MadeRoom& room, bool by_labels) {
   EXPECT_GT(floor_from_room.rotation()(2, 2), std::cos(0.02));
   const SE3 first = floor->floor_from_world * room.cameras[0];
   EXPECT_LT(first.translation().head<2>().norm(), 1e-9);
-  EXPECT_GT(first.rotation()(0, 2), 0.99);  // it looks along x
+  EXPECT_GT(first.rotation()(0, 2), 0.99);  // the robot looks along x
 }
 
 TEST(FloorFrame, IsFoundByLabels) {
@@ -122,7 +122,8 @@ TEST(FloorFrame, IsFoundByGeometryWithoutLabels) {
   expect_floor(MadeRoom(kVoid, kVoid), false);
 }
 TEST(FloorFrame, LabelsThatMisleadDoNotCount) {
-  expect_floor(MadeRoom(kVoid, kFloorLabel), false);  // a table labeled floor: there is more below
+  expect_floor(MadeRoom(kVoid, kFloorLabel),
+               false);  // a table is labeled floor, but there are points below it
 }
 TEST(FloorFrame, WithoutAPlaneThereIsNone) {
   MadeRoom room(kFloorLabel);
@@ -132,7 +133,7 @@ TEST(FloorFrame, WithoutAPlaneThereIsNone) {
 }
 TEST(FloorFrame, ASliceOfWallsIsNoFloor) {
   MadeRoom room(kVoid, kVoid);
-  room.points.clear();  // a level camera sees walls from 0.4 m up, and no floor
+  room.points.clear();  // a level camera sees walls from 0.4 m upward, and no floor
   const RandomStream draws(9);
   for (std::uint64_t i = 0; i < 2000; ++i) {
     const double along = draws.uniform(3 * i, -2, 2), z = draws.uniform(3 * i + 1, 0.4, 1.8);

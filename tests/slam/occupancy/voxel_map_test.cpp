@@ -40,7 +40,7 @@ TEST(VoxelMap, ABoxRoomIsFreeInsideAndOccupiedAtItsWalls) {
   EXPECT_EQ(map.state_at({2.02, 0.3, 0.6}), VoxelState::kOccupied);
   EXPECT_EQ(map.state_at({-1.52, 0.3, 0.6}), VoxelState::kOccupied);
   EXPECT_EQ(map.state_at({2.3, 0.3, 0.6}), VoxelState::kUnknown);
-  EXPECT_EQ(map.state_at({1.5, 0.0, 0.02}), VoxelState::kOccupied);  // the floor, at a slant
+  EXPECT_EQ(map.state_at({1.5, 0.0, 0.02}), VoxelState::kOccupied);  // the floor, seen at a slant
   map.for_each([&](const Voxel& voxel) {
     const Vector3d center = voxel.center_m(0.05);
     const double outside = std::max((kRoomMin - center).maxCoeff(), (center - kRoomMax).maxCoeff());
@@ -72,7 +72,7 @@ TEST(VoxelMap, WhereThereIsNoReturnNothingIsTold) {
   OccupancyMapper mapper(room_camera(), every_pixel());
   RgbdFrame frame = room_frame(0, room_pose(0));
   for (int y = 0; y < 120; ++y)
-    for (int x = 0; x < 80; ++x) frame.depth_m(x, y) = 0;  // its left half
+    for (int x = 0; x < 80; ++x) frame.depth_m(x, y) = 0;  // no depth in the left half
   mapper.keep(frame);
   mapper.update({{0, room_pose(0)}});
   EXPECT_GT(mapper.map().voxel_count(), 1000u);
@@ -97,7 +97,8 @@ TEST(VoxelMap, VotesAreOfTheClassThatIsSeen) {
   EXPECT_GT(labeled, 1000u);
 }
 
-// After whatever order of additions, moves and removals, the map is the one built at once.
+// No matter in which order keyframes are added, moved and removed, the map equals one built at
+// once.
 TEST(VoxelMap, IsAFunctionOfItsKeyframesPosesAlone) {
   OccupancyMapper changed(room_camera(), every_pixel());
   Trajectory poses = look_around();
@@ -113,7 +114,7 @@ TEST(VoxelMap, IsAFunctionOfItsKeyframesPosesAlone) {
   EXPECT_EQ(update.added, 5u);
   EXPECT_EQ(update.kept, 11u);
   EXPECT_EQ(update.moved, 0u);
-  changed.keep(room_frame(3, room_pose(0.1)));  // seen again after a rewind, another image
+  changed.keep(room_frame(3, room_pose(0.1)));  // seen again after a rewind, in a different image
   changed.keep(room_frame(3, poses[3].world_from_camera));
   changed.update(poses);
   EXPECT_EQ(bytes_of(changed.map()), bytes_of(mapped_room().map()));
@@ -188,7 +189,8 @@ TEST(VoxelMap, FilesKeepWhetherTheyStandOnAFloor) {
   EXPECT_TRUE(VoxelMap::read_ot(other, "it").on_floor());
 }
 
-/// The first version knew no detected objects; up to the second, the checksum left out the tree.
+/// The first version had no detected objects; before the third, the checksum did not cover the
+/// tree.
 TEST(VoxelMap, FilesOfOlderVersionsAreRead) {
   const OccupancyMapper mapper = mapped_room();
   const std::string now = bytes_of(mapper.map());
@@ -240,8 +242,8 @@ TEST(VoxelMap, DamagedFilesAreRefused) {
     const std::size_t at = good.find("\n" + key + " ") + key.size() + 2;
     return good.substr(0, at) + value + good.substr(good.find('\n', at));
   };
-  expect_refused(with_header("size", "1"), "its tree has not the 1 nodes that it says");
-  expect_refused(with_header("res", "nan"), "its resolution 'nan' is no number");
+  expect_refused(with_header("size", "1"), "its tree does not have the 1 nodes that it declares");
+  expect_refused(with_header("res", "nan"), "its resolution 'nan' is not a number");
   std::ostringstream binary;
   mapped_room().map().write_bt(binary);
   expect_refused(binary.str(), "without classes");
@@ -272,13 +274,13 @@ void fill(Tree& tree) {
   tree.prune();
 }
 
-/// Loads a file of another program; its known voxels must be those of the tree.
+/// Loads another program's file; its known voxels must be those of the tree.
 template <class Tree>
 void expect_alike(const std::string& file, const Tree& tree) {
   std::vector<std::string> notes;
   const VoxelMap map = VoxelMap::load_octree(file, notes);
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes[0].find("knows no classes"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("it has no classes"), std::string::npos) << notes[0];
   EXPECT_EQ(map.voxel_count(), 24U * 16 * 21 + 16 * 16 * 16);
   map.for_each([&](const Voxel& voxel) {
     const Vector3d c = voxel.center_m(0.05);

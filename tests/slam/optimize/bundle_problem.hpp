@@ -17,13 +17,14 @@ struct BundleShape {
   std::uint32_t fixed_poses = 1;
   std::uint32_t points = 1500;
   std::uint32_t observations_per_point = 4;
-  double depth_share = 1.0;     ///< of the observations
-  double noise_px = 1.0;        ///< times sigma
-  double disturbance_m = 0.05;  ///< of the starting points and free poses; their angles in rad too
+  double depth_share = 1.0;  ///< of the observations
+  double noise_px = 1.0;     ///< as a multiple of sigma
+  double disturbance_m =
+      0.05;  ///< of the initial points and free poses; also of their angles, in rad
 };
 
 struct SyntheticBundle {
-  BundleProblem problem;  ///< disturbed: where the adjustment starts
+  BundleProblem problem;  ///< perturbed: the start of the adjustment
   std::vector<SE3> true_poses;
   std::vector<Eigen::Vector3d> true_points;
 };

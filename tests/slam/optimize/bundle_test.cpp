@@ -41,7 +41,7 @@ double huber_cost(const BundleProblem& problem, const std::vector<SE3>& poses,
   return sum;
 }
 
-/// Independent of ours: rotation vectors in place of matrices, automatic derivatives.
+/// Independent of our code: rotation vectors instead of matrices, automatic derivatives.
 struct CeresCost {
   BundleObservation o;
 
@@ -104,15 +104,16 @@ TEST(Adjust, RecoversTruthWithoutNoise) {
       make_bundle({.poses = 6, .points = 200, .noise_px = 0, .disturbance_m = 0.1}, kBundleCamera,
                   RandomStream(1));
   ASSERT_GT(worst_pose_m(bundle.problem.camera_from_world, bundle.true_poses), 0.05);
-  // Pixels are stored as float: half a unit in the last place at 300 px is 1.5e-5 px, some 1e-7 m
-  // at 3 m and 525 px; averaged over 100 observations it stays below that.
+  // Pixels are stored as float: half a unit in the last place at 300 px is 1.5e-5 px, about 1e-7 m
+  // at 3 m and 525 px; averaged over 100 observations the error is smaller than that.
   const BundleResult result =
       adjust(bundle.problem, kBundleCamera, {.iterations = 20, .refine_iterations = 10});
   EXPECT_LT(worst_pose_m(result.camera_from_world, bundle.true_poses), 1e-7);
   double worst = 0;
   for (std::size_t i = 0; i < bundle.true_points.size(); ++i)
     worst = std::max(worst, (result.points_in_world[i] - bundle.true_points[i]).norm());
-  // A single point rests on four observations only, and a disparity of 13 px on float's 5e-7 px.
+  // A single point has only four observations, and a disparity of 13 px has a float error of 5e-7
+  // px.
   EXPECT_LT(worst, 1e-6);
   EXPECT_GT(result.initial_cost, 1e4);
   EXPECT_LT(result.final_cost, 1e-6);
@@ -130,7 +131,8 @@ TEST(Adjust, RecoversTruthFromPixelsAloneWithTwoFixedPoses) {
                                              kBundleCamera, RandomStream(2));
   const BundleResult result =
       adjust(bundle.problem, kBundleCamera, {.iterations = 30, .refine_iterations = 10});
-  // Scale now comes from 0.24 m between the fixed poses: ten times weaker than with depth.
+  // The scale now comes from the 0.24 m between the fixed poses: ten times less accurate than with
+  // depth.
   EXPECT_LT(worst_pose_m(result.camera_from_world, bundle.true_poses), 1e-6);
 }
 
@@ -179,7 +181,7 @@ TEST(Adjust, FindsTheOutliersAndIsNotMovedByThem) {
   }
   // The gates reject 5 % of Gaussian residuals, fewer after the fit.
   EXPECT_LT(good_rejected, 0.06 * static_cast<double>(wrong.size()));
-  // What a tenth of gross errors adds stays within what the noise alone does.
+  // A tenth of gross errors adds no more error than the noise alone causes.
   EXPECT_LT(worst_pose_m(result.camera_from_world, bundle.true_poses),
             2 * worst_pose_m(clean.camera_from_world, bundle.true_poses));
   double inliers = 0;
@@ -190,14 +192,14 @@ TEST(Adjust, FindsTheOutliersAndIsNotMovedByThem) {
   EXPECT_NEAR(result.final_cost, inliers, 1e-9 * inliers);
 }
 
-// Huber's cost bounds the pull of a gross error, the second phase takes it away: without noise it
-// comes to the truth where the first, however long, does not.
+// Huber's cost limits the pull of a gross error, and the second phase removes it: without noise,
+// the result is the truth, which the first phase does not reach, no matter how long it runs.
 TEST(Adjust, TheSecondPhaseForgetsTheOutliersThatTheFirstHasBorne) {
   SyntheticBundle bundle =
       make_bundle({.poses = 6, .points = 200, .observations_per_point = 6, .noise_px = 0},
                   kBundleCamera, RandomStream(10));
   for (std::size_t i = 0; i < bundle.problem.observations.size(); i += 10)
-    bundle.problem.observations[i].u_px += 60;  // all to one side
+    bundle.problem.observations[i].u_px += 60;  // all in the same direction
   const auto error_m = [&](const BundleConfig& config) {
     return worst_pose_m(adjust(bundle.problem, kBundleCamera, config).camera_from_world,
                         bundle.true_poses);
@@ -207,7 +209,7 @@ TEST(Adjust, TheSecondPhaseForgetsTheOutliersThatTheFirstHasBorne) {
   const BundleResult result =
       adjust(bundle.problem, kBundleCamera, {.iterations = 20, .refine_iterations = 10});
   EXPECT_LT(result.final_cost, 1e-6) << "the sum over the inliers";
-  // Trial steps of both phases are reported.
+  // The trial steps of both phases are reported.
   const auto steps = [&](int refine_iterations) {
     return adjust(bundle.problem, kBundleCamera,
                   {.iterations = 1, .refine_iterations = refine_iterations, .relative_decrease = 0})
@@ -230,7 +232,7 @@ TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
   });
   for (BundleObservation& o : problem.observations)
     if (o.point == 40) o.disparity_px = -1;
-  // A free pose that sees nothing, put last among the free.
+  // A free pose that sees nothing, inserted as the last free one.
   problem.camera_from_world.insert(problem.camera_from_world.begin() + 4, testing::true_pose());
   ++problem.free_poses;
   for (BundleObservation& o : problem.observations) o.pose += o.pose >= 4;
@@ -242,7 +244,7 @@ TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
     EXPECT_EQ(result.camera_from_world[i].translation(),
               problem.camera_from_world[i].translation());
   }
-  // Free, but its rotation is only made orthonormal again.
+  // It is free, but its rotation is only orthonormalized again.
   EXPECT_LT(testing::distance_m(result.camera_from_world[4], problem.camera_from_world[4]), 1e-12);
   EXPECT_EQ(result.points_in_world[40], problem.points_in_world[40]);
   EXPECT_EQ(result.points_in_world[41], problem.points_in_world[41]);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSeenPoints = 200;
 
-/// Adds white noise to pixels (of their sigma) and to disparities.
+/// Adds white noise to pixels (with their sigma) and to disparities.
 std::vector<PoseObservation> with_white_errors(const SE3& pose, const Camera& camera,
                                                double disparity_sigma_px, RandomStream stream) {
   auto seen = testing::observe(kSeenPoints, pose, camera, stream.fork(0));
@@ -27,7 +27,7 @@ std::vector<PoseObservation> with_white_errors(const SE3& pose, const Camera& ca
   return seen;
 }
 
-/// Disparities that are wrong by up to so much, by where they are in the image.
+/// Makes disparities wrong by up to `by_px`, depending on the position in the image.
 void bend(std::vector<PoseObservation>& seen, const Camera& camera, double by_px) {
   for (PoseObservation& o : seen) {
     if (o.disparity_px < 0) continue;
@@ -36,7 +36,7 @@ void bend(std::vector<PoseObservation>& seen, const Camera& camera, double by_px
   }
 }
 
-/// Gates that keep every observation: which ones fit is another question.
+/// Gates that keep every observation: which ones fit is not tested here.
 PoseConfig open_gates() {
   PoseConfig config;
   config.chi2_mono = config.chi2_stereo = 1e9;
@@ -50,7 +50,8 @@ double disagreement_of(const std::vector<PoseObservation>& seen, const SE3& near
   return depth_disagreement(seen, estimate->camera_from_world, camera).value();
 }
 
-/// What is learned from frames whose depths err by `disparity_sigma_px` each, and alike by `bent`.
+/// The sigma learned from frames whose disparities have independent errors of `disparity_sigma_px`
+/// and correlated errors of up to `bent_px`.
 double learned_from(int frames, double disparity_sigma_px, double bent_px = 0) {
   Camera camera;
   const SE3 pose = testing::true_pose();
@@ -79,14 +80,14 @@ TEST(DepthDisagreement, IsChiSquareOverItsQuartileIfErrorsAreWhite) {
     sum += d;
   }
   EXPECT_NEAR(below / double(kFrames), 0.25, 0.04);  // three standard deviations
-  EXPECT_NEAR(sum / kFrames * 1.2125, 3, 0.25);      // chi-square's mean
+  EXPECT_NEAR(sum / kFrames * 1.2125, 3, 0.25);      // mean of the chi-square distribution
 }
 
 TEST(DepthDisagreement, NeedsDepth) {
   const Camera camera;
   auto seen = testing::observe(60, testing::true_pose(), camera, RandomStream(1));
-  EXPECT_TRUE(depth_disagreement(seen, testing::true_pose(), camera));  // 40 with depth
-  seen.resize(44);                                                      // 29
+  EXPECT_TRUE(depth_disagreement(seen, testing::true_pose(), camera));  // 40 have depth
+  seen.resize(44);                                                      // 29 have depth
   EXPECT_FALSE(depth_disagreement(seen, testing::true_pose(), camera));
 }
 
@@ -95,7 +96,8 @@ TEST(LearnedDisparitySigma, IsThatOfWhiteErrors) {
     EXPECT_NEAR(std::log(learned_from(1000, sigma_px) / sigma_px), 0, 0.15) << sigma_px;
 }
 
-// 0.1 px by itself and 0.5 px alike: 0.3 px in a single reading, but the pose suffers from it all.
+// Independent errors of 0.1 px and correlated ones of up to 0.5 px: only 0.3 px in a single
+// reading, but the pose suffers from all of the correlated part.
 TEST(LearnedDisparitySigma, IsLargerIfErrorsAreAlike) {
   EXPECT_GT(learned_from(400, 0.1, 0.5), 0.8);
 }

@@ -17,7 +17,7 @@ using testing::true_pose;
 
 const Camera kEpnpCamera{};
 
-/// Exact observations from pixels alone, the first `wrong` of them false.
+/// Exact observations of pixels only; the first `wrong` of them are false.
 std::vector<PoseObservation> pixels(int count, int wrong, std::uint64_t seed) {
   auto observations = observe(count, true_pose(), kEpnpCamera, RandomStream(seed).fork(0));
   make_outliers(observations, wrong, kEpnpCamera, RandomStream(seed).fork(1));
@@ -25,7 +25,7 @@ std::vector<PoseObservation> pixels(int count, int wrong, std::uint64_t seed) {
   return observations;
 }
 
-/// What is offered before one is accepted.
+/// The estimates offered until one is accepted.
 std::vector<PoseEstimate> offered(const std::vector<PoseObservation>& observations,
                                   std::uint64_t seed, bool accept) {
   std::vector<PoseEstimate> all;
@@ -46,7 +46,7 @@ TEST(EpnpConsensus, OfExactPixelsIsTheExactPose) {
   }
 }
 
-// 35 tries of four where 60 % are true: 1 - 0.87^35 = 99 %.
+// 35 samples of four where 60 % are true: 1 - 0.87^35 = 99 %.
 TEST(EpnpConsensus, FindsThePoseWhereMoreThanHalfAreTrue) {
   int found = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -67,8 +67,8 @@ TEST(EpnpConsensus, OffersNothingBelowHalf) {
   EXPECT_TRUE(offered({}, 1, true).empty());
 }
 
-// Exactly half are true: no refined consensus is larger than what is needed, so that nothing is
-// offered but the largest as it is, at the end.
+// Exactly half are true: no refined consensus is larger than what is needed, so only the largest
+// one is offered, unrefined, at the end.
 TEST(EpnpConsensus, TheLargestIsOfferedAtTheEnd) {
   int found = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {

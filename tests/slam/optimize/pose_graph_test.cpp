@@ -8,7 +8,7 @@
 namespace mh {
 namespace {
 
-/// n cameras around a circle of 3 m radius, looking outwards.
+/// n cameras around a circle of 3 m radius, looking outward.
 std::vector<SE3> circle(int n) {
   std::vector<SE3> poses;
   for (int i = 0; i < n; ++i) {
@@ -42,7 +42,7 @@ TEST(PoseGraph, ConsistentEdgesGiveTheTruthBack) {
 
 TEST(PoseGraph, ALoopTakesTheDriftOutOfAChain) {
   const std::vector<SE3> truth = circle(60);
-  // Odometry that turns 0.2 degrees too far per edge: 12 degrees over the round.
+  // Odometry that turns 0.2 degrees too far per edge: 12 degrees over the circle.
   const SE3 bias(so3_exp({0, 0, 0.0035}), Eigen::Vector3d::Zero());
   std::vector<PoseGraphEdge> edges;
   std::vector<SE3> drifted{truth[0]};
@@ -65,7 +65,8 @@ TEST(PoseGraph, ALoopTakesTheDriftOutOfAChain) {
 
 TEST(PoseGraph, DriftIsTakenFromWhereLittleHoldsThePosesTogether) {
   const std::vector<SE3> truth = circle(40);
-  // All odometry is right but one edge, which one landmark holds instead of two hundred.
+  // All odometry edges are correct except one, which is supported by one landmark instead of two
+  // hundred.
   const SE3 slip(so3_exp({0, 0, 0.05}), Eigen::Vector3d(0.05, 0.02, 0));
   std::vector<PoseGraphEdge> edges;
   std::vector<SE3> drifted{truth[0]};

@@ -12,7 +12,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// A band of couplings and some across: J^T J of random blocks, so that it is positive definite.
+/// A band of couplings and some outside it: J^T J of random blocks, so it is positive definite.
 struct Random {
   PoseSystem system;
   Eigen::MatrixXd matrix;

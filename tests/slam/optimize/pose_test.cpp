@@ -59,11 +59,12 @@ TEST(EstimatePose, RecoversTruthWithThirtyPercentOutliers) {
         estimate_pose(observations, ten_centimeters_and_five_degrees(truth), kCamera);
     ASSERT_TRUE(estimate) << seed;
     // 140 points at 1.5 px and 3 m: 1.5 px / 525 px * 3 m / sqrt(140) is below 1 mm along each
-    // axis; 1 cm leaves room for the weaker directions, where rotation and shift trade places.
+    // axis; 1 cm leaves room for the weaker directions, where rotation and translation compensate
+    // for each other.
     EXPECT_LT(distance_m(estimate->camera_from_world, truth), 0.01) << seed;
     EXPECT_LT(angle_between_rad(estimate->camera_from_world, truth), 0.003) << seed;
     for (std::size_t i = 0; i < 60; ++i) EXPECT_FALSE(estimate->inlier[i]) << seed << ' ' << i;
-    // The gates keep 95 %; of 140, fewer than 122 (87 %) has a chance below 1e-4.
+    // The gates keep 95 %; the probability of fewer than 122 of 140 (87 %) is below 1e-4.
     EXPECT_GE(estimate->inlier_count, 122) << seed;
   }
 }
@@ -83,7 +84,8 @@ TEST(EstimatePose, ItsInformationIsTheInverseCovarianceOfItsErrors) {
     const Vector6d error = (estimate->camera_from_world * truth.inverse()).log();
     squared += error.dot(estimate->information * error) / kViews;
   }
-  // Chi-square of 6 degrees of freedom: mean 6, and of 300 such the mean is off by 0.2.
+  // Chi-square with 6 degrees of freedom has a mean of 6; the mean of 300 samples has a standard
+  // error of 0.2.
   EXPECT_NEAR(squared, 6, 0.6);
 }
 
@@ -119,7 +121,7 @@ TEST(EstimatePose, GivesNothingWhereNothingCanBeKnown) {
   }
   EXPECT_FALSE(estimate_pose(line, truth, kCamera));
 
-  // Nothing fits: pixels drawn at random.
+  // Nothing fits: the pixels are random.
   auto noise = observations;
   make_outliers(noise, 40, kCamera, RandomStream(6));
   EXPECT_FALSE(estimate_pose(noise, truth, kCamera));
@@ -152,7 +154,7 @@ TEST(SolvePnpRansac, FindsThePoseAmongFiftyPercentOutliers) {
     make_outliers(observations, 50, kCamera, stream.fork(2));
     const auto estimate = solve_pnp_ransac(observations, kCamera, {}, {}, stream.fork(3));
     ASSERT_TRUE(estimate) << seed;
-    // Bounds as above with 50 points in place of 140.
+    // Bounds as above, for 50 points instead of 140.
     EXPECT_LT(distance_m(estimate->camera_from_world, truth), 0.02) << seed;
     EXPECT_LT(angle_between_rad(estimate->camera_from_world, truth), 0.006) << seed;
     for (std::size_t i = 0; i < 50; ++i) EXPECT_FALSE(estimate->inlier[i]) << seed << ' ' << i;
@@ -160,7 +162,7 @@ TEST(SolvePnpRansac, FindsThePoseAmongFiftyPercentOutliers) {
   }
 }
 
-// Three different observations, whichever are drawn, give the pose at once where none is wrong.
+// If no observation is wrong, any three different ones give the pose at once.
 TEST(SolvePnpRansac, WithoutOutliersOneDrawIsEnough) {
   const SE3 truth = true_pose();
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -172,7 +174,7 @@ TEST(SolvePnpRansac, WithoutOutliersOneDrawIsEnough) {
   }
 }
 
-// Three draws are three different points: of four, five or six exact ones any three will do.
+// Three samples are three different points: with four, five or six exact points any three will do.
 TEST(SolvePnpRansac, DrawsThreeDifferentPointsHoweverFewThereAre) {
   const SE3 truth = true_pose();
   for (const int count : {4, 5, 6})

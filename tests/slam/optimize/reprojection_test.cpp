@@ -8,8 +8,8 @@
 namespace mh {
 namespace {
 
-// Central differences with steps h err by about h^2 f''' + eps f / h: for residuals of some 100 px
-// and h = 1e-6 that is 1e-8 of the Jacobian's 500 px/m.
+// Central differences with steps h have errors of about h^2 f''' + eps f / h: for residuals of
+// about 100 px and h = 1e-6, that is 1e-8 of the Jacobian's 500 px/m.
 constexpr double kStep = 1e-6;
 constexpr double kTolerance = 1e-5;
 

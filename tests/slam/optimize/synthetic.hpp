@@ -19,7 +19,7 @@ inline Vector6d tangent(double x, double y, double z, double rx, double ry, doub
   return v;
 }
 
-/// Standard deviation (px) that the residual grants the disparity of a keypoint with sigma 1.
+/// Standard deviation (px) that the residual assigns to the disparity of a keypoint with sigma 1.
 inline double disparity_sigma_px(const Camera& camera) {
   const double disparity = camera.disparity_px(2.0);
   const ImageMeasurement off{
@@ -27,12 +27,12 @@ inline double disparity_sigma_px(const Camera& camera) {
   return 1.0 / reprojection_residual({0, 0, 2}, off, camera).z();
 }
 
-/// Some pose far from the identity.
+/// A pose far from the identity.
 inline SE3 true_pose() {
   return SE3::exp(tangent(0.7, -1.1, 0.4, 0.3, -0.9, 0.5));
 }
 
-/// 10 cm and 5 degrees away.
+/// A pose 10 cm and 5 degrees away from `pose`.
 inline SE3 ten_centimeters_and_five_degrees(const SE3& pose) {
   const double angle = 5.0 * std::numbers::pi / 180.0;
   const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 0.5).normalized();

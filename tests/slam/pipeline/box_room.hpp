@@ -13,9 +13,9 @@
 
 namespace mh::testing_support {
 
-/// An empty 6 x 5 x 3 m room whose six sides carry random squares, seen by a perfect camera: exact
-/// color, depth and labels in closed form, independent of the simulator. Each side has two
-/// classes, in a checkerboard of 1 m.
+/// An empty 6 x 5 x 3 m room whose six sides are covered with random squares, seen by a perfect
+/// camera: exact color, depth and labels in closed form, independent of the simulator. Each side
+/// has two classes, in a checkerboard of 1 m.
 class BoxRoom {
  public:
   static constexpr double kX_m = 6, kY_m = 5, kZ_m = 3;
@@ -39,7 +39,7 @@ class BoxRoom {
     return {optical, {x_m, y_m, 1.2}};
   }
 
-  /// A closed drive around the room's middle, looking outwards; one turn per call of n frames.
+  /// Pose i of a closed drive around the center of the room, looking outward; n frames per turn.
   static SE3 round_trip(int i, int n) {
     const double a = 2 * std::numbers::pi * i / n;
     return pose(3 + 0.8 * std::cos(a), 2.5 + 0.7 * std::sin(a), a);
@@ -88,8 +88,8 @@ class BoxRoom {
   }
 
  private:
-  /// Gray value, 0 to 255: overlaid squares of 17 and 5 cm, no two alike, their edges 1 cm soft (a
-  /// pixel covers about as much).
+  /// Gray value, 0 to 255: overlaid squares of 17 and 5 cm, all different, with edges blurred over
+  /// 1 cm (about the size of a pixel).
   static double texture(int side, double u_m, double v_m) {
     return 0.6 * patches(side, u_m / 0.17, v_m / 0.17, 0.06) +
            0.4 * patches(side + 8, u_m / 0.05, v_m / 0.05, 0.2);

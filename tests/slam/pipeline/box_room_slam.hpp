@@ -12,7 +12,7 @@ namespace mh::testing_support {
 inline constexpr int kTurnFrames = 240;
 inline constexpr Stamp kFrame_ns = 33333333;
 
-/// Trained on the room itself, by default into some hundred words.
+/// A vocabulary trained on the room itself, by default with several hundred words.
 inline std::shared_ptr<const Vocabulary> box_room_vocabulary(int depth = 3) {
   std::vector<std::vector<Descriptor>> images;
   for (int i = 0; i < 12; ++i)
@@ -23,7 +23,7 @@ inline std::shared_ptr<const Vocabulary> box_room_vocabulary(int depth = 3) {
       Vocabulary::train(images, {.branching = 10, .depth = depth}));
 }
 
-/// The one of the usual depth, trained once for all tests of a program.
+/// The vocabulary of the default depth, trained once for all tests of a program.
 inline std::shared_ptr<const Vocabulary> vocabulary() {
   static const auto trained = box_room_vocabulary();
   return trained;
@@ -31,7 +31,7 @@ inline std::shared_ptr<const Vocabulary> vocabulary() {
 
 inline SlamConfig box_room_settings(const SemanticConfig& semantics = {}) {
   SlamConfig config;
-  config.features.count = 500;  // the images are a quarter of the usual size
+  config.features.count = 500;  // the images have a quarter of the usual size
   config.semantics = semantics;
   return config;
 }

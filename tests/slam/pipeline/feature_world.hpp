@@ -14,22 +14,24 @@
 
 namespace mh::testing_support {
 
-/// Rooms in an endless row along x, joined by doors, whose walls carry points with descriptors of
-/// their own: what a camera sees of them is made as features, without an image, so that maps of
-/// any size are cheap. Points hide behind walls, come and go, and are seen at the octave that their
-/// distance asks for, out of place by as much as a corner, with some bits of the descriptor
-/// flipped.
+/// Rooms in an endless row along x, connected by doors; points on their walls have their own
+/// descriptors. A camera's view of them is made directly as features, without an image, so that
+/// maps of any size are cheap. Points are hidden by walls, are not always found, and are seen at
+/// the octave that fits their distance, with the position noise of a corner and some bits of the
+/// descriptor flipped.
 class FeatureWorld {
  public:
   static constexpr double kLength_m = 5, kWidth_m = 4, kHeight_m = 2.6;  // of a room
-  static constexpr double kDoor_m = 1.0;  // wide, in the middle of the walls across x
+  static constexpr double kDoor_m =
+      1.0;  // width of the doors, in the middle of the walls perpendicular to x
 
   explicit FeatureWorld(int points_per_room, int features_per_frame)
       : points_per_room_(points_per_room), features_(features_per_frame) {}
 
   static Camera camera() { return {}; }
 
-  /// A camera in the row's middle at x, 1.3 m high, level, looking along the heading (rad, 0 = +x).
+  /// A camera in the middle of the row at x, 1.3 m high, level, looking along the heading (rad, 0 =
+  /// +x).
   static SE3 pose(double x_m, double heading_rad) {
     Eigen::Matrix3d optical;  // columns: camera x (right), y (down), z (forward) in the world
     optical.col(0) = Eigen::Vector3d(std::sin(heading_rad), -std::cos(heading_rad), 0);
@@ -38,10 +40,10 @@ class FeatureWorld {
     return {optical, {x_m, kWidth_m / 2, 1.3}};
   }
 
-  /// A walk through the rooms [first, first + rooms), a look around in each, and back: closed where
-  /// it began. Rooms are walked toward -x where `rooms` is negative.
+  /// A walk through the rooms [first, first + rooms) with a full turn in each, and back to where it
+  /// began. If `rooms` is negative, the walk leads toward -x.
   static std::vector<SE3> there_and_back(int first, int rooms) {
-    constexpr int kSteps = 150, kTurn = 150;  // frames per room and per look around
+    constexpr int kSteps = 150, kTurn = 150;  // frames per room and per full turn
     const double side = rooms < 0 ? -1 : 1;
     const double heading = rooms < 0 ? std::numbers::pi : 0;
     const double start = kLength_m * (first + 0.5);
@@ -68,7 +70,7 @@ class FeatureWorld {
     return path;
   }
 
-  /// What a camera sees; equal noise, equal features.
+  /// The features that a camera sees; equal noise gives equal features.
   Features see(const SE3& world_from_camera, RandomStream noise) const {
     const SE3 camera_from_world = world_from_camera.inverse();
     const int room = room_of(world_from_camera.translation().x());
@@ -103,7 +105,7 @@ class FeatureWorld {
 
   static int room_of(double x_m) { return static_cast<int>(std::floor(x_m / kLength_m)); }
 
-  /// Whether the way to a point in another room leads through every door in between.
+  /// Whether the line to a point in a different room passes through every door in between.
   static bool in_sight(const Eigen::Vector3d& from, const Eigen::Vector3d& to, int room, int of) {
     for (int r = std::min(room, of) + 1; r <= std::max(room, of); ++r) {
       const double share = (kLength_m * r - from.x()) / (to.x() - from.x());
@@ -119,7 +121,7 @@ class FeatureWorld {
     const RandomStream point = RandomStream(1)
                                    .fork(static_cast<std::uint64_t>(room + 1000000))
                                    .fork(static_cast<std::uint64_t>(index));
-    // On one of four walls, a hand's breadth off those across x, so that it belongs to one room.
+    // On one of four walls; 10 cm from those perpendicular to x, so that it belongs to one room.
     const auto wall = point.below(0, 4);
     const double along = point.uniform(1), z = point.uniform(2, 0, kHeight_m);
     Eigen::Vector3d p(0, 0, z);
@@ -143,7 +145,7 @@ class FeatureWorld {
     if (!in_sight(eye, p, room_of(eye.x()), room)) return std::nullopt;
     const std::uint64_t name = point.key();
     const RandomStream now = noise.fork(name);
-    if (now.uniform(0) < 0.15) return std::nullopt;  // not found this time
+    if (now.uniform(0) < 0.15) return std::nullopt;  // not found in this frame
 
     Candidate candidate{point.bits(4), name, {}, {}};
     const double sigma_px = 0.3 * std::pow(1.2, octave);
@@ -155,7 +157,7 @@ class FeatureWorld {
                           .octave = octave,
                           .label = static_cast<ClassId>(1 + point.below(6, 12))};
     for (std::uint64_t k = 0; k < 4; ++k) {
-      // Each bit is wrong once in sixteen.
+      // Each bit is wrong with a probability of 1/16.
       const std::uint64_t wrong =
           now.bits(10 + 4 * k) & now.bits(11 + 4 * k) & now.bits(12 + 4 * k) & now.bits(13 + 4 * k);
       candidate.descriptor[k] = point.bits(10 + k) ^ wrong;

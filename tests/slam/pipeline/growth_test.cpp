@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps that grow: laws about long runs, over features made without images.
+// Maps that grow: properties of long runs, with features made without images.
 #include <gtest/gtest.h>
 
 #include "slam/pipeline/slam.hpp"
@@ -26,7 +26,7 @@ SlamState new_run() {
   SlamConfig config;
   config.features.count = 400;
   Camera camera = FeatureWorld::camera();
-  camera.disparity_sigma_px = 0.1;  // more keyframes than it would learn: some are culled
+  camera.disparity_sigma_px = 0.1;  // more keyframes than with a learned value: some are culled
   camera.disparity_sigma_is_given = true;
   return make_slam(camera, config, world_vocabulary());
 }
@@ -53,7 +53,7 @@ TEST(Growth, CullingAndFusionKeepTheGraphsInvariantsAfterEveryFrame) {
       const SE3 error = report.world_from_camera->inverse() * path.front().inverse() * pose;
       EXPECT_LT(error.translation().norm(), 0.1) << frame;
     }
-  // Never vacuous: keyframes and landmarks did come and go.
+  // The test means something: keyframes and landmarks were added and removed.
   EXPECT_GT(added, state.map.keyframe_count());
   EXPECT_GT(state.map.landmarks().size(), static_cast<std::size_t>(state.map.landmark_count()));
 }
@@ -64,7 +64,7 @@ TEST(Growth, AFrameIsComparedWithItsSurroundingsNotWithTheMap) {
     std::uint64_t frame = 0;
     for (const SE3& pose : FeatureWorld::there_and_back(0, rooms)) feed(state, pose, ++frame);
     std::int64_t compared = 0;
-    frame = 1'000'000;  // the same frames, whatever came before
+    frame = 1'000'000;  // the same frames, regardless of what came before
     for (const SE3& pose : FeatureWorld::there_and_back(0, 1))
       for (const MatcherCounts& counts : feed(state, pose, ++frame).matches)
         compared += counts.compared;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What wheel odometry does for tracking and mapping, over features made without images.
+// How wheel odometry helps tracking and mapping, with features made without images.
 #include <gtest/gtest.h>
 
 #include "slam/core/digest.hpp"
@@ -24,7 +24,7 @@ SlamState a_run(double reckon_position_m = TrackConfig().reckon_position_m) {
   return make_slam(FeatureWorld::camera(), config, vocabulary);
 }
 
-/// A walk through two rooms; the camera sees nothing for 60 frames of its first look around.
+/// A walk through two rooms; the camera sees nothing for 60 frames of its first full turn.
 struct Walk {
   std::vector<SE3> path = FeatureWorld::there_and_back(0, 2);
   std::size_t blind_from = 40, blind_to = 100;
@@ -37,7 +37,7 @@ struct Walk {
                 blind ? Features() : kRow.see(path[i], RandomStream(2).fork(frame)),
                 RandomStream(3).fork(frame), {}, odometry);
   }
-  /// With an origin of its own, and 1 degree of drift over the look around.
+  /// Odometry with its own origin, and 1 degree of drift over a full turn.
   SE3 odometry(std::size_t i) const {
     Vector6d drift = Vector6d::Zero();
     drift[4] = 0.017 * static_cast<double>(i) / 150;
@@ -117,7 +117,7 @@ TEST(Reach, ACameraThatWasCarriedIsFoundWhenItCanHaveComeThere) {
   EXPECT_EQ(first_found_s(0.1), 10);
 }
 
-/// What follows a rewind of 50 frames where the whole map is of no help.
+/// The status after a rewind of 50 frames when the whole map cannot be used to relocalize.
 TrackStatus after_a_rewind(bool odometry_is_given, bool earlier_poses) {
   SlamState state = a_run();
   state.config.relocalize.min_word_matches = 100'000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pieces of a map: begun where nothing that is known can be seen, joined where they meet.
+// Pieces of a map: begun where nothing known is in view, joined where they meet.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::shared_ptr<const Vocabulary> shipped_words() {
   return loaded;
 }
 
-/// A walk through three rooms and back, blind from the first to the last.
+/// A walk through three rooms and back; the camera sees nothing from the first room to the last.
 struct BlindWalk {
   std::vector<SE3> path = FeatureWorld::there_and_back(0, 3);
   std::size_t blind_from = 155, blind_to = 600;
@@ -46,7 +46,7 @@ struct BlindWalk {
     return reports.back();
   }
   bool ended() const { return reports.size() == path.size(); }
-  /// Of a pose in the map that frame 0 began.
+  /// Error of a pose in the map that began with frame 0.
   double error_m(std::size_t i, const SE3& world_from_camera) const {
     return (world_from_camera.inverse() * path.front().inverse() * path[i]).translation().norm();
   }
@@ -87,7 +87,7 @@ TEST(Pieces, BeginAfterABlindSpellAndAreJoinedWhereTheyMeet) {
   }
 }
 
-// A second after the camera was in the third room, what it sees looks like the first.
+// One second after the camera was in the third room, its view looks like the first room.
 TEST(Pieces, ACopyOutOfReachIsNoPlace) {
   BlindWalk walk(0.5);
   walk.blind_from = 620, walk.blind_to = 650;

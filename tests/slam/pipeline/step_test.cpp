@@ -51,7 +51,7 @@ Drive run(const SemanticConfig& semantics, int frames, bool labels = true) {
   return run_on(semantics, frames, [labels](int i) { return frame(i, labels); });
 }
 
-/// One and a quarter turns with labels on: shared by the tests that only look.
+/// One and a quarter turns with labels on, shared by the tests that do not change the result.
 const Drive& mapped() {
   static const Drive result = run(SemanticConfig{}, 300);
   return result;
@@ -71,8 +71,8 @@ TEST(Step, TracksANoiseFreeRoomToMillimeters) {
         BoxRoom::round_trip(i, kTurnFrames);
     sum2 += error.translation().squaredNorm();
   }
-  // Corners at f = 288 px are found to some 0.4 px, 3 mm at 2 m; hundreds of them average that out
-  // within a frame, but not what drifts over a turn of 240 frames until it closes on itself.
+  // Corners at f = 288 px are found to about 0.4 px, 3 mm at 2 m; hundreds of them average that out
+  // within a frame, but not the drift over a turn of 240 frames until the loop closes.
   EXPECT_LT(std::sqrt(sum2 / 300), 0.015);
 }
 
@@ -99,12 +99,12 @@ TEST(Step, EveryMatcherMeetsLabelsThatDisagree) {
     const StepReport report = step(r.state, half, RandomStream(7).fork(i));
     for (std::size_t m = 0; m < r.counts.size(); ++m) r.counts[m] += report.matches[m];
   }
-  // Tracking by the reference keyframe happens when the motion model fails: make it fail.
+  // Tracking with the reference keyframe is used when the motion model fails: make it fail.
   RgbdFrame jump = BoxRoom::render(BoxRoom::round_trip(66, kTurnFrames), 61 * kFrame_ns);
   r.state.tracker.velocity_per_s = Vector6d::Constant(40.0);
   const StepReport report = step(r.state, jump, RandomStream(7));
   for (std::size_t m = 0; m < r.counts.size(); ++m) r.counts[m] += report.matches[m];
-  // Relocalization from nothing.
+  // Relocalization without a previous pose.
   SlamState lost = r.state;
   Tracker tracker;
   const StepReport relocalized = localize(lost, tracker, frame(10), RandomStream(1));
@@ -114,7 +114,8 @@ TEST(Step, EveryMatcherMeetsLabelsThatDisagree) {
     EXPECT_GT(at(r.counts, m).penalized, 0) << name(m);
 }
 
-// A whole turn without the local map's look around: what comes back into view is a loop.
+// A full turn in which the local map does not look for nearby keyframes: what comes back into view
+// is a loop.
 TEST(Loop, IsFoundAndClosedWhereTheTurnMeetsItsBeginning) {
   SlamConfig config = settings(SemanticConfig{});
   config.track.near_distance_m = 0;
@@ -157,7 +158,7 @@ TEST(Step, SameInputSameBits) {
     EXPECT_EQ(ta[i].world_from_camera.translation(), tb[i].world_from_camera.translation());
 }
 
-/// What a drive measured: labels, which are part of a map's digest, are left out.
+/// The numbers that a drive measured; labels, which are part of a map's digest, are left out.
 std::vector<double> geometry(const Drive& r) {
   std::vector<double> numbers;
   for (const Keyframe& k : r.state.map.keyframes())
@@ -169,14 +170,15 @@ std::vector<double> geometry(const Drive& r) {
   return numbers;
 }
 
-// The laws of the semantic system: where it has nothing to say, it is the plain one, bit for bit.
+// Properties of the semantic system: where labels have no effect, it equals the plain system, bit
+// for bit.
 TEST(SemanticLaw, NeutralSettingsOnLabeledInputAreThePlainSystem) {
   const Drive neutral = run(SemanticConfig::neutral(), 60, true);
   const Drive plain = run(SemanticConfig::neutral(), 60, false);
   const Drive semantic = run(SemanticConfig{}, 60, true);
   EXPECT_EQ(geometry(neutral), geometry(plain));
   EXPECT_NE(geometry(semantic), geometry(plain)) << "labels change nothing: the law says nothing";
-  // Nor do labels choose whom to relocalize against.
+  // Labels do not affect the choice of keyframes to relocalize against, either.
   for (const int i : {3, 30, 55}) {
     Tracker a, b;
     const StepReport ra = localize(neutral.state, a, frame(i, true), RandomStream(i));
@@ -200,7 +202,7 @@ SemanticConfig with_all_rules() {
 
 TEST(SemanticLaw, RulesBeyondThePaperAreOffInThePlainSystem) {
   EXPECT_EQ(with_all_rules().neutralized(), SemanticConfig::neutral());
-  // All keypoints are compared without their labels: the plain system may, too.
+  // All keypoints are compared regardless of labels, so the plain system may do that, too.
   SemanticConfig everywhere;
   everywhere.wider_search = WiderSearch::kAll;
   EXPECT_EQ(everywhere.neutralized().wider_search, WiderSearch::kAll);
@@ -220,7 +222,7 @@ TEST(SemanticLaw, WithoutLabelsRulesBeyondThePaperChangeNothing) {
   }
 }
 
-/// The same frame by other names of its classes; void and background are no classes.
+/// The same frame with its class ids permuted; void and background are not classes.
 RgbdFrame renamed(int i) {
   RgbdFrame result = frame(i);
   for (ClassDistribution& distribution : result.semantics.palette) {
@@ -246,7 +248,7 @@ TEST(SemanticLaw, PermutingClassIdsChangesNothing) {
       const StepReport rb = localize(b, of_b, renamed(i), RandomStream(i));
       ASSERT_TRUE(ra.candidates && rb.candidates);
       EXPECT_GT(ra.candidates->label_mass, 0);
-      // A sum runs in the order of ids: its last bit may differ.
+      // Sums are computed in the order of ids, so the last bit may differ.
       EXPECT_NEAR(ra.candidates->label_mass, rb.candidates->label_mass, 1e-12);
       EXPECT_EQ(ra.candidates->final, rb.candidates->final);
       ASSERT_TRUE(ra.world_from_camera && rb.world_from_camera);
@@ -256,7 +258,7 @@ TEST(SemanticLaw, PermutingClassIdsChangesNothing) {
 }
 
 TEST(Localize, AWiderSearchFindsWhatWordsDoNot) {
-  // Similar words still choose the keyframes, but no keypoint falls under the same node.
+  // Similar words still select the keyframes, but no keypoint is under the same node.
   SlamState state = mapped().state;
   for (const Keyframe& keyframe : mapped().state.map.keyframes()) {
     if (keyframe.erased) continue;
@@ -315,7 +317,7 @@ TEST(Localize, FindsFramesThatWereNeverMappedAndChangesNothing) {
   EXPECT_EQ(r.state.map.digest(), digest);
 }
 
-/// Whatever a report of a localization says.
+/// Expects that two reports of a localization are equal.
 void expect_equal(const StepReport& a, const StepReport& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.relocalization, b.relocalization);
@@ -333,14 +335,14 @@ void expect_equal(const StepReport& a, const StepReport& b) {
     EXPECT_EQ(a.matches[m].compared, b.matches[m].compared) << m;
 }
 
-// One memo serves all settings that choose other candidates, whatever was asked before.
+// One memo works for all settings that change the candidates, in any order.
 TEST(Localize, WithAMemoItSaysWhatItSaysFromALostTracker) {
   SlamState state = mapped().state;
   const int confirmed = state.config.relocalize.min_inliers;
   int verified = 0, unconfirmed = 0;
   for (const int i : {7, 40, 199}) {
     for (const bool strict : {false, true}) {
-      // So many that a place is recognized, and never confirmed in the local map.
+      // So many inliers that a place is recognized but never confirmed in the local map.
       state.config.relocalize.min_inliers = strict ? 100'000 : confirmed;
       LocalizeMemo memo;
       for (const double gamma : {1.0, 3.0, 1.0})
@@ -378,7 +380,7 @@ TEST(SetQuerySettings, AWishedLabelMassIsThatOfTheKeyframesOnAverage) {
     EXPECT_NEAR(mass(), wished, 1e-9);
   }
   const double solved = state.config.semantics.gamma;
-  set_query_settings(state, settings);  // again: nothing is to be solved
+  set_query_settings(state, settings);  // a second time, when there is nothing to solve
   EXPECT_EQ(state.config.semantics.gamma, solved);
   Tracker lost;
   const StepReport report = localize(state, lost, frame(40), RandomStream(5));
@@ -418,7 +420,7 @@ TEST(Localize, ABlankFrameIsLostAndLeavesTheTrackerLost) {
 TEST(Step, ALostCameraIsLookedForNearItsLastPlaceForAWhile) {
   const auto after_a_blank = [](double coast_s, int frames_later) {
     SlamConfig config = settings({});
-    config.relocalize.min_word_matches = 100'000;  // the whole map is of no help
+    config.relocalize.min_word_matches = 100'000;  // relocalization in the whole map is impossible
     config.track.coast_s = coast_s;
     SlamState state = make_slam(BoxRoom::camera(), config, vocabulary());
     for (int i = 0; i < 20; ++i) step(state, frame(i), RandomStream(1).fork(i));
@@ -437,7 +439,7 @@ TEST(Step, ALostCameraIsLookedForNearItsLastPlaceForAWhile) {
   EXPECT_EQ(after_a_blank(0.0, 3), TrackStatus::kLost);
 }
 
-/// Features of a frame of the drive, those of some columns alone.
+/// Features of a frame of the drive, only those within some columns.
 Features columns(int i, float first_px, float last_px) {
   const SlamConfig config = settings({});
   const Features all = extract(frame(i), BoxRoom::camera(), config.features);
@@ -450,16 +452,17 @@ Features columns(int i, float first_px, float last_px) {
   return some;
 }
 
-/// The camera turns to the left, by some 45 px in each step of six frames. First the image shows
-/// what leaves it on the right, then what has come in on the left.
+/// The camera turns to the left, by about 45 px in each step of six frames. At first only the side
+/// of the image that leaves the view on the right has features, then only the side that has entered
+/// on the left.
 struct BareCorner {
   SlamState state;
   std::vector<TrackStatus> statuses;
 
-  /// @param sure  times the default limits of a sure pose: six frames are a long step
+  /// @param sure  factor on the default limits of a sure pose, since six frames are a long step
   explicit BareCorner(double sure, float last_px = 60) {
     SlamConfig config = settings({});
-    config.relocalize.min_word_matches = 100'000;  // the whole map is of no help
+    config.relocalize.min_word_matches = 100'000;  // relocalization in the whole map is impossible
     config.track.sure_position_m *= sure;
     config.track.sure_angle_rad *= sure;
     state = make_slam(BoxRoom::camera(), config, vocabulary());
@@ -486,7 +489,7 @@ TEST(Step, MotionAlonePlacesAFrameThatCannotShowWhatTheLastOneDid) {
   for (const int i : {42, 48}) {
     const SE3 error = (world_from_origin * estimate[i / 6U].world_from_camera).inverse() *
                       BoxRoom::round_trip(i, kTurnFrames);
-    // The last frame before it held by a strip of 55 px, in which turning and shifting look alike.
+    // The frame before it had only a strip of 55 px, in which turning and shifting look the same.
     EXPECT_LT(error.translation().norm(), 0.07) << i;
     EXPECT_LT(error.log().tail<3>().norm(), 0.03) << i;
   }
@@ -547,7 +550,7 @@ TEST(Rewind, TracksAgainOnTheMapAsItIsAndKeepsEachFrameOnce) {
 TEST(Rewind, AFrameIsAKeyframeOnce) {
   SlamConfig config = settings({});
   config.keyframe.max_interval = 1;
-  config.keyframe.min_close_new = 1;  // nearly every frame
+  config.keyframe.min_close_new = 1;  // nearly every frame becomes a keyframe
   config.keyframe.redundant_share = 1;
   SlamState state = make_slam(BoxRoom::camera(), config, vocabulary());
   for (int i = 0; i < 20; ++i) step(state, frame(i), RandomStream(1).fork(i));

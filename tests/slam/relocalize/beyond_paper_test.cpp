@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-/// Adds a square of 3 x 3 keypoints of a class.
+/// Adds a square of 3 x 3 keypoints with a class.
 void add_thing(Features& view, ClassId label, float u_px, float v_px, float side_px) {
   for (int i = 0; i < 9; ++i) {
     Keypoint k;
@@ -28,7 +28,7 @@ TEST(SizeAgreement, IsTheRatioOfSizesWhereverThingsStandInTheImage) {
   EXPECT_NEAR(size_agreement(near, far), 0.25, 1e-6);
   EXPECT_NEAR(size_agreement(far, near), 0.25, 1e-6);
   EXPECT_NEAR(size_agreement(near, near), 1, 1e-12);
-  // A second class of the same size, with as many keypoints.
+  // A second class of the same size, with an equal number of keypoints.
   add_thing(near, 7, 500, 100, 80);
   add_thing(far, 7, 200, 300, 80);
   EXPECT_NEAR(size_agreement(near, far), 0.5 * (0.25 + 1), 1e-6);
@@ -67,7 +67,8 @@ TEST(SideBySide, TakesTurnsAndNamesNobodyTwice) {
   EXPECT_EQ(ids(side_by_side(list({3, 1}), list({3, 1}))), Ids({3, 1}));
 }
 
-/// A view whose every keypoint is matched with a landmark, by pairs (mapped class, seen class).
+/// The agreement of a view in which every keypoint is matched with a landmark; pairs are (mapped
+/// class, seen class).
 double agreement(const std::vector<std::pair<ClassId, ClassId>>& pairs, std::size_t unmatched = 0) {
   Keyframe keyframe;
   keyframe.features.keypoints.resize(pairs.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relocalization with the depth of a real structured-light sensor, which errs by more than one
-// reading's noise: map and frame were read apart, through a warp, at other moments than the color.
+// Relocalization with depth like that of a real structured-light sensor, whose errors exceed the
+// noise of a single reading: map and frame are read separately, with a warp, and at other times
+// than the color images.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// Its disparity errs by what a single reading does.
+/// A camera whose disparity sigma is the noise of a single reading.
 Camera of_one_reading() {
   Camera camera;
   camera.disparity_sigma_px = 0.1;
@@ -24,10 +25,10 @@ Camera of_one_reading() {
 /// A sensor in an empty room of 4 x 4 x 2.6 m.
 struct Sensor {
   Camera camera = of_one_reading();
-  double late_s = 0.0068;  ///< depth after color: fr1/rpy's median
-  double warp_px = 0.5;    ///< of disparity, amplitude, fixed in the image
+  double late_s = 0.0068;  ///< delay of depth after color: fr1/rpy's median
+  double warp_px = 0.5;    ///< amplitude of a disparity error that is fixed in the image
 
-  /// What a ray from the camera meets first, in the world.
+  /// The point in the world that a ray from the camera hits first.
   static Eigen::Vector3d hit(const SE3& world_from_camera, const Eigen::Vector3d& in_camera) {
     const Eigen::Vector3d size(4, 4, 2.6), from = world_from_camera.translation(),
                                            ray = world_from_camera.rotation() * in_camera;
@@ -41,8 +42,8 @@ struct Sensor {
     return hit(world_from_camera, camera.unproject(u_px, v_px, 1.0));
   }
 
-  /// A keypoint of a point, half a pixel out of place, with the depth as it is read.
-  /// @param turning_rad_per_s  about the image's vertical axis
+  /// The keypoint of a point, with half a pixel of noise and with the depth that the sensor reads.
+  /// @param turning_rad_per_s  about the vertical axis of the image
   Keypoint read(const SE3& world_from_camera, const Eigen::Vector3d& point,
                 double turning_rad_per_s, RandomStream s) const {
     const Eigen::Vector2d pixel = camera.project(world_from_camera.inverse() * point);
@@ -53,7 +54,8 @@ struct Sensor {
         world_from_camera *
         SE3(so3_exp(Eigen::Vector3d(0, turning_rad_per_s * late_s, 0)), Eigen::Vector3d::Zero());
     const double z_m = (later.inverse() * behind_pixel(later, k.u_px, k.v_px)).z();
-    // Nguyen et al., 3DIMPVT 2012, and steps of 1/8 px: Khoshelham, Elberink, Sensors 2012.
+    // Noise from Nguyen et al., 3DIMPVT 2012; steps of 1/8 px from Khoshelham, Elberink, Sensors
+    // 2012.
     const double sigma_m = 0.0012 + 0.0019 * (z_m - 0.4) * (z_m - 0.4);
     double disparity = camera.disparity_px(z_m + sigma_m * s.normal(2));
     disparity += warp_px * std::sin(k.u_px / 60.0) * std::cos(k.v_px / 60.0);
@@ -69,9 +71,9 @@ SE3 looking(double heading_rad, const Eigen::Vector3d& from_m) {
   return {Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ()) * level, from_m};
 }
 
-/// A map of one keyframe and a frame taken 12 cm and 7 degrees away while the camera turns at
-/// 1.5 rad/s. Every third point shares its word with the keyframe: the pose of these is a few
-/// centimeters off, and the others have to be found by it.
+/// A map of one keyframe, and a frame taken 12 cm and 7 degrees away while the camera turns at 1.5
+/// rad/s. Every third point shares its word with the keyframe: the pose computed from these is a
+/// few centimeters off, and the other points have to be found with it.
 class DepthGate : public testing::Test {
  protected:
   struct Scene {
@@ -79,10 +81,10 @@ class DepthGate : public testing::Test {
     Features features;
     WordIndex words;
     SE3 world_from_camera;
-    std::vector<std::uint32_t> points;  ///< which landmark each feature shows
+    std::vector<std::uint32_t> points;  ///< the landmark that each feature shows
   };
 
-  /// @param copy  the frame's depths by this factor: what it sees is a larger or smaller copy
+  /// @param copy  factor on the frame's depths: it sees a larger or smaller copy
   static Scene scene(std::uint64_t seed, double copy = 1.0) {
     const RandomStream random(seed);
     const Sensor sensor;
@@ -156,7 +158,7 @@ TEST_F(DepthGate, OneReadingsNoiseIsTooNarrowForAPoseThatIsNotRefined) {
   for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
     const Scene made = scene(seed);
     SlamConfig narrow;
-    narrow.relocalize.disparity_sigma_px = 0;  // the camera's own
+    narrow.relocalize.disparity_sigma_px = 0;  // use the camera's own
     by_one_reading += find(made, narrow).camera_from_world.has_value();
     const RelocalizationResult found = find(made, {});
     if (!found.camera_from_world) continue;
@@ -173,7 +175,7 @@ TEST_F(DepthGate, PosesAreEstimatedByTheSettingsOfSectionPose) {
   const Scene made = scene(0);
   ASSERT_TRUE(find(made, {}).camera_from_world);
   SlamConfig tight;
-  tight.pose.chi2_mono = tight.pose.chi2_stereo = 1e-3;  // nothing fits so well
+  tight.pose.chi2_mono = tight.pose.chi2_stereo = 1e-3;  // nothing fits this well
   EXPECT_EQ(find(made, tight).stage, RelocalizationStage::kPnp);
   SlamConfig many;
   many.pose.min_inliers = 100000;

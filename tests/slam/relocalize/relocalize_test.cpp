@@ -19,7 +19,7 @@ AugmentedVector vector_of(std::vector<Label> labels, std::vector<std::uint32_t> 
                           1.0, [](std::uint32_t) { return 1.0; });
 }
 
-/// Keyframes that share no landmarks: each is its own neighborhood.
+/// Keyframes that share no landmarks: each one is its own neighborhood.
 Map map_of(const std::vector<AugmentedVector>& vectors) {
   Map map;
   for (const AugmentedVector& vector : vectors) {
@@ -50,7 +50,7 @@ class SelectKeyframes : public testing::Test {
 TEST_F(SelectKeyframes, OverlapDecidesWhatEquationThreeCounts) {
   using Ids = std::vector<std::uint32_t>;
   EXPECT_EQ(select(Overlap::kLabels, query_), Ids({0}));        // n = 2, -, 1
-  EXPECT_EQ(select(Overlap::kWords, query_), Ids({1}));         // n = -, 4, 3: 3 is not over 3.2
+  EXPECT_EQ(select(Overlap::kWords, query_), Ids({1}));         // n = -, 4, 3: 3 is not above 3.2
   EXPECT_EQ(select(Overlap::kAugmented, query_), Ids({1, 2}));  // n = 2, 4, 4
 }
 
@@ -66,7 +66,8 @@ TEST_F(SelectKeyframes, ErasedKeyframesAreNoCandidates) {
   EXPECT_EQ(selection.candidates[0].keyframe, KeyframeId{2});
 }
 
-// Scores of the two lists have different scales: nearness orders each list, never both together.
+// The scores of the two lists have different scales: nearness orders each list, but never both
+// together.
 TEST(ChooseCandidates, NearnessKeepsTheTurnsOfTwoLists) {
   const Map map = map_of({vector_of({5, 6}, {1, 2, 3, 13, 14, 15, 16, 17}),  // first by labels
                           vector_of({7, 8}, {1, 2, 3, 4})});  // first by words, scored higher
@@ -100,8 +101,9 @@ TEST(Relocalize, AnEmptyMapHasNoCandidate) {
   EXPECT_FALSE(result.camera_from_world.has_value());
 }
 
-// ORB-SLAM2 as released adds what an earlier query left with a neighbor (mRelocScore) where the
-// neighbor shares words but not enough of them: its answers depend on the order of the queries.
+// As released, ORB-SLAM2 adds the score that an earlier query left in a neighbor (mRelocScore) if
+// the neighbor shares words, but not enough of them: its answers depend on the order of the
+// queries.
 /// A keyframe with words 1 to 4 and its neighbor with 4 to 7.
 Map map_of_neighbors() {
   constexpr std::uint32_t kShared = 20;  // landmarks
@@ -127,8 +129,9 @@ TEST(StaleScores, OfNeighborsAreThoseOfEarlierQueries) {
   const auto score = [&](StaleScores* released) {
     return select_keyframes(map, near_first, config, released).candidates.at(0).score;
   };
-  // Four words of one's own share each: similarity 1 with the first, 1/4 with the second, which
-  // shares one word of four; the second query shares three of four with the second keyframe.
+  // All four words have the same weight. The first query has a similarity of 1 with the first
+  // keyframe and of 1/4 with the second one, with which it shares one word of four; the second
+  // query shares three of four words with the second keyframe.
   EXPECT_DOUBLE_EQ(score(nullptr), 1.25);
   StaleScores released;
   EXPECT_DOUBLE_EQ(score(&released), 1.0) << "nothing was ever computed for the neighbor";
@@ -170,7 +173,7 @@ TEST(StaleScores, AreCountedByTheQueryThatLeftThem) {
 
 TEST(StaleScores, ThatAreClearedAreThoseOfAFirstQuery) {
   Map map = map_of_neighbors();
-  Keyframe other;  // similarity 0.8: more than beta of 1, not of 1.25
+  Keyframe other;  // similarity 0.8: above beta times 1, but not above beta times 1.25
   other.words.vector = vector_of({}, {1, 2, 3, 4, 8});
   map.add(std::move(other));
   const Features features;
@@ -192,7 +195,7 @@ TEST(StaleScores, ThatAreClearedAreThoseOfAFirstQuery) {
   EXPECT_EQ(candidates(NeighborScores::kAsReleased), 2);
 }
 
-/// A keyframe and a frame from beside it that sees the same points without noise.
+/// A keyframe, and a frame from a nearby place that sees the same points without noise.
 struct MappedViews {
   static constexpr std::uint32_t kPoints = 60;
   const Camera camera;
@@ -201,8 +204,8 @@ struct MappedViews {
   Features features;
   WordIndex words;
 
-  /// @param lying  whether the frame's keypoint of a point is 60 px away from where it should be
-  /// @param same_word  whether it has the word of the keyframe's
+  /// @param lying  whether the frame's keypoint of a point is 60 px from its true place
+  /// @param same_word  whether that keypoint has the same word as the keyframe's
   explicit MappedViews(const std::function<bool(std::uint32_t)>& lying,
                        const std::function<bool(std::uint32_t)>& same_word = {}) {
     const auto keypoint = [&](const Eigen::Vector3d& p) {
@@ -246,7 +249,8 @@ struct MappedViews {
 
 constexpr auto kBoth = {Acceptance::kOurs, Acceptance::kOrbSlam2};
 
-/// Two rooms alike, 10 m apart; a frame of the first. `less` points of the copy are missing.
+/// Two identical rooms, 10 m apart, and a frame from the first. `less` points are missing in the
+/// copy.
 struct RoomAndCopy : MappedViews {
   const SE3 to_copy = SE3::exp((Vector6d() << 10, 0, 0, 0, 0, 0).finished());
   explicit RoomAndCopy(std::uint32_t less) : MappedViews([](std::uint32_t) { return false; }) {
@@ -277,7 +281,7 @@ TEST(Relocalize, RefusesAPlaceThatHasARival) {
     EXPECT_EQ(refused.stage, RelocalizationStage::kInliers);
     EXPECT_FALSE(refused.camera_from_world);
   }
-  // The copy has 54 of 60.
+  // The copy has 54 of 60 points.
   EXPECT_EQ(RoomAndCopy(6).find_place(0.9).stage, RelocalizationStage::kInliers);
   const auto clear = RoomAndCopy(6).find_place(0.91);
   EXPECT_EQ(clear.stage, RelocalizationStage::kVerified);
@@ -299,8 +303,8 @@ TEST(Relocalize, PassesOverPlacesThatAreImpossible) {
   EXPECT_FALSE(nowhere.camera_from_world);
 }
 
-// The first feature and the last may lie. What is found is each true one, no other, and the exact
-// pose.
+// The first and the last feature may be false. Relocalization finds every true one, no others, and
+// the exact pose.
 TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
   constexpr std::uint32_t kPoints = MappedViews::kPoints;
   for (const Acceptance acceptance : kBoth)
@@ -319,7 +323,7 @@ TEST(Relocalize, FindsEachTrueLandmarkAndTheExactPose) {
     }
 }
 
-// 16 points share their words, the pose of these finds the others.
+// 16 points share their words; the pose computed from these finds the others.
 TEST(Relocalize, BothAcceptancesSearchOnByThePose) {
   for (const Acceptance acceptance : kBoth) {
     const MappedViews views([](std::uint32_t) { return false; },
@@ -342,7 +346,8 @@ TEST(Relocalize, TheFirstSearchReachesAsFarAsItsRadius) {
   EXPECT_EQ(views.find(Acceptance::kOurs, 1).stage, RelocalizationStage::kInliers);
 }
 
-// The first of 30 matches by words lie. Ours needs ten true ones, ORB-SLAM2 half of all.
+// The first 10 or 16 of 30 matches by words are false. Our acceptance needs ten true ones,
+// ORB-SLAM2's half of all.
 TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
   const auto stage = [](std::uint32_t liars, Acceptance acceptance) {
     return MappedViews([=](std::uint32_t i) { return i < liars; },
@@ -352,7 +357,7 @@ TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
   };
   EXPECT_EQ(stage(10, Acceptance::kOrbSlam2), RelocalizationStage::kVerified);
   EXPECT_EQ(stage(16, Acceptance::kOrbSlam2), RelocalizationStage::kPnp);
-  // 44 true ones are too few for anybody, but ours comes as far as counting them.
+  // 44 true matches are too few for either, but ours gets as far as counting them.
   EXPECT_EQ(stage(16, Acceptance::kOurs), RelocalizationStage::kInliers);
 }
 
@@ -387,7 +392,8 @@ TEST(TryAlone, KeepsOnlyTheMatchesThatAreAllowed) {
   EXPECT_EQ(first(55).inliers, 55);
 }
 
-// No keypoint shares a word with the keyframe: by words there is no match, around the pose all.
+// No keypoint shares a word with the keyframe: there is no match by words, but all match around the
+// pose.
 TEST(TryAlone, AGivenPoseNeedsNoMatchByWords) {
   const MappedViews views([](std::uint32_t) { return false; }, [](std::uint32_t) { return false; });
   EXPECT_EQ(alone(views).stage, RelocalizationStage::kMatches);
@@ -398,7 +404,7 @@ TEST(TryAlone, AGivenPoseNeedsNoMatchByWords) {
   EXPECT_EQ(alone(views, {.camera_from_world = turned}).stage, RelocalizationStage::kInliers);
 }
 
-// What a search adds counts for ORB-SLAM2 only if it completes the 50.
+// For ORB-SLAM2, the matches that a search adds count only if they bring the total to 50.
 TEST(Relocalize, OrbSlam2GivesUpWhereASearchCannotReachFifty) {
   for (const auto& [liars, stage] : {std::pair{10U, RelocalizationStage::kVerified},
                                      std::pair{11U, RelocalizationStage::kInliers}}) {

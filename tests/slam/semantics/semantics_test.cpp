@@ -19,8 +19,8 @@ AugmentedVector vector_of(std::vector<Label> labels, std::vector<std::uint32_t> 
                           gamma, kUnitEta);
 }
 
-// Worked by hand: labels {2, 2, void, 7} and words {5, 5, 9, 9} with gamma 0.5 and eta 1 for word
-// 5, 3 for word 9. Weights: label 2: 0.5 * 2 = 1, label 7: 0.5, word 5: 2, word 9: 6; sum 9.5.
+// Worked out by hand: labels {2, 2, void, 7} and words {5, 5, 9, 9} with gamma 0.5 and eta 1 for
+// word 5, 3 for word 9. Weights: label 2: 0.5 * 2 = 1, label 7: 0.5, word 5: 2, word 9: 6; sum 9.5.
 TEST(AugmentedVector, IsEquationOne) {
   const std::vector<Label> labels{2, 2, kNoLabel, 7};
   const std::vector<std::uint32_t> words{5, 9, 5, 9};
@@ -40,7 +40,7 @@ TEST(AugmentedVector, ZeroGammaLeavesNoLabelMember) {
 }
 
 TEST(GammaForLabelMass, GivesTheWishedMassOnAverage) {
-  // Of unit words: n labels and w words have the mass gamma n / (gamma n + w).
+  // With words of weight 1, n labels and w words have the label mass gamma n / (gamma n + w).
   const auto share = [](int labels, int words, double gamma) {
     std::vector<Label> l(static_cast<std::size_t>(labels), 3);
     std::vector<std::uint32_t> w;
@@ -55,7 +55,7 @@ TEST(GammaForLabelMass, GivesTheWishedMassOnAverage) {
     EXPECT_NEAR((share(4, 12, gamma) + share(1, 30, gamma) + share(0, 9, gamma)) / 3, wished, 1e-9)
         << wished;
   }
-  // One of three vectors has no labels: they never hold more than two thirds.
+  // One of the three vectors has no labels, so the mean is at most two thirds.
   EXPECT_NEAR(gamma_for_label_mass(three, 0.9, 1000), 1000, 1e-6);
   EXPECT_EQ(gamma_for_label_mass(std::vector<double>{0, 0}, 0.1, 1000), 0);
   EXPECT_EQ(gamma_for_label_mass({}, 0.1, 1000), 0);
@@ -106,10 +106,10 @@ TEST(SemanticDistance, IsEquationTwo) {
   EXPECT_FALSE(labels_disagree(kNoLabel, kNoLabel, VoidPolicy::kIsALabel));
 }
 
-// Six keyframes worked by hand. n: 0, 10, 8, 9, 10, 2. alpha 0.8: n must exceed 8, so keyframes 1,
-// 3, 4 stay (2 has exactly 8: strict). Neighborhoods {1, 3}, {3, 1}, {4, 5}; similarities 1: 0.5,
-// 3: 0.2, 4: 0.35, 5: 0.4. Keyframes 1 and 3 both choose 1 with a = 0.7; keyframe 4 chooses 5 with
-// a = 0.75. beta 0.75: a must exceed 0.5625: both stay, 5 first.
+// Six keyframes worked out by hand. n: 0, 10, 8, 9, 10, 2. alpha 0.8: n must exceed 8, so keyframes
+// 1, 3, 4 stay (2 has exactly 8: strict). Neighborhoods {1, 3}, {3, 1}, {4, 5}; similarities 1:
+// 0.5, 3: 0.2, 4: 0.35, 5: 0.4. Keyframes 1 and 3 both choose 1 with a = 0.7; keyframe 4 chooses 5
+// with a = 0.75. beta 0.75: a must exceed 0.5625: both stay, 5 first.
 TEST(SelectCandidates, IsAlgorithmOne) {
   const std::vector<int> keyframes{0, 1, 2, 3, 4, 5};
   const int n[] = {0, 10, 8, 9, 10, 2};
@@ -153,8 +153,8 @@ TEST(SelectCandidates, ASharedBestIsKeptOnceWithItsLargestSum) {
   EXPECT_DOUBLE_EQ(selection.candidates[0].score, 1.6);
 }
 
-// Of neighbors that are equally similar equation 5 takes the least id, in whatever order they
-// come, itself among them.
+// Equation 5 chooses the smallest id among equally similar neighbors, whatever their order; the
+// keyframe itself is one of them.
 TEST(SelectCandidates, OfEquallySimilarNeighborsTheLeastIsTaken) {
   const std::vector<int> keyframes{5};
   for (std::vector<int> neighbors : {std::vector{5, 7, 3, 4}, {3, 4, 5, 7}, {7, 4, 3, 5}}) {
@@ -167,8 +167,8 @@ TEST(SelectCandidates, OfEquallySimilarNeighborsTheLeastIsTaken) {
   }
 }
 
-// A keyframe whose neighborhood is like nothing at all stands for itself or for its least
-// neighbor, and equation 6 drops it beside any that is.
+// A keyframe whose neighborhood has no similarity at all chooses itself or its smallest neighbor,
+// and equation 6 drops that choice if any other keyframe has some similarity.
 TEST(SelectCandidates, AScoreOfNothingIsDropped) {
   const std::vector<int> keyframes{2, 3};
   const auto selection = select_candidates(

@@ -17,7 +17,7 @@ using testing_support::FeatureWorld;
 
 constexpr Stamp kStep_ns = 33'333'333;
 
-/// A hand's path at 30 Hz, in a world whose z is up.
+/// The path of a handheld camera at 30 Hz, in a world whose z is up.
 Trajectory by_hand(std::size_t frames) {
   Trajectory path;
   for (std::size_t i = 0; i < frames; ++i) {
@@ -30,7 +30,7 @@ Trajectory by_hand(std::size_t frames) {
   return path;
 }
 
-/// The filter, fed with true poses that err by 2 mm and 2 mrad.
+/// The filter, given true poses with errors of 2 mm and 2 mrad.
 struct Fed {
   Trajectory path = by_hand(400);
   std::vector<ImuReading> imu = imu_along(path, {}, RandomStream(7)).readings;
@@ -73,7 +73,7 @@ TEST(InertialMotion, LearnsVelocityGravityAndTheGyroscopesBias) {
   EXPECT_LT((fed.motion.turn_bias_rad_per_s - bias).norm(), 0.2 * bias.norm());
 }
 
-// Without any image for a second, and for three: the error is what the filter says.
+// Without any image for one second, and for three: the error matches the filter's covariance.
 TEST(InertialMotion, CarriesThePoseAcrossABlindSpell) {
   for (const std::size_t blind : {30U, 90U}) {
     Fed fed;
@@ -108,8 +108,8 @@ TEST(InertialMotion, AGapInTheReadingsEndsIt) {
   EXPECT_FALSE(fed.motion.advance({}, fed.path[10].stamp_ns, fed.path[20].stamp_ns));
 }
 
-/// A walk through two rooms; the camera sees nothing for a second of its first look around. The
-/// row of rooms is level.
+/// A walk through two rooms; the camera sees nothing for a second of its first full turn. The row
+/// of rooms is level.
 TEST(Imu, CarriesTheMapAcrossABlindSpell) {
   static const FeatureWorld row(2500, 400);
   static const auto vocabulary = std::make_shared<const Vocabulary>(

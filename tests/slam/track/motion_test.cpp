@@ -50,14 +50,15 @@ TEST(Motion, UnseenItGrowsLessSureFasterAndFaster) {
     }
     before = sigma;
   }
-  // One step of 0.2 s is six of a thirtieth.
+  // One step of 0.2 s equals six steps of a thirtieth of a second.
   Motion six = motion;
   for (int i = 0; i < 6; ++i) six = six.after(kFrame_s);
   EXPECT_LT((six.pose_covariance - motion.after(6 * kFrame_s).pose_covariance).norm(), 1e-12);
 }
 
 TEST(Motion, ItsCovarianceIsThatOfItsErrors) {
-  // A camera that is pushed at random, as hard as the filter thinks, seen with noise that changes.
+  // A camera with random accelerations of the size that the filter assumes, observed with varying
+  // noise.
   constexpr int kRuns = 200, kFrames = 40;
   const double shift = std::sqrt(kFrame_s / 30), turn = std::sqrt(9 * kFrame_s / 30);
   double squared = 0;
@@ -72,7 +73,8 @@ TEST(Motion, ItsCovarianceIsThatOfItsErrors) {
       for (int k = 0; k < 6; ++k) {
         const auto axis = static_cast<std::uint64_t>(k);
         const double push = (k < 3 ? shift : turn) * draws.normal(axis);
-        // What white acceleration leaves after one step: half of it, and an equal part apart.
+        // The displacement by white acceleration in one step: half of the velocity change, and an
+        // independent part of the same origin.
         pose[k] += kFrame_s * (velocity[k] + 0.5 * push) +
                    kFrame_s / std::sqrt(12.0) * (k < 3 ? shift : turn) * draws.normal(6 + axis);
         velocity[k] += push;
@@ -85,7 +87,8 @@ TEST(Motion, ItsCovarianceIsThatOfItsErrors) {
     const Vector6d error = pose - best;
     squared += error.dot(motion.pose_covariance.llt().solve(error)) / kRuns;
   }
-  // Chi-square of 6 degrees of freedom: mean 6, and of 200 such the mean is off by 0.245.
+  // Chi-square with 6 degrees of freedom has a mean of 6; the mean of 200 samples has a standard
+  // error of 0.245.
   EXPECT_NEAR(squared, 6, 3 * 0.245);
 }
 
@@ -101,7 +104,7 @@ TEST(Motion, WhatIsUnsureAlongOneAxisMovesItAlongTheOthers) {
 
 TEST(WorstSigma, IsTheLongestAxisOfEachBlock) {
   Matrix6d covariance = diagonal(0.01, 0.02);
-  covariance(0, 1) = covariance(1, 0) = 0.5e-4;  // axes of sqrt(1.5e-4) and sqrt(0.5e-4)
+  covariance(0, 1) = covariance(1, 0) = 0.5e-4;  // the axes are sqrt(1.5e-4) and sqrt(0.5e-4)
   const PoseSigma sigma = worst_sigma(covariance);
   EXPECT_NEAR(sigma.position_m, std::sqrt(1.5e-4), 1e-12);
   EXPECT_NEAR(sigma.angle_rad, 0.02, 1e-12);

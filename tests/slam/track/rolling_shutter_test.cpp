@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kReadout_s = 0.0261;
 
-/// A camera that turns by 1.5 rad/s and goes at 0.5 m/s.
+/// The velocity of a camera that turns at 1.5 rad/s and moves at 0.5 m/s.
 Vector6d velocity() {
   Vector6d twist;
   twist << 0.3, -0.2, 0.35, 0.9, 1.1, -0.4;
   return twist;
 }
 
-/// The keypoint of a point (in the camera of the stamp) whose row is read out while the camera
-/// moves: found by going to and fro between row and moment.
+/// The keypoint of a point (in the camera at the timestamp) whose row is read out while the camera
+/// moves, found by iterating between row and time.
 Keypoint rolled(const Camera& camera, const Eigen::Vector3d& point) {
   double after_s = 0;
   Eigen::Vector3d seen = point;
@@ -47,12 +47,13 @@ TEST(Straighten, PutsPointsWhereTheStampSawThem) {
     EXPECT_NEAR(k.v_px, v_px, 1e-3);
     EXPECT_NEAR(k.depth_m, depth_m, 1e-5);
   }
-  EXPECT_GT(farthest_px, 8.0);  // there was something to mend
+  EXPECT_GT(farthest_px, 8.0);  // there was something to correct
 }
 
 TEST(Straighten, WithoutDepthTheTurnAloneIsKnown) {
   const Camera camera;
-  Keypoint k = rolled(camera, camera.unproject(500, 450, 1e4));  // so far off, shifting is nothing
+  Keypoint k =
+      rolled(camera, camera.unproject(500, 450, 1e4));  // so far away that shifting has no effect
   k.depth_m = 0;
   straighten({&k, 1}, camera, velocity(), kReadout_s);
   EXPECT_NEAR(k.u_px, 500, 0.01);

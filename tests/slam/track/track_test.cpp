@@ -12,9 +12,9 @@
 namespace mh {
 namespace {
 
-/// One keyframe at the origin that sees points behind the whole image, 2 to 4 m away, and the
-/// same view again with corners out of place by half a pixel and disparity as far as the camera's
-/// noise model says. The camera has not moved.
+/// One keyframe at the origin that sees points all over the image, 2 to 4 m away, and the same view
+/// again with corner noise of half a pixel and disparity noise from the camera's noise model. The
+/// camera has not moved.
 struct View {
   Camera camera;
   SlamConfig config;
@@ -83,7 +83,7 @@ TEST(OptimizeMatches, PassingPointsHoldAPoseThatANarrowStripOfLandmarksLetsSlip)
     ASSERT_TRUE(alone && together);
     alone_m += alone->camera_from_world.translation().norm() / kViews;
     together_m += together->camera_from_world.translation().norm() / kViews;
-    // They support the pose, but are no landmarks.
+    // They support the pose, but are not landmarks.
     for (std::size_t i = 0; i < strip.size(); ++i)
       if (!strip[i].valid()) {
         EXPECT_FALSE(together->landmarks[i].valid());
@@ -105,7 +105,7 @@ TEST(OptimizeMatches, APassingPointGivesWayToTheLandmarkOfItsFeature) {
   EXPECT_EQ(with->camera_from_world.translation(), without->camera_from_world.translation());
 }
 
-/// A keyframe without anything to be seen yet: at x_m, turned by some angle from looking along z.
+/// Adds a keyframe that has no landmarks yet, at x_m and rotated by an angle from the z direction.
 KeyframeId add_keyframe(Map& map, double x_m, double turn_rad = 0) {
   Keyframe keyframe;
   const Eigen::Matrix3d turn =
@@ -116,8 +116,8 @@ KeyframeId add_keyframe(Map& map, double x_m, double turn_rad = 0) {
   return map.add(std::move(keyframe));
 }
 
-// Nobody shares a landmark: what counts is place and heading, both limits included, the nearest
-// first and the earliest of equals.
+// No keyframe shares a landmark: place and heading decide, including both limits; the nearest is
+// first, and the earliest of equals.
 TEST(LocalMap, HoldsTheKeyframesThatStandNearAndLookAlike) {
   const Camera camera;
   SlamConfig config;
@@ -139,8 +139,8 @@ TEST(LocalMap, HoldsTheKeyframesThatStandNearAndLookAlike) {
   EXPECT_TRUE(local.landmarks.empty());
 }
 
-// At most half are those that share landmarks with the frame, most first; up to three quarters what
-// stands near; the rest neighbors.
+// At most half of the local map are keyframes that share landmarks with the frame, those that share
+// the most first; up to three quarters include keyframes nearby; the rest are neighbors.
 TEST(LocalMap, HasAQuarterForEachThatDoesNotShareWithTheFrame) {
   const Camera camera;
   SlamConfig config;

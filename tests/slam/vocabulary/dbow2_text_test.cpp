@@ -23,9 +23,9 @@ Descriptor drawn_descriptor(RandomStream random) {
   return {random.bits(0), random.bits(1), random.bits(2), random.bits(3)};
 }
 
-// A full tree in DBoW2's text format. Its own writer numbers the children of a node one after the
-// other and then goes into the first of them: so does this. The id of a node is the number of its
-// line after the first.
+// A full tree in DBoW2's text format. DBoW2's own writer numbers the children of a node one after
+// the other and then descends into the first of them; so does this one. The id of a node is the
+// number of its line after the first.
 class TextWriter {
  public:
   TextWriter(int k, int depth) : k_(k), depth_(depth) {
@@ -36,7 +36,7 @@ class TextWriter {
   Descriptor center(int id) const { return drawn_descriptor(RandomStream(1).fork(id)); }
   float weight(int id) const { return static_cast<float>(id) / 7; }
 
-  // The leaf that a walk through the tree as written ends at.
+  // The leaf where a walk through the tree as written ends.
   int walk(const Descriptor& d) const {
     int node = 0;
     while (!children_.at(node).empty()) {
@@ -83,13 +83,13 @@ TEST(Dbow2Text, WalksTheSameTreeToTheSameWeight) {
     const int leaf = written.walk(d);
     const WordId word = v.quantize(d).word;
     EXPECT_EQ(v.idf(word), written.weight(leaf));
-    EXPECT_EQ(leaf_of.try_emplace(word, leaf).first->second, leaf);  // one word, one leaf
+    EXPECT_EQ(leaf_of.try_emplace(word, leaf).first->second, leaf);  // one leaf for each word
   }
   EXPECT_GT(leaf_of.size(), 300U);
 }
 
 TEST(Dbow2Text, BytesOfADescriptorStandInTheOrderOfOpenCv) {
-  // Row byte 0 holds tests 0 to 7, the lowest bit first.
+  // Byte 0 of a row contains tests 0 to 7, the lowest bit first.
   std::string zeros, ones;
   for (int b = 1; b < 32; ++b) zeros += " 0", ones += " 255";
   const VocabularyTree tree =
@@ -110,7 +110,7 @@ TEST(Dbow2Text, LeavesMayStandAtAnyLevelAndLinesEndAsInDos) {
 }
 
 TEST(Dbow2Text, IsWrittenAsItsReadersExpectIt) {
-  // By hand: a root with a word and a node of two words, as DBoW2's TemplatedVocabulary has it.
+  // By hand: a root with a word and a node of two words, written as by DBoW2's TemplatedVocabulary.
   VocabularyTree tree;
   tree.branching = tree.depth = 2;
   const Descriptor a{1, 0, 0, 0}, b{0x0201, 0, 0, 0}, c{0, 0, 0, 0xffULL << 56U}, d{2, 0, 0, 0};
@@ -184,21 +184,21 @@ TEST(Dbow2Text, FaultsAreToldWithTheirLine) {
   const std::string leaf = "0 1" + d + "32 0.5\n", inner = "0 0" + d + "32 0\n";
   ASSERT_EQ(fault_of("2 2 0 0\n" + leaf), "no error");
 
-  EXPECT_EQ(fault_of(" \n"), "t.txt: holds nothing");
+  EXPECT_EQ(fault_of(" \n"), "t.txt: is empty");
   EXPECT_EQ(fault_of("10 6 0 0\n"), "t.txt:1: holds no node");
-  EXPECT_EQ(fault_of("10 6 0\n" + leaf), "t.txt:1: line ends where weighting should stand");
-  EXPECT_EQ(fault_of("10 6 0 0 9\n" + leaf), "t.txt:1: line goes on where it should end: '9'");
+  EXPECT_EQ(fault_of("10 6 0\n" + leaf), "t.txt:1: line ends where weighting is expected");
+  EXPECT_EQ(fault_of("10 6 0 0 9\n" + leaf), "t.txt:1: line continues where it should end: '9'");
   EXPECT_EQ(fault_of("1 6 0 0\n" + leaf), "t.txt:1: k: 1 is not from 2 to 20");
   EXPECT_EQ(fault_of("99999999999 6 0 0\n" + leaf), "t.txt:1: k: 99999999999 is not from 2 to 20");
   EXPECT_EQ(fault_of("10 11 0 0\n" + leaf), "t.txt:1: L: 11 is not from 1 to 10");
   EXPECT_EQ(fault_of("10 6 7 0\n" + leaf), "t.txt:1: scoring: 7 is not from 0 to 5");
   EXPECT_EQ(fault_of("10 6 0 4\n" + leaf), "t.txt:1: weighting: 4 is not from 0 to 3");
-  EXPECT_EQ(fault_of("ten 6 0 0\n" + leaf), "t.txt:1: k: 'ten' is not a number of this kind");
+  EXPECT_EQ(fault_of("ten 6 0 0\n" + leaf), "t.txt:1: k: 'ten' is not a valid number here");
 
   const std::string head = "2 2 0 0\n" + leaf;
   EXPECT_EQ(fault_of(head + "3 1" + d + "32 0.5\n"),
             "t.txt:3: the parent: there is no node 3 before this line");
-  EXPECT_EQ(fault_of(head + "2 1" + d + "32 0.5\n"),  // itself
+  EXPECT_EQ(fault_of(head + "2 1" + d + "32 0.5\n"),  // its parent is itself
             "t.txt:3: the parent: there is no node 2 before this line");
   EXPECT_EQ(fault_of(head + "-1 1" + d + "32 0.5\n"),
             "t.txt:3: the parent: there is no node -1 before this line");
@@ -211,18 +211,17 @@ TEST(Dbow2Text, FaultsAreToldWithTheirLine) {
   EXPECT_EQ(fault_of(head + "0 1" + d + "256 0.5\n"),
             "t.txt:3: a byte of the descriptor: 256 is not from 0 to 255");
   EXPECT_EQ(fault_of(head + "0 1" + d + "3.5 0.5\n"),
-            "t.txt:3: a byte of the descriptor: '3.5' is not a number of this kind");
+            "t.txt:3: a byte of the descriptor: '3.5' is not a valid number here");
   EXPECT_EQ(fault_of(head + "0 1" + d + "\n"),
-            "t.txt:3: line ends where a byte of the descriptor should stand");
-  EXPECT_EQ(fault_of(head + "0 1" + d + "32\n"),
-            "t.txt:3: line ends where the weight should stand");
+            "t.txt:3: line ends where a byte of the descriptor is expected");
+  EXPECT_EQ(fault_of(head + "0 1" + d + "32\n"), "t.txt:3: line ends where the weight is expected");
   EXPECT_EQ(fault_of(head + "0 1" + d + "32 0.5 7\n"),
-            "t.txt:3: line goes on where it should end: '7'");
+            "t.txt:3: line continues where it should end: '7'");
   EXPECT_EQ(fault_of(head + "0 1" + d + "32 nan\n"),
             "t.txt:3: the weight: nan is not a number from 0");
   EXPECT_EQ(fault_of(head + "0 1" + d + "32 -0.5\n"),
             "t.txt:3: the weight: -0.5 is not a number from 0");
-  EXPECT_EQ(fault_of("2 2 0 0\n\n" + leaf), "t.txt:2: line ends where the parent should stand");
+  EXPECT_EQ(fault_of("2 2 0 0\n\n" + leaf), "t.txt:2: line ends where the parent is expected");
 }
 
 TEST(Dbow2Text, CutShortAnywhereIsRefusedOrHoldsFewerWords) {

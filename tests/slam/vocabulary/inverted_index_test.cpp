@@ -8,7 +8,7 @@
 namespace mh {
 namespace {
 
-// A view of 5 labels at most and some 60 words out of 200, some of them several times.
+// A view with at most 5 labels and about 60 words out of 200, some of them several times.
 AugmentedVector view(std::uint64_t seed) {
   const RandomStream random(seed);
   std::vector<Label> labels;
@@ -42,7 +42,7 @@ TEST(InvertedIndex, EqualsTheSimilarityToEachKeyframeBitForBit) {
   EXPECT_EQ(index.size(), held.size());
   for (std::uint64_t q = 1000; q < 1020; ++q)
     EXPECT_EQ(index.query(view(q)), by_brute_force(view(q), held));
-  // A view is as alike to itself as can be.
+  // A view has the largest possible similarity to itself.
   for (const auto& score : index.query(view(0)))
     if (score.keyframe.value == 0) {
       EXPECT_NEAR(score.similarity, 1.0, 1e-12);
@@ -57,7 +57,7 @@ TEST(InvertedIndex, NothingSharedIsNotListed) {
   index.add(KeyframeId{4}, words);
   index.add(KeyframeId{6}, labels);
   EXPECT_TRUE(index.query({}).empty());
-  // Label 3 is not word 3.
+  // Label 3 and word 3 are different.
   ASSERT_EQ(index.query(labels).size(), 1U);
   EXPECT_EQ(index.query(labels)[0], (InvertedIndex::Score{KeyframeId{6}, 1, 0, 1.0}));
   EXPECT_EQ(index.query(words)[0], (InvertedIndex::Score{KeyframeId{4}, 0, 2, 1.0}));
@@ -79,7 +79,7 @@ TEST(InvertedIndex, TheOrderOfComingAndGoingChangesNothing) {
   const AugmentedVector query = view(99);
   EXPECT_EQ(forwards.query(query), by_brute_force(query, left));
   EXPECT_EQ(backwards.query(query), forwards.query(query));
-  // And back again: a keyframe whose erasure was undone.
+  // A keyframe whose erasure was undone is added again.
   forwards.add(KeyframeId{1}, view(1));
   left.insert(left.begin() + 1, 1);
   EXPECT_EQ(forwards.query(query), by_brute_force(query, left));

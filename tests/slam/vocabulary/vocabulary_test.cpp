@@ -25,7 +25,7 @@ Descriptor random_descriptor(RandomStream random) {
   return {random.bits(0), random.bits(1), random.bits(2), random.bits(3)};
 }
 
-// A copy with `flips` bits changed (or fewer, where a bit is drawn twice).
+// A copy with `flips` bits changed, or fewer if a bit is drawn twice.
 Descriptor near(Descriptor d, int flips, RandomStream random) {
   for (int i = 0; i < flips; ++i) {
     const std::uint64_t bit = random.below(static_cast<std::uint64_t>(i), 256);
@@ -50,7 +50,7 @@ std::vector<std::vector<Descriptor>> scattered(int images, int per_image, std::u
 }
 
 TEST(Train, SeparatesWellSeparatedClustersExactly) {
-  // Random centers lie some 128 bits apart, members within 20 of theirs.
+  // Random centers are about 128 bits apart, members at most 20 bits from their center.
   const auto images = scattered(10, 100, 6, 1);
   const Vocabulary v =
       Vocabulary::train(images, {.branching = 6, .depth = 1, .max_iterations = 20, .seed = 3});
@@ -69,7 +69,8 @@ TEST(Train, SeparatesWellSeparatedClustersExactly) {
 }
 
 TEST(Train, MediansAreBitwiseMajorities) {
-  // Two groups of three; each group's majority is its center, though no member equals it.
+  // Two groups of three; each group's center is the bitwise majority of its members, although no
+  // member equals it.
   const RandomStream random(5);
   std::vector<std::vector<Descriptor>> images(1);
   std::vector<Descriptor> centers;
@@ -77,13 +78,13 @@ TEST(Train, MediansAreBitwiseMajorities) {
     centers.push_back(random_descriptor(random.fork(c)));
     for (std::uint64_t m = 0; m < 3; ++m) {
       Descriptor d = centers.back();
-      d[m] ^= 0xffULL << (8 * c);  // each member differs elsewhere
+      d[m] ^= 0xffULL << (8 * c);  // each member differs in a different place
       images[0].push_back(d);
     }
   }
   const Vocabulary v = Vocabulary::train(images, {.branching = 2, .depth = 1, .seed = 1});
   ASSERT_EQ(v.size(), 2U);
-  // With centers c0 and c1 the border between the words is where the distances are equal.
+  // With centers c0 and c1, the border between the words is where the distances are equal.
   for (std::uint64_t i = 0; i < 500; ++i) {
     const Descriptor d = random_descriptor(random.fork(100 + i));
     const int to_0 = hamming(d, centers[0]), to_1 = hamming(d, centers[1]);
@@ -96,7 +97,7 @@ TEST(Train, FewDescriptorsBecomeWordsThemselves) {
   const auto images = scattered(1, 9, 9000, 6);
   const Vocabulary v = Vocabulary::train(images, {.branching = 10, .depth = 3});
   ASSERT_EQ(v.size(), 9U);
-  // Depth 1 in effect: quantizing finds the nearest of the nine, checked against brute force.
+  // The depth is effectively 1: quantizing finds the nearest of the nine, checked by brute force.
   for (std::uint64_t i = 0; i < 300; ++i) {
     const Descriptor d = random_descriptor(RandomStream(7).fork(i));
     int best = 257;
@@ -184,7 +185,7 @@ class VocabularyFile : public testing::Test {
   void rewrite(const std::string& bytes) {
     std::ofstream(file_, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));
   }
-  // With its checksum mended, so that what lies behind the checksum is reached.
+  // With a corrected checksum, so that the checks after it are reached.
   static std::string signed_again(std::string bytes) {
     const std::uint64_t sum = XXH3_64bits(bytes.data(), bytes.size() - 8);
     std::memcpy(bytes.data() + bytes.size() - 8, &sum, 8);
@@ -282,12 +283,12 @@ TEST_F(VocabularyFile, SignedNonsenseIsRefusedToo) {
   rewrite(signed_again(fewer_children));
   EXPECT_THAT(message_of_loading(), HasSubstr("not a consistent tree"));
   std::string negative = bytes_;
-  negative[child_counts - 1] = static_cast<char>(0xff);  // of the last weight
+  negative[child_counts - 1] = static_cast<char>(0xff);  // the last byte of the last weight
   rewrite(signed_again(negative));
   EXPECT_THAT(message_of_loading(), HasSubstr("weight"));
 }
 
-// What is mapped stays readable when the name comes to stand for another file.
+// What is mapped remains readable when the name refers to a different file.
 TEST_F(VocabularyFile, StaysWholeWhenTheFileIsReplacedOrRemoved) {
   const Vocabulary loaded = Vocabulary::load(file_);
   Vocabulary::train(scattered(10, 100, 50, 99), {.branching = 4, .depth = 3}).save(file_);

@@ -2,7 +2,7 @@
 // What `modelhouse report` wrote: pieces of data in script files, which assign to one registry.
 // Scripts load from the disk, where a page may not read other files.
 
-/** A column as it was written; words are written once each. */
+/** A column as it was written; each word is written once. */
 interface WrittenColumn {
   key: string;
   title: string;
@@ -30,10 +30,10 @@ export interface Folder {
   runs_of_file: number;
   replays: string[]; // names of runs
   views: string[]; // those of them whose images were recorded
-  first_point: string | null; // of a sweep: where verdicts, tables and figures are
+  first_point: string | null; // the point of a sweep that verdicts, tables and figures show
   arms: { system: string; labels: string }[]; // in the suite's order; labels are "none" if it sees none
   levels: string[];
-  damaged: string[]; // files beside the results
+  damaged: string[]; // files next to the results
 }
 /** One comparison of two systems. */
 export interface Difference {
@@ -143,7 +143,7 @@ declare global {
 
 const waiting = new Map<string, Promise<unknown>>();
 
-/** Loads a piece ("0/runs") and, once it is there, keeps it. */
+/** Loads a piece ("0/runs") and keeps it once it is loaded. */
 export function load<T>(piece: string): Promise<T> {
   const here = globalThis.modelhouse?.[piece];
   if (here !== undefined) return Promise.resolve(here as T);
@@ -240,7 +240,7 @@ export class Table {
 export function shownNumber(value: number | null, unit: string, decimals: number): string {
   if (value === null) return "";
   const shown = unit === "%" ? 100 * value : value;
-  // Nothing that is not zero is shown as zero.
+  // A value other than zero must not be shown as zero.
   if (shown !== 0 && Math.abs(shown) < 0.5 * 10 ** -decimals) return shown.toPrecision(1);
   return shown.toFixed(decimals);
 }

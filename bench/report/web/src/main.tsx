@@ -39,7 +39,7 @@ function App(): JSX.Element {
     document.title = `${found?.[1] ?? route.page[2] ?? "Report"}: ${names}`;
   }, [path]);
   useEffect(() => {
-    // A phone shows a part of the navigation: the page that is open is in it.
+    // A phone shows only part of the navigation: this part must contain the open page.
     document.querySelector("nav [aria-current]")?.scrollIntoView({ inline: "center", block: "nearest" });
   }, [path]);
   const first = useRef(true);

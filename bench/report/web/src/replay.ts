@@ -55,7 +55,7 @@ function cameraShape(size: number, color: string): LineSegments {
   return new LineSegments(new BufferGeometry().setFromPoints(parts), new LineBasicMaterial({ color }));
 }
 
-/** Places an object at a moment of a path, between the poses before and after it. */
+/** Places an object on a path at a time, between the poses before and after it. */
 function place(object: Object3D, path: Path, ms: number): void {
   let after = path.ms.findIndex((t) => t >= ms);
   if (after < 0) after = path.ms.length - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page and the script of replays say to each other.
+// What a page and the replay script exchange.
 import type { RunPaths } from "./data";
 
 export interface ReplayData {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a reader is stands behind the # of the address, so that every place has a link.
+// The reader's place is in the address, after the #, so that every place has a link.
 import { useEffect, useState } from "preact/hooks";
 
 export interface Route {
@@ -28,7 +28,7 @@ export function linkTo(page: string[], at: Record<string, string | number> = {})
   return `#/${page.map(encodeURIComponent).join("/")}${query === "" ? "" : `?${query}`}`;
 }
 
-/** Notes something about the place without a new step in the history; "" removes it. */
+/** Notes something about the place without adding a step to the history; "" removes it. */
 export function note(changes: Record<string, string>): void {
   const { page, at } = currentRoute();
   for (const [key, value] of Object.entries(changes))
@@ -39,8 +39,8 @@ export function note(changes: Record<string, string>): void {
   history.replaceState(null, "", hash);
 }
 
-/** A choice that stands in the address, as long as it is not the first one: so it has a link, and
- * the way back leads to it. @param key  unique on its page */
+/** A choice that is kept in the address unless it is the first one, so that it has a link and the
+ * browser's Back button returns to it. @param key  unique on its page */
 export function useNoted(key: string, first: string): [string, (value: string) => void] {
   useRoute(); // drawn again when a link is followed
   const [, redraw] = useState(0);

@@ -9,7 +9,7 @@ function remembered(): Theme | null {
     const word = localStorage.getItem(kKey);
     return word === "light" || word === "dark" ? word : null;
   } catch {
-    return null; // a browser may deny it to files
+    return null; // a browser may deny storage to files
   }
 }
 
@@ -33,7 +33,7 @@ export function toggleTheme(): void {
   try {
     localStorage.setItem(kKey, chosen);
   } catch {
-    // it holds for this page then
+    // then it applies only to this page
   }
   apply();
 }
@@ -56,7 +56,7 @@ const kColors: Record<Theme, string[]> = {
 export const kDashes = ["0", "6 3", "2 3", "8 3 2 3", "1 3", "10 4"];
 export const kSymbols = ["circle", "square", "triangle", "diamond", "star", "cross", "wye"] as const;
 
-/** The color between two of form #rrggbb. */
+/** The color halfway between two colors of the form #rrggbb. */
 function halfWay(a: string, b: string): string {
   const part = (at: number) => Math.round((parseInt(a.slice(at, at + 2), 16) + parseInt(b.slice(at, at + 2), 16)) / 2);
   return `#${[1, 3, 5].map((at) => part(at).toString(16).padStart(2, "0")).join("")}`;
@@ -69,7 +69,7 @@ export function colorOf(index: number): string {
   return index < colors.length ? color : halfWay(color, ink().paper);
 }
 
-/** Ink and paper of charts: as app.css has them, for files that are saved. */
+/** Colors of text and background as in app.css, for charts that are saved as files. */
 export function ink(): { text: string; faint: string; paper: string; grid: string } {
   return theme() === "dark"
     ? { text: "#e8e6e1", faint: "#a9a69f", paper: "#1b1d20", grid: "#3a3d42" }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run saw, as it was recorded: pictures, keypoints, matches.
+// What was recorded of what a run saw: pictures, keypoints, matches.
 
 interface WrittenView {
   frame: number;
@@ -30,7 +30,7 @@ function bytesOf(text: string): DataView {
   return new DataView(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
 }
 
-/** Records of so many bytes each. */
+/** Records of `size` bytes each. */
 function records<T>(text: string, size: number, read: (data: DataView, at: number) => T): T[] {
   const data = bytesOf(text);
   return Array.from({ length: Math.floor(data.byteLength / size) }, (_, i) => read(data, i * size));

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// RFC 4648 backward.
+/// Decodes base64 (RFC 4648).
 std::string bytes_of(const std::string& text) {
   std::string bytes;
   std::uint32_t group = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of an episode that ended in a stated way.
+// How an episode that ended in a given state is judged.
 #include "bench/protocol/episodes/judge.hpp"
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 constexpr double kArrival_m = 1.0;
 
-/// A sofa from x = 6 to 8, y = 4 to 6; 4 m of way from (1, 5).
+/// A sofa from x = 6 to 8 and y = 4 to 6 m; the path to it from (1, 5) is 4 m long.
 EpisodeStart to_the_sofa() {
   return {.index = 3,
           .place_m = {1, 5},
@@ -35,7 +35,7 @@ EpisodeScore judged(const EpisodeEnd& end, std::optional<double> located_s = 2.0
   return score;
 }
 
-/// Says that it has arrived at a place, and knows where it is.
+/// An episode that ended with a reported arrival at a place and a correct belief about the pose.
 EpisodeEnd arrived_at(double x_m, double y_m, double length_m = 5) {
   const Pose2 at{{x_m, y_m}, 0};
   return {.state = NavigatorState::kArrived, .truth = at, .belief = at, .length_m = length_m};
@@ -130,7 +130,7 @@ TEST(Judge, ABeliefIsFalseIfItIsTooFarOffOrTurnedTooMuch) {
   };
   EXPECT_EQ(reason(0, 0), "stuck");
   EXPECT_EQ(reason(0.5, 0), "stuck");
-  EXPECT_EQ(reason(0.51, 0), "false_pose");  // one of the two is enough
+  EXPECT_EQ(reason(0.51, 0), "false_pose");  // one of the two errors is enough
   EXPECT_EQ(reason(-0.51, 0), "false_pose");
   EXPECT_EQ(reason(0, 19.9), "stuck") << "across the full circle";
   EXPECT_EQ(reason(0, 20.1), "false_pose");
@@ -163,7 +163,7 @@ TEST(Judge, EachFailureHasItsReason) {
   EXPECT_EQ(reason(kDriving, 2.0), "time_out");
   EXPECT_EQ(reason(kLooking, 2.0), "time_out") << "lost again";
   EXPECT_EQ(reason(kExploring, {}), "never_relocalized");
-  // A false belief explains all that follows from it.
+  // A false belief is the reason for everything that follows from it.
   EpisodeEnd misled = arrived_at(2, 5);
   misled.belief->place_m.x() = 5.5;
   EXPECT_EQ(judged(misled).reason, "false_pose");

@@ -15,8 +15,8 @@ using Eigen::Vector2d;
 
 constexpr double kReach_m = 1.5;
 
-/// Two rooms of 3 x 2 m at both sides of y = 2 m, with a wall of 10 cm between them that
-/// begins at x = 0. A refrigerator stands flush against its far side.
+/// Two rooms of 3 x 2 m on the two sides of y = 2 m, separated by a 10 cm wall that begins at x =
+/// 0. A refrigerator is flush against the far side of the wall.
 VoxelMap refrigerator_behind_a_wall(int wall_cells) {
   MadeMap made;
   for (int x = 0; x < 60; ++x)
@@ -45,7 +45,7 @@ TEST(KnownMap, AnObjectBehindAWallIsReachedFromItsOwnSide) {
   const Vector2d from_m(0.8, 1.0);
   const auto place_m = place_before(known.grid, away_m, from_m, 0.31, kReach_m);
   ASSERT_TRUE(place_m);
-  EXPECT_GT(place_m->y(), 2.1);  // around the end of the wall
+  EXPECT_GT(place_m->y(), 2.1);  // the path leads around the end of the wall
 }
 
 TEST(KnownMap, NoPlaceIsBeforeAnObjectInAClosedRoom) {

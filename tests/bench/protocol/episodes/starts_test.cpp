@@ -85,8 +85,7 @@ TEST(DrawStarts, AreOnTheFloorAndKnowTheShortestWay) {
   EXPECT_THROW(draw_starts({.goals = {"toilet"}, .starts = 1}, scene, robot), InputError);
 }
 
-/// A bed and a sideboard stand flush against the two sides of a wall of 10 cm; it ends before x = 8
-/// m.
+/// A bed and a sideboard are flush against the two sides of a 10 cm wall that ends before x = 8 m.
 Scene room_with_a_bed_behind_a_wall() {
   Scene scene = test::empty_room();
   const auto add = [&](const char* name, const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
@@ -104,15 +103,15 @@ TEST(DrawStarts, NobodyArrivesThroughAWall) {
   const std::vector<EpisodeStart> starts = draw_starts(
       {.goals = {"bed"}, .starts = 40}, room_with_a_bed_behind_a_wall(), test::pepper());
   const EpisodeStart& start = starts.front();
-  EXPECT_FALSE(is_arrival(start, {4, 4.2}, 1.0));  // 0.9 m away, behind sideboard and wall
+  EXPECT_FALSE(is_arrival(start, {4, 4.2}, 1.0));  // 0.9 m away, behind the sideboard and the wall
   EXPECT_FALSE(is_arrival(start, {2.6, 4.7}, 1.0));
   EXPECT_TRUE(is_arrival(start, {4, 7.9}, 1.0));
-  EXPECT_TRUE(is_arrival(start, {2.6, 5.4}, 1.0));  // beside it, along the wall
+  EXPECT_TRUE(is_arrival(start, {2.6, 5.4}, 1.0));  // beside the bed, along the wall
   EXPECT_FALSE(is_arrival(start, {4, 8.1}, 1.0));
   int behind = 0;
   for (const EpisodeStart& drawn : starts)
     if (drawn.place_m.y() < 5) {
-      ++behind;  // past the end of the wall, then to 1 m beside the bed
+      ++behind;  // around the end of the wall, then to 1 m beside the bed
       const double to_gap_m = (drawn.place_m - Eigen::Vector2d(8, 5)).norm();
       EXPECT_GE(drawn.shortest_m, to_gap_m + 2.0 - 0.1);
     }

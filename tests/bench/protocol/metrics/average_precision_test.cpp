@@ -34,8 +34,9 @@ TEST(AveragePrecision, IsOneForPerfectBoxesAndUnknownWithoutTruth) {
   EXPECT_EQ(average_precision(truths, {}).ap, 0);
 }
 
-// Three truths; by score: right, wrong, right. Precision 1 up to a recall of 1/3 (34 of the 101
-// recalls: 0 to 0.33), 2/3 up to 2/3 (33 of them: 0.34 to 0.66), then 0.
+// Three true boxes; in order of score, the found ones are right, wrong, right. Precision is 1 up to
+// a recall of 1/3 (34 of the 101 recalls: 0 to 0.33), 2/3 up to a recall of 2/3 (33 of them: 0.34
+// to 0.66), then 0.
 TEST(AveragePrecision, InterpolatesAt101Recalls) {
   const std::vector<TruthBox> truths = {truth(0, 0, 50), truth(0, 100, 50), truth(1, 0, 50)};
   const std::vector<ScoredBox> boxes = {found(1, 0, 50, 0.9), found(1, 300, 50, 0.8),
@@ -43,8 +44,8 @@ TEST(AveragePrecision, InterpolatesAt101Recalls) {
   EXPECT_NEAR(average_precision(truths, boxes).ap, (34 * 1.0 + 33 * (2.0 / 3)) / 101, 1e-12);
 }
 
-// A box of 50 px displaced by d overlaps by (50 - d) / (50 + d): 11 px give 0.639, which counts at
-// 0.50, 0.55 and 0.60 alone.
+// A box of 50 px displaced by d has an overlap of (50 - d) / (50 + d): 11 px give 0.639, which
+// counts only at 0.50, 0.55 and 0.60.
 TEST(AveragePrecision, IsTheMeanOverTenOverlaps) {
   const AveragePrecision displaced =
       average_precision(std::vector{truth(0, 0, 50)}, std::vector{found(0, 11, 50, 0.9)});
@@ -55,9 +56,10 @@ TEST(AveragePrecision, IsTheMeanOverTenOverlaps) {
 
 TEST(AveragePrecision, TakesEachTruthOnce) {
   const std::vector<ScoredBox> twice = {found(0, 0, 50, 0.9), found(0, 1, 50, 0.95)};
-  // The second of two is wrong, but comes after the only right one: precision 1 at every recall.
+  // The second of two boxes is wrong, but comes after the only right one: precision 1 at every
+  // recall.
   EXPECT_DOUBLE_EQ(average_precision(std::vector{truth(0, 0, 50)}, twice).ap50, 1);
-  // With a second truth at half the recalls (0 to 0.50): 51 of 101.
+  // With a second true box, precision is 1 at half of the recalls (0 to 0.50): 51 of 101.
   EXPECT_NEAR(average_precision(std::vector{truth(0, 0, 50), truth(0, 500, 50)}, twice).ap50,
               51.0 / 101, 1e-12);
 }
@@ -66,7 +68,7 @@ TEST(AveragePrecision, OfASizeIgnoresTheOthers) {
   const std::vector<TruthBox> truths = {truth(0, 0, 20), truth(0, 100, 50), truth(0, 300, 100)};
   const std::vector<ScoredBox> boxes = {found(0, 100, 50, 0.9), found(0, 0, 20, 0.8)};
   const AveragePrecision ap = average_precision(truths, boxes);
-  EXPECT_DOUBLE_EQ(ap.small, 1);  // the medium box is matched with a truth that does not count
+  EXPECT_DOUBLE_EQ(ap.small, 1);  // the medium box is matched with a true box that does not count
   EXPECT_DOUBLE_EQ(ap.medium, 1);
   EXPECT_DOUBLE_EQ(ap.large, 0);
 }
@@ -90,8 +92,8 @@ TEST(AveragePrecision, KeepsAHundredBoxesOfAnImage) {
   EXPECT_GT(average_precision(std::vector{truth(0, 0, 50)}, boxes).ap, 0);
 }
 
-// 30 images with three classes of boxes at whole pixels, and what pycocotools (cocoapi 8c9bcc3)
-// says of each class: AP, AP50, AP75, small, medium, large.
+// 30 images with three classes of boxes at whole pixels, and the results of pycocotools (cocoapi
+// 8c9bcc3) for each class: AP, AP50, AP75, small, medium, large.
 TEST(AveragePrecision, IsThatOfPycocotools) {
   constexpr std::array<std::array<double, 6>, 3> kTheirs = {
       {{0.23081135298727457, 0.4578608594660631, 0.20078831541679365, 0.08810044914265863,

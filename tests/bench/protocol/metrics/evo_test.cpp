@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our figures against those that `evo` computed for a real estimate on a real sequence. The data
-// lie outside the project; without them the test is skipped.
+// are not part of the project; without them the test is skipped.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -33,7 +33,7 @@ class EvoReference : public ::testing::Test {
     ASSERT_EQ(evo.size(), 7U);
     const auto check = [&](double value, const char* field) {
       const double expected = evo.at(field);
-      // 1e-15 lets evo's exact zeros be a rounding of ours.
+      // 1e-15 allows for a rounding error of ours where evo has an exact zero.
       EXPECT_NEAR(value, expected, 1e-9 * std::abs(expected) + 1e-15) << name << ' ' << field;
     };
     check(ours.rmse, "rmse");

@@ -50,7 +50,7 @@ TEST(ErrorStatistics, WorkedByHand) {
   EXPECT_DOUBLE_EQ(s.median, 2.5);
   EXPECT_DOUBLE_EQ(s.sse, 50.0);
   EXPECT_DOUBLE_EQ(s.rmse, std::sqrt(12.5));
-  EXPECT_DOUBLE_EQ(s.std, std::sqrt(3.5));  // (0 + 4 + 1 + 9) / 4
+  EXPECT_DOUBLE_EQ(s.std, std::sqrt(3.5));  // mean of the squares (0 + 4 + 1 + 9) / 4
   EXPECT_DOUBLE_EQ(s.min, 1.0);
   EXPECT_DOUBLE_EQ(s.max, 6.0);
   EXPECT_EQ(error_statistics({}).count, 0U);
@@ -63,7 +63,8 @@ TEST(MatchByStamp, TakesTheNearestWithinTheLimit) {
   const Trajectory estimate = {at(4 * kMillisecond, 10), at(35 * kMillisecond, 11),
                                at(110 * kMillisecond, 12), at(111 * kMillisecond, 13)};
   const MatchedTrajectories matched = match_by_stamp(truth, estimate);
-  // 4 -> 0; 35 lies between 30 and 40: the earlier; 110 is just near enough to 100, 111 is not.
+  // 4 matches 0; 35 lies between 30 and 40 and matches the earlier; 110 is just near enough to 100,
+  // 111 is not.
   ASSERT_EQ(matched.size(), 3U);
   ASSERT_EQ(matched.estimate.size(), 3U);
   const double truth_x[] = {0, 2, 4};
@@ -75,7 +76,7 @@ TEST(MatchByStamp, TakesTheNearestWithinTheLimit) {
 }
 
 TEST(MatchByStamp, GivesNoPoseTwice) {
-  // Estimates 5 ms apart all have the same nearest truth: only the nearest of them is matched.
+  // Estimates 5 ms apart all have the same nearest true pose: only the nearest of them is matched.
   const Trajectory truth = {at(0, 0), at(100 * kMillisecond, 1), at(200 * kMillisecond, 2),
                             at(300 * kMillisecond, 3)};
   const Trajectory estimate = {at(96 * kMillisecond, 10), at(101 * kMillisecond, 11),
@@ -102,7 +103,7 @@ TEST(Align, RecoversATransformExactly) {
   for (const double scale : {1.0, 0.25}) {
     Similarity moved = kSomewhereElse;
     moved.scale = scale;
-    // truth = moved * estimate; estimates are made by the inverse.
+    // truth = moved * estimate, so the estimate is made with the inverse.
     const Similarity inverse{
         .scale = 1 / scale,
         .rotation = moved.rotation.transpose(),
@@ -115,7 +116,7 @@ TEST(Align, RecoversATransformExactly) {
     EXPECT_LT((found->translation_m - moved.translation_m).norm(), 1e-12);
     const MatchedTrajectories aligned{truth, transformed(*found, matched.estimate)};
     EXPECT_LT(error_statistics(ape_translation_m(aligned)).max, 1e-12);
-    EXPECT_LT(error_statistics(ape_rotation_deg(aligned)).max, 1e-6);  // rad: rounding of log
+    EXPECT_LT(error_statistics(ape_rotation_deg(aligned)).max, 1e-6);  // limited by rounding in log
   }
 }
 
@@ -177,7 +178,8 @@ TEST(Align, HasNoAnswerForPointsOnALine) {
 }
 
 TEST(Ape, WorkedByHand) {
-  // A square; the estimate is shifted by 3-4-0 at one corner and turned by 10 degrees at another.
+  // A square; the estimate is shifted by (3, 4, 0) at one corner and turned by 10 degrees at
+  // another.
   const Trajectory truth = every_second({at(0, 0), at(0, 10), at(0, 10, 10), at(0, 0, 10)});
   const Trajectory estimate =
       every_second({at(0, 0), at(0, 13, 4), at(0, 10, 10, 0, 10), at(0, 0, 10)});
@@ -207,7 +209,7 @@ TEST(Ape, IsBlindToTheFrameAfterAlignment) {
   EXPECT_NEAR(a.rmse, b.rmse, 1e-12);
   EXPECT_NEAR(ape_rotation(truth, estimate, Alignment::kSe3).rmse,
               ape_rotation(truth, moved, Alignment::kSe3).rmse, 1e-9);
-  // Relative errors need no alignment for it.
+  // Relative errors do not depend on the alignment.
   const RelativeErrors c = rpe({truth, estimate}, {.value = 2});
   const RelativeErrors d = rpe({truth, moved}, {.value = 2});
   ASSERT_EQ(c.translation_m.size(), 29U);
@@ -224,14 +226,16 @@ TEST(DeltaPairs, WorkedByHand) {
   EXPECT_EQ(delta_pairs(t, {.value = 2, .all_pairs = true}), (Pairs{{0, 2}, {1, 3}, {2, 4}}));
   EXPECT_EQ(delta_pairs(t, {.value = 3}), (Pairs{{0, 3}}));
   EXPECT_EQ(delta_pairs(t, {.value = 5}), Pairs{});
-  // 3 m: 0 -> 2 (3 m); 1 -> 2 (2 m off by 1, 5 m off by 2: out of tolerance); 2 -> 3; 3 has 1 m.
+  // 3 m: 0 -> 2 (3 m); 1 -> 2 (2 m is off by 1, 5 m by 2: out of tolerance); 2 -> 3; 3 has only 1 m
+  // left.
   EXPECT_EQ(delta_pairs(t, {.value = 3, .unit = DeltaUnit::kMeters}), (Pairs{{0, 2}, {2, 3}}));
-  // 1.5 m within a third: 0 -> 1 (1 m) as near as none other; 1 -> 2 (2 m); 3 -> 4 (1 m).
+  // 1.5 m within a third: 0 -> 1 (1 m is nearest); 1 -> 2 (2 m); 3 -> 4 (1 m).
   EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kMeters, .tolerance = 0.34}),
             (Pairs{{0, 1}, {1, 2}, {3, 4}}));
   EXPECT_EQ(delta_pairs(t, {.value = 2, .unit = DeltaUnit::kSeconds}),
             (Pairs{{0, 2}, {1, 3}, {2, 4}}));
-  // 1.5 s lies between 1 s and 2 s: the earlier of equals, and only with the tolerance for it.
+  // 1.5 s lies between 1 s and 2 s: the earlier of two equals is taken, and only if the tolerance
+  // allows it.
   EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kSeconds, .tolerance = 0.4}),
             (Pairs{{0, 1}, {1, 2}, {2, 3}, {3, 4}}));
   EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kSeconds}), Pairs{});
@@ -251,8 +255,8 @@ TEST(DeltaPairs, StandingStillTakesTheFirstPoseThatIsFarEnough) {
 }
 
 TEST(Rpe, WorkedByHand) {
-  // Truth walks 1 m per step along x; the estimate walks 1.1 m and turns 2 degrees per step on the
-  // spot, so that its next meter points elsewhere.
+  // The true path goes 1 m per step along x; the estimate goes 1.1 m per step and turns by 2
+  // degrees in place, so that its next meter has a different direction.
   const Trajectory truth = every_second({at(0, 0), at(0, 1), at(0, 2)});
   Trajectory estimate = every_second({at(0, 0), at(0, 0), at(0, 0)});
   const SE3 step = SE3(so3_exp({0, 0, 2 * std::numbers::pi / 180}), Eigen::Vector3d(1.1, 0, 0));
@@ -283,7 +287,8 @@ TEST(Evaluate, ReportsAPerfectEstimate) {
   EXPECT_GT(report.truth_path_m, 10.0);
   ASSERT_EQ(report.rpe.size(), 2U);
   EXPECT_EQ(report.rpe[0].translation_m.count, 99U);
-  EXPECT_GE(report.rpe[1].translation_m.count, 90U);  // the 91st has 0.9 s left, on the limit
+  EXPECT_GE(report.rpe[1].translation_m.count,
+            90U);  // the 91st pair has 0.9 s left, exactly at the limit
   EXPECT_LT(report.rpe[1].translation_m.max, 1e-12);
 }
 

@@ -34,8 +34,8 @@ TEST(ScoreTrajectory, AMapOfAnotherScaleHasAnError) {
   EXPECT_GT(*score.ate_rmse_m, 0.5);
 }
 
-// Each camera turned by 3 degrees about its own axis: positions fit exactly, so nothing aligns it
-// away.
+// Each camera is turned by 3 degrees about its own axis: the positions fit exactly, so alignment
+// cannot remove the error.
 TEST(ScoreTrajectory, OrientationsHaveAnErrorOfTheirOwn) {
   Trajectory turned = arc(0, 40);
   const double angle_rad = 3.0 * std::numbers::pi / 180.0;
@@ -50,7 +50,7 @@ TEST(ScoreTrajectory, OrientationsHaveAnErrorOfTheirOwn) {
   EXPECT_NEAR(score.ate_rmse_m.value(), 0.0, 1e-9);
 }
 
-// Along a corridor the alignment may turn about the path: an angle would be an accident.
+// In a straight corridor the alignment is free to turn about the path: an angle would be arbitrary.
 TEST(ScoreTrajectory, APathThatIsNearlyALineHasNoAngle) {
   const auto corridor = [](double width_m, double error_m) {
     Trajectory truth, estimate;
@@ -67,7 +67,7 @@ TEST(ScoreTrajectory, APathThatIsNearlyALineHasNoAngle) {
   EXPECT_TRUE(corridor(0.02, 0.01).ate_rmse_m);
 }
 
-// One pose of forty is 8 m off its place: the root mean square says so, the median does not.
+// One of forty poses is 8 m off: the root mean square shows it, the median does not.
 TEST(ScoreTrajectory, TheMedianErrorForgivesAFewBadPoses) {
   Trajectory off = arc(0, 40);
   off[20].world_from_camera =

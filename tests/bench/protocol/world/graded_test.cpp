@@ -20,7 +20,7 @@ namespace {
 
 const std::string kScenarios = std::string(MH_SOURCE_DIR) + "/bench/scenarios/";
 
-/// A furnished room, a robot, and what it mapped of it.
+/// A furnished room, a robot, and the poses from which it mapped the room.
 struct Room {
   Scene scene = load_scene(kScenarios + "room.yaml");
   std::shared_ptr<const Renderer> renderer = make_embree_renderer(scene);
@@ -92,7 +92,7 @@ TEST(Graded, OfScansByHandAreTheSamePosesAtEachSpeed) {
     EXPECT_EQ(fast.grade.speed, 3);
     EXPECT_EQ(slow.clip[slow.at].world_from_camera.translation(),
               fast.clip[fast.at].world_from_camera.translation());
-    if (slow.at == 0 || fast.at == 0) continue;  // a scan's first frame
+    if (slow.at == 0 || fast.at == 0) continue;  // the first frame of a scan
     const auto before_s = [](const GradedQuery& q) {
       return 1e-9 * static_cast<double>(q.clip[q.at].stamp_ns - q.clip[q.at - 1].stamp_ns);
     };
@@ -124,7 +124,8 @@ TEST(Graded, TheNearestMappedViewIsByMetersAndRadians) {
                Eigen::Vector3d(x, 0, 0));
   };
   const Trajectory mapped{{0, pose(0, 0)}, {1, pose(1, 1)}};
-  const QueryGrade turned = grade_of(mapped, pose(0.2, 1));  // 0.2 + 1 against 0.8 + 0
+  const QueryGrade turned =
+      grade_of(mapped, pose(0.2, 1));  // 0.2 m + 1 rad to the first, 0.8 m + 0 rad to the second
   EXPECT_NEAR(*turned.mapped_m, 0.8, 1e-12);
   EXPECT_NEAR(*turned.mapped_deg, 0, 1e-5);
   const QueryGrade near = grade_of(mapped, pose(0.1, 0.2));
@@ -144,7 +145,7 @@ TEST(Graded, FramesAreOfTheirMomentsAndHaveATruth) {
   EXPECT_EQ((*sequence.truth())[1].stamp_ns, sequence.stamp_ns(1));
   const RenderedFrame exact =
       room().renderer->render(room().robot.camera, drawn.list[1].clip[0].world_from_camera);
-  EXPECT_NEAR(frame.depth_m(20, 20), exact.depth_m(20, 20), 0.05);  // noise
+  EXPECT_NEAR(frame.depth_m(20, 20), exact.depth_m(20, 20), 0.05);  // differs by noise
   EXPECT_GT(sequence.stamp_ns(1), sequence.stamp_ns(0));
 }
 

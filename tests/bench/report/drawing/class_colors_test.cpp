@@ -37,7 +37,7 @@ TEST(ColorVision, RedAndGreenLookAlikeToSomeAndGraysLookTheSameToAll) {
   EXPECT_LT(least_difference(red, green), 20);
 }
 
-/// Classes whose pixels lie side by side in images of a scene.
+/// Adds pairs of classes whose pixels touch in images of a scene.
 void add_touching(const std::string& name, std::set<std::pair<ClassId, ClassId>>& touching) {
   Scene scene = load_scene(name);
   const auto renderer = make_renderer("embree", scene, {});

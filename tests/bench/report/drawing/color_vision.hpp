@@ -12,9 +12,9 @@
 
 namespace mh {
 
-/// What makes a dichromat's image of linear RGB: the matrices of severity 1 in Machado, Oliveira
+/// Matrices from linear RGB to linear RGB as a dichromat sees it: severity 1 in Machado, Oliveira
 /// and Fernandes, A Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE
-/// TVCG 15(6), 2009. The first is everybody else.
+/// TVCG 15(6), 2009. The first one is normal color vision.
 inline std::array<Eigen::Matrix3d, 4> color_visions() {
   Eigen::Matrix3d usual = Eigen::Matrix3d::Identity(), protanopia, deuteranopia, tritanopia;
   protanopia << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116,
@@ -26,7 +26,7 @@ inline std::array<Eigen::Matrix3d, 4> color_visions() {
   return {usual, protanopia, deuteranopia, tritanopia};
 }
 
-/// L*a*b* under D65 of an sRGB color as it looks to somebody.
+/// L*a*b* under D65 of an sRGB color, as seen with this color vision.
 inline Eigen::Vector3d seen_lab(Rgb8 color, const Eigen::Matrix3d& vision) {
   const auto linear = [](std::uint8_t value) {
     const double v = value / 255.0;
@@ -85,7 +85,7 @@ inline double ciede2000(const Eigen::Vector3d& first, const Eigen::Vector3d& sec
   return std::sqrt(dl * dl + dc * dc + dh * dh + blue * dc * dh);
 }
 
-/// How different two colors look to whom they look most alike.
+/// The difference between two colors under the color vision that separates them least.
 inline double least_difference(Rgb8 a, Rgb8 b) {
   double least = 1e9;
   for (const Eigen::Matrix3d& vision : color_visions())

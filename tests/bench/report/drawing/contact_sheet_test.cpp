@@ -19,7 +19,7 @@ namespace {
 
 constexpr Rgb8 kPaint{201, 13, 157};
 
-/// One color, one depth and one class wherever it looks; keeps the poses that it was asked for.
+/// One color, one depth and one class in every direction; records the poses that it is asked for.
 class Recorder : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -43,7 +43,7 @@ TEST(LookAt, PutsTheTargetInTheMiddleAndStandsUpright) {
   }
 }
 
-// A path of 100 frames in parts of equal length: the middle of each.
+// A path of 100 frames is cut into parts of equal length: the middle frame of each is taken.
 TEST(ViewsAlong, AreTheMiddlesOfEqualParts) {
   Trajectory path;
   for (int i = 0; i < 100; ++i)
@@ -66,8 +66,8 @@ TEST(ViewsAlong, AreTheMiddlesOfEqualParts) {
   EXPECT_TRUE(views_along({}, Recorder(), Camera{}, 3).empty());
 }
 
-// A room like an L whose arms meet in a square of 2 m: from each outer corner one looks over the
-// middle of that square, whichever way the L lies; so nobody looks at a wall.
+// An L-shaped room whose arms meet in a square of 2 m: the view from each outer corner passes over
+// the middle of that square in any orientation of the L, so no view faces a wall.
 TEST(ViewsOf, LooksFromTheCornersOverThePlaceThatAllOfThemSee) {
   const std::vector<Eigen::Vector2d> outline = {{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 5}, {0, 5}};
   const Eigen::Vector2d shared(1, 1);
@@ -96,7 +96,7 @@ TEST(ViewsOf, LooksFromTheCornersOverThePlaceThatAllOfThemSee) {
   }
 }
 
-// Beside each other in this order: color, depth, labels; below them the class by its color.
+// From left to right: color, depth, labels; below them the class in its color.
 TEST(ContactSheet, ShowsColorDepthAndLabelsFromLeftToRight) {
   const View view{"one", {80, 60, kPaint}, {80, 60, 2.0F}, {80, 60, *class_by_name("chair")}};
   const cv::Mat image = draw_contact_sheet("title", {view, view});

@@ -18,8 +18,8 @@ TEST(ClassColor, AnyTwoClassesCanBeTold) {
 TEST(ColorDistance, IsThatOfCieLab) {
   EXPECT_NEAR(color_distance({255, 255, 255}, {0, 0, 0}), 100, 0.1);
   EXPECT_EQ(color_distance({9, 8, 7}, {9, 8, 7}), 0);
-  // sRGB's corners in CIELAB under D65: red (53.24, 80.09, 67.20), green (87.73, -86.18, 83.18),
-  // blue (32.30, 79.19, -107.86); a middle gray (53.59, 0, 0).
+  // The corners of sRGB in CIELAB under D65: red (53.24, 80.09, 67.20), green (87.73, -86.18,
+  // 83.18), blue (32.30, 79.19, -107.86); a middle gray (53.59, 0, 0).
   EXPECT_NEAR(color_distance({255, 0, 0}, {0, 0, 0}), 117.3, 0.2);
   EXPECT_NEAR(color_distance({0, 255, 0}, {0, 0, 0}), 148.5, 0.2);
   EXPECT_NEAR(color_distance({0, 0, 255}, {0, 0, 0}), 137.7, 0.2);

@@ -27,7 +27,7 @@ class Plots : public testing::Test {
     return read_image(file, ImageForm::kColor);
   }
 
-  /// Middles of the dots of the first color.
+  /// Centers of the dots in the first color.
   static std::vector<cv::Point2d> dots_in(const cv::Mat& image) {
     cv::Mat is_dot, components, statistics, middles;
     cv::inRange(image, cv::Scalar(150, 89, 0), cv::Scalar(210, 149, 71), is_dot);  // BGR

@@ -14,7 +14,7 @@ namespace mh {
 namespace {
 
 TEST(Slice, CutsATentIntoItsOutlineAtThatHeight) {
-  // A tent 2 m long over y, 2 m wide and 1 m high: at height h each side is cut at |x| = 1 - h.
+  // A tent 2 m long along y, 2 m wide and 1 m high: at height h each side is cut at |x| = 1 - h.
   Scene scene;
   scene.positions_m = {{-1, 0, 0}, {-1, 2, 0}, {0, 0, 1}, {0, 2, 1}, {1, 0, 0}, {1, 2, 0}};
   scene.triangles = {{0, 1, 2}, {1, 3, 2}, {4, 2, 5}, {5, 2, 3}};
@@ -32,10 +32,10 @@ TEST(Slice, CutsATentIntoItsOutlineAtThatHeight) {
   EXPECT_TRUE(slice(scene, 1.5).empty());
 }
 
-// The surface |x| + |y| + |z| = 1, turned about its vertical axis by all sorts of angles and its
-// faces begun at each of their corners. At height h it is cut into a square of side
-// sqrt(2) (1 - |h|); at h = 0 the plane goes through four of its corners exactly, and at its tips
-// nothing is left to see.
+// The surface |x| + |y| + |z| = 1, turned about its vertical axis by several angles, with its faces
+// listed from each of their corners. At height h the cut is a square of side sqrt(2) (1 - |h|); at
+// h = 0 the plane passes exactly through four of the corners, and at the tips nothing is left to
+// cut.
 TEST(Slice, OfAClosedSurfaceIsClosedAtAnyHeight) {
   for (const double turn : {0.0, 0.3, 0.5 * std::numbers::pi})
     for (std::uint32_t begin = 0; begin < 3; ++begin) {
@@ -74,7 +74,7 @@ TEST(Slice, OfAClosedSurfaceIsClosedAtAnyHeight) {
     }
 }
 
-// A corner that lies in the plane counts as above it, whichever way the triangle is begun.
+// A corner that lies in the plane counts as above it, no matter which corner is listed first.
 TEST(Slice, ATriangleCutThroughACornerGivesOneSegmentFromThere) {
   for (std::uint32_t begin = 0; begin < 3; ++begin) {
     Scene scene;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens reports as a reader does, in headless Chromium, and checks what stands there.
-//   node browse.mjs FOLDER_WITH_REPORTS SCREENSHOTS [REPORT...]
-// Prints a line per finding and, at the end, JSON of what was measured; exit code 1 at a finding.
+// Opens reports as a reader does, in headless Chromium, and checks what they show.
+// node browse.mjs FOLDER_WITH_REPORTS SCREENSHOTS [REPORT...]
+// Prints one line per finding and, at the end, JSON of what was measured; exit code 1 if there was a finding.
 import { chromium } from "playwright-core";
 import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -11,7 +11,7 @@ const [, , root, screenshots, ...asked] = process.argv;
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const program = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
 const pages = ["overview", "figures", "sweeps", "failures", "audit", "speed", "runs", "reproduction"];
-// What is done, for a look at a part: STEPS=use node browse.mjs ...
+// The steps to run; STEPS=use node browse.mjs ... runs only some.
 const steps = (process.env.STEPS ?? "walk,axe,use").split(",");
 const sizes = { laptop: { width: 1440, height: 900 }, phone: { width: 390, height: 844 } };
 const findings = [];
@@ -23,12 +23,12 @@ const expect = (holds, what) => {
   }
 };
 
-/** A page that notes every message and every request that leaves the folder. */
+/** A page that records every message and every request that leaves the folder. */
 async function open(browser, report, options = {}) {
   const context = await browser.newContext({ viewport: sizes.laptop, ...options });
   const page = await context.newPage();
   const address = `file://${join(root, report)}/`;
-  // The first is said by a software imitation of a GPU, not by the page.
+  // The message ignored here comes from the software emulation of the GPU, not from the page.
   page.on("console", (message) => message.text().includes("GPU stall due to ReadPixels") || expect(false, `${report} ${page.url()}: console: ${message.text()}`));
   page.on("pageerror", (error) => expect(false, `${report} ${page.url()}: ${error.message}`));
   page.on("dialog", (dialog) => {
@@ -48,7 +48,7 @@ async function open(browser, report, options = {}) {
 async function settled(page) {
   await page.waitForSelector("main", { timeout: 20000 });
   await page.waitForFunction(() => document.querySelector(".loading") === null, undefined, { timeout: 20000 });
-  // Charts are drawn after their width is known.
+  // Charts are drawn once their width is known.
   await page.waitForFunction(
     () => [...document.querySelectorAll(".plot-place")].every((place) => place.offsetParent === null || place.querySelector("svg")),
     undefined,
@@ -61,7 +61,7 @@ async function visit(page, address) {
   await settled(page);
 }
 
-/** Charts whose marks are not as many as their data, and charts without any. */
+/** Charts whose number of marks differs from their data, and charts without marks. */
 function countMarks(page) {
   return page.evaluate(() =>
     [...document.querySelectorAll("figure.chart")].map((figure) => {
@@ -86,7 +86,7 @@ async function checkCharts(page, where) {
   }
 }
 
-/** Every page in both sizes and, of the first report, in both themes: charts, width, an image. */
+/** Every page in both sizes and, for the first report, in both themes: charts, width, an image. */
 async function walk(browser, report, themesOf) {
   for (const [size, viewport] of Object.entries(sizes))
     for (const colorScheme of themesOf[size]) {
@@ -107,7 +107,7 @@ async function walk(browser, report, themesOf) {
     }
 }
 
-/** A newcomer sees at once who is better, what each system did, and the place. */
+/** A newcomer sees at once which system is better, what each system did, and the place. */
 async function firstScreen(page, where) {
   if (!(await page.evaluate(() => globalThis.modelhouse.index.folders.some((folder) => folder.suite !== null)))) return;
   const seen = await page.evaluate(() => {
@@ -132,7 +132,7 @@ async function firstRun(page, go) {
   return href ? href.slice(2) : null;
 }
 
-/** Accessibility, with the policy out of axe's way. */
+/** Accessibility; the content security policy is bypassed so that axe can run. */
 async function accessible(browser, report) {
   for (const colorScheme of ["light", "dark"]) {
     const { context, page, go } = await open(browser, report, { bypassCSP: true, colorScheme });
@@ -164,7 +164,7 @@ const cells = (page, column) =>
 async function use(browser, report) {
   const { context, page, go } = await open(browser, report, { acceptDownloads: true });
   await go("runs");
-  const table = page.locator("section.table").last();  // of the last folder, as cells() reads it
+  const table = page.locator("section.table").last();  // of the last folder, which cells() reads, too
   const before = await cells(page, "run");
   await table.getByRole("button", { name: /^ATE m/ }).click();
   const falling = (await cells(page, "ATE m")).filter(Boolean).map(Number);
@@ -196,14 +196,14 @@ async function use(browser, report) {
   await page.reload();
   await settled(page);
   expect((await dark()) !== first, `${report}: the theme is forgotten`);
-  // By keyboard alone: the second link of the navigation.
+  // With the keyboard only: the second link of the navigation.
   await go("overview");
   await page.getByRole("link", { name: "Figures" }).focus();
   await page.keyboard.press("Enter");
   const followed = await page.waitForFunction(() => document.querySelector("h1").textContent === "Figures of the paper", undefined, { timeout: 20000 }).then(() => true, () => false);
   expect(followed, `${report}: Enter follows no link`);
   await settled(page);
-  // A failing query opens its run with that query chosen.
+  // A failing query opens its run with that query selected.
   await go("failures");
   const link = page.locator("td a").first();
   if ((await link.count()) > 0) {
@@ -241,7 +241,7 @@ async function use(browser, report) {
   await context.close();
 }
 
-/** A report whose data were damaged by hand: it says so on every page that needs them. */
+/** A report with damaged data: every page that needs them says so. */
 async function damaged(browser, report) {
   const copy = join(screenshots, "damaged");
   rmSync(copy, { recursive: true, force: true });
@@ -268,7 +268,7 @@ async function firstRunOf(browser, report) {
   return run;
 }
 
-/** A choice on Figures outlives a reload, and a link to another state of an open page is followed. */
+/** A choice on Figures survives a reload, and a link to a different state of an open page is followed. */
 async function links(page, go, report) {
   await go("figures");
   const picked = () => page.locator("label.choice", { hasText: /^Run/ }).last().locator("select");
@@ -315,9 +315,9 @@ async function colors(page, go, report) {
   }
 }
 
-/** The number of marks that a picture states, by kind. */
+/** The number of marks that a picture declares, by kind. */
 const marksOf = (page) => page.locator("canvas.picture").first().evaluate((canvas) => JSON.parse(canvas.dataset.marks));
-/** Whether anything is drawn there beside the gap between two pictures. */
+/** Whether anything is drawn apart from the gap between two pictures. */
 const isDrawn = (page) =>
   page.locator("canvas.picture").first().evaluate((canvas) => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -326,7 +326,7 @@ const isDrawn = (page) =>
     return colors.size > 3;
   });
 
-/** Where a run was recorded: its last keyframe, and its queries beside their candidates. */
+/** For a run with recorded views: its last keyframe, and its queries next to their candidates. */
 async function views(page, go, report) {
   const run = await firstRun(page, go);
   await go(`${run}?t=1000`);
@@ -348,7 +348,7 @@ async function views(page, go, report) {
   measured.views = (measured.views ?? 0) + 1;
 }
 
-/** Play, step, scrub, and a link to a moment. */
+/** Play, step, scrub, and a link to a point in time. */
 async function replay(page, go, report) {
   const run = await firstRun(page, go);
   await go(run);
@@ -370,14 +370,14 @@ async function replay(page, go, report) {
   expect((await moment()) <= 1000, `${report}: a step back leads to ${await moment()}`);
   await page.getByLabel("Moment of the tour, ms").fill("2000");
   expect((await moment()) === 2000, `${report}: scrubbing leads to ${await moment()}`);
-  // The address follows once the moment is drawn.
+  // The address changes once the frame is drawn.
   const linked = await page.waitForURL(/t=2000/, { timeout: 5000 }).then(() => true, () => false);
   expect(linked, `${report}: a moment has no link`);
   await page.getByRole("button", { name: "Play" }).click();
   await page.waitForFunction(() => Number(document.querySelector(".replay").dataset.ms) > 2100, undefined, { timeout: 20000 });
 }
 
-/** A large study: how long until its table stands there, and what it takes. */
+/** A large study: how long it takes until its table shows, and how much memory. */
 async function large(browser, report) {
   const { context, page, go } = await open(browser, report);
   const session = await context.newCDPSession(page);
@@ -395,14 +395,14 @@ async function large(browser, report) {
   await session.send("HeapProfiler.collectGarbage");
   const { usedSize } = await session.send("Runtime.getHeapUsage");
   measured.large_heap_mb = usedSize / 1e6;
-  // Times are printed, not judged: a loaded machine decides them.
+  // Times are printed, not judged: they depend on the load of the machine.
   expect(measured.large_heap_mb < 300, `${report}: takes ${measured.large_heap_mb} MB`);
   await context.close();
 }
 
 const browser = await chromium.launch({
   executablePath: program,
-  // Without the flags, pages would be painted through a software imitation of a GPU: 20 times slower.
+  // Without the flags, pages would be drawn through a software emulation of a GPU: 20 times slower.
   args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader"],
 });
 measured.chromium = browser.version();

@@ -16,12 +16,12 @@
 
 namespace mh {
 
-/// Where a made-up system has its origin, seen from the world.
+/// World from the origin of a made-up system's map.
 inline SE3 made_up_origin() {
   return {Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {1.0, -2.0, 0.1}};
 }
 
-/// A circular tour of 1/30 s steps and an estimate that leaves it by `drift_m` at its end.
+/// A circular tour with steps of 1/30 s, and an estimate that is off by `drift_m` at its end.
 inline void put_paths(RunResult& run, std::size_t frames, double drift_m) {
   for (std::size_t i = 0; i < frames; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(frames);
@@ -45,7 +45,7 @@ inline void put_paths(RunResult& run, std::size_t frames, double drift_m) {
   run.place.mapping.length_m = 11.05;
 }
 
-/// Answers of which more are right the larger `skill` (0 to 1) is.
+/// Answers; the larger `skill` (0 to 1), the more of them are right.
 inline MadeUpAnswers answers_of(double skill, std::size_t queries, std::size_t variant) {
   MadeUpAnswers answers;
   answers.keyframes = 40;
@@ -63,12 +63,12 @@ inline MadeUpAnswers answers_of(double skill, std::size_t queries, std::size_t v
     if (i < right)
       answers.distances_m.push_back(0.004 + 0.001 * static_cast<double>((i + variant) % 7));
     else if (i == right)
-      answers.distances_m.push_back(1.7);  // one is false
+      answers.distances_m.push_back(1.7);  // one false answer
   }
   return answers;
 }
 
-/// Every run of a suite, each a little different.
+/// Every run of a suite, each slightly different.
 inline std::vector<RunResult> made_up_runs(const Suite& suite, std::size_t frames,
                                            std::size_t queries) {
   std::vector<RunResult> runs;
@@ -100,7 +100,7 @@ inline std::vector<RunResult> made_up_runs(const Suite& suite, std::size_t frame
               made_up_origin().inverse() *
               SE3(Eigen::Matrix3d::Identity(),
                   q.true_world_from_camera->translation() + Eigen::Vector3d(*q.distance_m, 0, 0));
-        if (i < p % 3) q.success = q.correct = false;  // points differ
+        if (i < p % 3) q.success = q.correct = false;  // points differ from each other
       }
     }
     if (frames > 0) put_paths(run, frames, 0.02 + 0.01 * static_cast<double>(variant % 4));
@@ -109,7 +109,7 @@ inline std::vector<RunResult> made_up_runs(const Suite& suite, std::size_t frame
   return runs;
 }
 
-/// A replay of the first run: two keyframes, and images of them and of its queries.
+/// A replay of the first run: two keyframes, with images of them and of the run's queries.
 inline void put_replay(PagesSource& source) {
   using Json = nlohmann::ordered_json;
   const RunResult& run = source.results.runs.front();
@@ -164,7 +164,7 @@ inline void put_replay(PagesSource& source) {
                                     {"queries", std::move(queries)}};
 }
 
-/// What each run of a source cost.
+/// Sets what each run of a source cost.
 inline void put_costs(PagesSource& source) {
   for (const RunResult& run : source.results.runs) {
     const double more = static_cast<double>(source.cost_of.size() % 7);

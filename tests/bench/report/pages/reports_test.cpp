@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `modelhouse report` writes: data that are those of the results, text that stays text.
+// What `modelhouse report` writes: data equal to the results, and text that remains text.
 #include <sys/wait.h>
 
 #include <array>
@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kHostile = "<img src=x onerror=alert(1)>";
 
-/// A piece of data as a page gets it.
+/// A piece of data as a page receives it.
 Json piece(const fs::path& report, const std::string& name) {
   std::string file = name + ".js";
   std::ranges::replace(file, '/', '-');
@@ -40,7 +40,7 @@ Json piece(const fs::path& report, const std::string& name) {
   return Json::parse(text.substr(from + 2, text.rfind(';') - from - 2));
 }
 
-/// Cells of a table in columns, as text and as numbers.
+/// A table stored by columns, read as text and as numbers.
 struct ReadTable {
   const Json& json;
   const Json& column(const std::string& key) const {
@@ -68,7 +68,7 @@ class Reports : public testing::Test {
     put_costs(source);
     return source;
   }
-  /// @param environments  of one category
+  /// @param environments  all in one category
   PagesSource source_of(const std::vector<std::string>& environments) const {
     return source_of_suite(made_up_suite(work_.path(), environments));
   }
@@ -80,7 +80,7 @@ class Reports : public testing::Test {
     suite.trials = 10;
     return source_of_suite(suite, 60, 10);
   }
-  /// A suite with a sweep over two settings of the queries, or as `parameters` says.
+  /// A suite with a sweep over two query settings, or over `parameters`.
   Suite sweep(const std::string& parameters =
                   "map: fixed, semantics.gamma: [0, 0.5, 1, 2], "
                   "semantics.xi: [1, 1.5, 2]") const {
@@ -190,7 +190,7 @@ TEST_F(Reports, StateTheVerdictInAPlainSentenceWithItsFigures) {
   write_pages(out(), std::array{source});
   const Json lines = piece(out(), "0/overview").at("verdicts").at("headlines");
   ASSERT_EQ(lines.size(), 1U);
-  // Each environment has a correct answer more by semantic: 6 pairs of one sign.
+  // In each environment, semantic has one more correct answer: 6 pairs of the same sign.
   const auto text = lines[0].at("text").get<std::string>();
   EXPECT_TRUE(text.starts_with("Labels: no difference shown between semantic and plain.")) << text;
   const auto detail = lines[0].at("detail").get<std::string>();
@@ -199,7 +199,7 @@ TEST_F(Reports, StateTheVerdictInAPlainSentenceWithItsFigures) {
     EXPECT_NE(detail.find(part), std::string::npos) << detail;
 }
 
-/// Answers of a system that are all false: a pose is returned to every query, 2.57 m off.
+/// Makes all answers of a system false: every query returns a pose that is 2.57 m off.
 void answer_all_falsely(RunResult& run) {
   for (PointResult& point : run.points)
     for (QueryScore& q : point.held_out) {
@@ -230,7 +230,7 @@ TEST_F(Reports, AProgramWhosePosesAreWrongWinsNothingByReturningThem) {
   EXPECT_EQ(tiles.text("system", 0), "semantic");
   EXPECT_EQ(tiles.number("held_out.correct", 0), 0);
   EXPECT_EQ(tiles.number("held_out.success", 0), 1);
-  // Where a design names success, that decides.
+  // If a design specifies success, success decides.
   source.suite->measure = Measure::kSuccess;
   const auto by_success = verdict_of().first.at("text").get<std::string>();
   EXPECT_TRUE(by_success.starts_with("semantic ")) << by_success;
@@ -293,7 +293,7 @@ TEST_F(Reports, ShowThePlanThatBenchDrewOrElseThePaths) {
   write_atomically(source.folder / first / "topdown_second_tour.png", "no image");
   write_pages(out(), std::array{source});
   EXPECT_EQ(piece(out(), "0/place").at("plans").at(0).at("png"), base64("\x89PNG of held out"));
-  // A map that is not this run's: another run's files stand there.
+  // A map that is not from this run: the files of another run.
   write_atomically(source.folder / first / "map.yaml", "image: map.pgm\n");
   write_pages(out(), std::array{source});
   EXPECT_EQ(piece(out(), "0/place").at("plans").size(), 1U);
@@ -330,7 +330,7 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
   EXPECT_EQ(frames.at("list").at(0).at("frame"), 0);
   EXPECT_EQ(frames.at("list").at(3).at("frame"), 6);
   EXPECT_NE(frames.at("list").at(0).at("jpeg"), frames.at("list").at(3).at("jpeg"));
-  // Of results that were made of another recording of this name, none is shown.
+  // If the results were made from a different recording of this name, no frame is shown.
   RunResult run;
   run.spec.environment.name = source.suite->environments.front().name;
   run.place.inputs = {{"sequence", 1, {}}};
@@ -339,7 +339,7 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
   EXPECT_TRUE(frames.at("list").empty());
   EXPECT_EQ(frames.at("problem"), "has changed since these results were made");
   source.results.runs.clear();
-  fs::remove_all(work_.path() / "office");  // on another machine
+  fs::remove_all(work_.path() / "office");  // as on another machine
   frames = frames_json(source);
   EXPECT_TRUE(frames.at("list").empty());
   EXPECT_FALSE(frames.at("problem").is_null());
@@ -349,7 +349,7 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
 TEST_F(Reports, Figure4OfARecordingIsOverTruthAtOtherMomentsThanItsFrames) {
   PagesSource source = source_of({"den"});
   for (RunResult& run : source.results.runs) {
-    // A motion capture: three poses a frame, none at a frame's stamp.
+    // Motion capture: three poses per frame, none at a frame's timestamp.
     const Trajectory frames = run.truth;
     run.truth.clear();
     for (std::size_t i = 0; i + 1 < frames.size(); ++i)
@@ -411,7 +411,7 @@ TEST_F(Reports, WrittenAgainLeaveForeignFilesAlone) {
 
 TEST_F(Reports, CurvesEndWhereFewEnvironmentsAreLeft) {
   PagesSource source = source_of({"a", "b", "c", "d", "e", "f"});
-  // Of the plain system two tours are half as long.
+  // Two of the plain system's tours are cut to half their length.
   int shortened = 0;
   for (RunResult& run : source.results.runs) {
     if (run.spec.system.sees_labels() || shortened == 2) continue;
@@ -495,7 +495,7 @@ TEST_F(Reports, ShowNamesAsText) {
 }
 
 TEST_F(Reports, SayWhatIsMissing) {
-  // A trajectory and nothing else; a recording without truth; a failed run.
+  // A run with only a trajectory; a recording without ground truth; a failed run.
   PagesSource source = source_of({"den"});
   RunResult& outside = source.results.runs[0];
   outside.points = {PointResult()};
@@ -602,7 +602,7 @@ class Plotted : public Reports {
   std::string script(const PlotOrder& order) const {
     return plot_script(source_, order, work_.path() / "plot.pdf");
   }
-  /// Colors of a PNG that gnuplot drew.
+  /// Number of colors in a PNG drawn by gnuplot.
   std::size_t colors_of(const PlotOrder& order) const {
     const fs::path file = work_.path() / "plot.png";
     write_plot(file, source_, order);
@@ -621,7 +621,7 @@ TEST_F(Plotted, FiguresHoldTheNumbersOfTheResults) {
   const Eigen::Vector3d at = run.truth[7].world_from_camera.translation();
   EXPECT_NE(script({.figure = 2}).find(fmt::format("\n{} {}\n", at.x(), at.y())),
             std::string::npos);
-  // Four occupied cells of 0.5 m from x = -2 on, in the row from y = -1.5 on.
+  // Four occupied cells of 0.5 m, starting at x = -2, in the row that starts at y = -1.5.
   EXPECT_NE(script({.figure = 5}).find("\n-1 -1.25 -2 0 -1.5 -1\n"), std::string::npos);
   EXPECT_EQ(script({.figure = 2}).find("boxxyerror"), std::string::npos);
   for (const int figure : {2, 3, 4, 5}) EXPECT_GT(colors_of({.figure = figure}), 8U) << figure;
@@ -676,8 +676,8 @@ Ended ended(const std::string& command) {
   return made;
 }
 
-/// The npm packages of the web sources, installed once beside the build; why not, if they cannot
-/// be.
+/// Installs the npm packages of the web sources once, next to the build. @returns why that failed,
+/// or ""
 std::string installed_packages(const fs::path& home) {
   const fs::path web = fs::path(MH_SOURCE_DIR) / "bench/report/web";
   fs::create_directories(home);
@@ -694,7 +694,7 @@ bool has_browser() {
   return fs::exists("/usr/bin/chromium") || fs::exists("/usr/bin/chromium-browser");
 }
 
-/// Reports of every kind, each in a folder of its own.
+/// Reports of every kind, each in its own folder.
 class InTheBrowser : public Reports {
  protected:
   static void write(const std::string& name, const PagesSource& source) {
@@ -719,7 +719,7 @@ class InTheBrowser : public Reports {
     write("rooms", rooms);
     PagesSource later = rooms;
     later.name = "after";
-    later.suite->levels = {"dusk.yaml"};  // a level of its own changes no system's color
+    later.suite->levels = {"dusk.yaml"};  // a different level does not change a system's color
     for (RunResult& run : later.results.runs) run.spec.level = "dusk.yaml";
     write_pages(root() / "two", std::array{rooms, later});
     write("sweep", source_of_suite(sweep()));

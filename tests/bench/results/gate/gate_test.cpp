@@ -19,7 +19,7 @@ namespace {
 
 using Values = std::map<std::string, std::optional<double>, std::less<>>;
 
-/// Five seeds of one scenario; completeness and ATE spread a little over them.
+/// Five seeds of one scenario; completeness and ATE vary slightly over them.
 std::vector<RunFigures> five_runs(double completeness = 0.9, double ate = 0.02) {
   std::vector<RunFigures> runs;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
@@ -48,7 +48,7 @@ TEST(Gate, NothingChangedPasses) {
   EXPECT_TRUE(result.passed());
   EXPECT_EQ(result.runs, 5u);
   EXPECT_EQ(result.identical, 5u);
-  ASSERT_EQ(result.changes.size(), 2u);  // only what has a tolerance is judged
+  ASSERT_EQ(result.changes.size(), 2u);  // only figures that have a tolerance are judged
   for (const Change& c : result.changes) EXPECT_EQ(c.verdict, ChangeVerdict::kSame);
 }
 
@@ -58,7 +58,7 @@ TEST(Gate, FailsBeyondTheToleranceAndNotWithinIt) {
     return change_of(r, "completeness").verdict;
   };
   EXPECT_EQ(verdict(0.86), ChangeVerdict::kWithin);
-  EXPECT_EQ(verdict(0.85), ChangeVerdict::kWithin);  // just the tolerance
+  EXPECT_EQ(verdict(0.85), ChangeVerdict::kWithin);  // exactly at the tolerance
   EXPECT_EQ(verdict(0.84), ChangeVerdict::kWorse);
   EXPECT_EQ(verdict(0.94), ChangeVerdict::kWithin);
   EXPECT_EQ(verdict(0.96), ChangeVerdict::kBetter);
@@ -75,8 +75,8 @@ TEST(Gate, ASystemThatIsNotRepeatableIsWorseWhereChanceCannotSayWhy) {
   const auto verdict = [&](double after) {
     return change_of(judged(after), "completeness").verdict;
   };
-  // Both spread by 0.01581, so the median of five differences by 1.2533 * 0.01581 * sqrt(2 / 5):
-  // 0.01253. 1.86 of these on the tolerance of 0.05 are 0.0733.
+  // Both have a standard deviation of 0.01581, so that of the median of five differences is 1.2533
+  // * 0.01581 * sqrt(2 / 5) = 0.01253. The tolerance of 0.05 plus 1.86 of these is 0.0733.
   EXPECT_EQ(verdict(0.84), ChangeVerdict::kWithin);
   EXPECT_EQ(verdict(0.828), ChangeVerdict::kWithin);
   EXPECT_EQ(verdict(0.826), ChangeVerdict::kWorse);
@@ -91,20 +91,22 @@ TEST(Gate, MoreErrorIsWorseAndLessIsBetter) {
     const GateResult r = compare(five_runs(0.9, 0.02), five_runs(0.9, after), kConfig, false);
     return change_of(r, "ate_rmse_m").verdict;
   };
-  EXPECT_EQ(verdict(0.029), ChangeVerdict::kWithin);  // the tolerance is half of the baseline's
+  EXPECT_EQ(verdict(0.029),
+            ChangeVerdict::kWithin);  // the tolerance is half of the baseline's value
   EXPECT_EQ(verdict(0.031), ChangeVerdict::kWorse);
   EXPECT_EQ(verdict(0.009), ChangeVerdict::kBetter);
 }
 
 TEST(Gate, TakesTheMedianOfPairedChanges) {
-  // Two seeds of five fall apart: the median pair did not change, whatever the mean says.
+  // Two of five seeds fail completely: the median change is still zero, whatever the mean is.
   auto after = five_runs();
   after[1].values["completeness"] = 0.0;
   after[3].values["completeness"] = 0.0;
   EXPECT_TRUE(compare(five_runs(), after, kConfig, false).passed());
   after[4].values["completeness"] = 0.0;
   EXPECT_FALSE(compare(five_runs(), after, kConfig, false).passed());
-  // Pairs, not sorted values: each seed loses 0.06 while the seeds are listed in another order.
+  // Runs are paired by seed, not by order: each seed loses 0.06, and the seeds are listed in a
+  // different order.
   auto shuffled = five_runs(0.84);
   std::swap(shuffled[0], shuffled[4]);
   EXPECT_NEAR(change_of(compare(five_runs(), shuffled, kConfig, false), "completeness").change,
@@ -112,7 +114,7 @@ TEST(Gate, TakesTheMedianOfPairedChanges) {
 }
 
 TEST(Gate, PairsByTheSeedAndNotByTheSortedValues) {
-  // Seeds that change places: sorted, nothing moved; paired, the median change is 0.03.
+  // Seeds trade places: sorted, nothing changed; paired, the median change is 0.03.
   auto before = five_runs(), after = five_runs();
   const double shift[5] = {0.03, 0.03, 0.03, -0.045, -0.045};
   for (std::size_t i = 0; i < 5; ++i)
@@ -133,11 +135,11 @@ TEST(Gate, AFigureThatIsLostIsTheWorst) {
 
 TEST(Gate, SaysTheSmallestChangeThatItCouldHaveSeen) {
   const GateResult r = compare(five_runs(), five_runs(), kConfig, false);
-  // Standard deviation of 0.88 .. 0.92 is 0.0158; of the median paired change 1.2533 sqrt(2/5) of
-  // it.
+  // The standard deviation of 0.88 .. 0.92 is 0.0158; that of the median paired change is 1.2533
+  // sqrt(2/5) times as large.
   const double error = 1.2533 * std::sqrt(2.0 / 5) * std::sqrt(0.001 / 4);
   EXPECT_NEAR(change_of(r, "completeness").detectable, 0.05 + 0.84 * error, 1e-9);
-  // Shares come in steps: of 20 queries, beyond a tolerance of 0.12 the next is 3 of 20.
+  // Shares come in steps: with 20 queries, the first step beyond a tolerance of 0.12 is 3 of 20.
   GateConfig shares;
   shares.tolerances = {{"held_out.correct", {0.12, 0}}};
   EXPECT_NEAR(compare(five_runs(), five_runs(), shares, false).changes[0].detectable, 0.15, 1e-12);
@@ -297,7 +299,7 @@ TEST_F(BaselineFile, OfAnotherSuiteIsAnErrorThatSaysSo) {
 }
 
 TEST_F(BaselineFile, ThatIsNoneIsAnErrorThatNamesIt) {
-  EXPECT_THROW(load_baseline(file_), InputError);  // missing
+  EXPECT_THROW(load_baseline(file_), InputError);  // the file does not exist
   for (const char* text :
        {"", "{", "[]", "{}", R"({"format": "modelhouse-baseline-2", "runs": []})",
         R"({"format": "modelhouse-baseline-1", "suite": "ci"})",

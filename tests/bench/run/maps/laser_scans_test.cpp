@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A camera that rides on Pepper, whose base is at a place and looks along x.
+/// The camera's pose when Pepper's base is at this place and faces along x.
 SE3 camera_at(const Robot& robot, const Vector3d& base_m) {
   return SE3(Eigen::Matrix3d::Identity(), base_m) * robot.base_from_camera;
 }
@@ -26,7 +26,7 @@ std::int8_t cell_at(const ScanGrid& scans, double x_m, double y_m) {
   return cell ? grid.cells(cell->x(), cell->y()) : kUnknownCell;
 }
 
-/// A room with a box 1.52 m before the place (5, 5), and perhaps with its floor 2 m higher.
+/// A room with a box 1.52 m in front of the place (5, 5); its floor may be raised by `floor_m`.
 Scene room_with_box(float floor_m = 0) {
   Scene scene = test::empty_room();
   test::add_box(scene, "box", {6.52F, 4, 0}, {7, 6, 1});
@@ -43,12 +43,12 @@ TEST(SceneLasers, WhatTheyReadStandsWhereThePoseSays) {
   const ScanGrid right = lasers.scans({truth[0]}, truth, 0.05);
   EXPECT_EQ(cell_at(right, 6.52, 5.02), kOccupiedCell);
   EXPECT_EQ(cell_at(right, 6.02, 5.02), kFreeCell);
-  EXPECT_EQ(cell_at(right, 6.72, 5.02), kUnknownCell);  // behind the face
-  // The map has the robot a meter farther north.
+  EXPECT_EQ(cell_at(right, 6.72, 5.02), kUnknownCell);  // behind the face of the box
+  // The map places the robot one meter farther north.
   const ScanGrid moved = lasers.scans({{20, camera_at(robot, {5, 6, 0})}}, truth, 0.05);
   EXPECT_EQ(cell_at(moved, 6.52, 6.02), kOccupiedCell);
   EXPECT_EQ(cell_at(moved, 6.02, 6.02), kFreeCell);
-  // Nothing is known of what the lasers read at another time.
+  // There are no laser readings at a different time.
   EXPECT_EQ(cell_at(lasers.scans({{15, camera_at(robot, {5, 5, 0})}}, truth, 0.05), 6.02, 5.02),
             kUnknownCell);
 }

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 class MapMessages : public testing::TestWithParam<ros::Wire> {
  protected:
-  /// The messages of a written map, by topic.
+  /// The messages of a written map by topic.
   std::map<std::string, std::string> written(const VoxelMap& map, const MapStudy& study) {
     const fs::path file = work_.path() / "map";
     const bool mcap = GetParam() == ros::Wire::kCdr;

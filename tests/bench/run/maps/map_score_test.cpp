@@ -41,10 +41,10 @@ TEST(ScoreObjects, EachTrueObjectIsFoundOnceAndEachFoundOneFindsOne) {
                      instance("wall", 1, {0, 3, 0}, {5, 3.1, 2.5})};
   const std::vector<MapObject> objects = {
       found(5, {0, 0, 0}, {0.55, 0.5, 1}),               // the first chair
-      found(5, {0.05, 0, 0}, {0.5, 0.5, 1}),             // found twice
+      found(5, {0.05, 0, 0}, {0.5, 0.5, 1}),             // the same chair, found again
       found(7, {2.4, 0, 0}, {3, 1, 0.7}),                // 0.2 m off
-      found(46, {2.35, 0.35, 0.7}, {2.65, 0.65, 1.15}),  // smaller in truth
-      found(7, {8, 0, 0}, {9, 1, 0.7}),                  // there is none
+      found(46, {2.35, 0.35, 0.7}, {2.65, 0.65, 1.15}),  // larger than the true one
+      found(7, {8, 0, 0}, {9, 1, 0.7}),                  // no such object exists
       found(7, {8, 0, 0}, {8.2, 0.2, 0.2}),              // too small to count
   };
   const ObjectScore score = score_objects(objects, scene);
@@ -54,7 +54,7 @@ TEST(ScoreObjects, EachTrueObjectIsFoundOnceAndEachFoundOneFindsOne) {
   EXPECT_EQ(score.precision.all, 5u);
 }
 
-// The plan has two rows of three cells; the grid, shifted by one, lacks its first column.
+// The plan has two rows of three cells; the grid is shifted by one cell and lacks the first column.
 TEST(ScoreGrid, ComparesFreeCellsAtTheSamePlace) {
   const auto cells = [](int width, int height, std::initializer_list<std::int8_t> values) {
     Grid2d<std::int8_t> made(width, height);
@@ -73,7 +73,7 @@ TEST(ScoreGrid, ComparesFreeCellsAtTheSamePlace) {
   EXPECT_EQ(score.iou_seen.all, 3u);
 }
 
-// A closed box of 4 m, looked at from its middle.
+// A closed box of 4 m, seen from its center.
 TEST(ScoreMap, OfAMapAtTruePosesIsThatOfItsOwnFrames) {
   Scene scene;
   for (int i = 0; i < 8; ++i)
@@ -91,7 +91,7 @@ TEST(ScoreMap, OfAMapAtTruePosesIsThatOfItsOwnFrames) {
   const Camera camera;
   OccupancyMapper mapper(camera);
   Trajectory poses;
-  for (int i = -2; i <= 2; ++i) {  // one half
+  for (int i = -2; i <= 2; ++i) {  // one half of the box
     const SE3 pose = testing_support::FeatureWorld::pose(2, i * std::numbers::pi / 6);
     poses.push_back({i + 3, SE3(pose.rotation(), {2, 2, 1.2})});
     RenderedFrame seen = renderer->render(camera, poses.back().world_from_camera);
@@ -101,7 +101,7 @@ TEST(ScoreMap, OfAMapAtTruePosesIsThatOfItsOwnFrames) {
   const MapStudy study = study_of(mapper.map(), {.floor_z_m = 0, .robot_height_m = 1.21});
   const MapScores scores = score_map(scene, mapper, poses, study, {});
   EXPECT_EQ(scores.keyframes, 5u);
-  // The mapper's poses are rounded to a fraction of a cell: a wall may fall into the next one.
+  // The mapper rounds poses to a fraction of a cell, so a wall may end up in the next cell.
   EXPECT_NEAR(scores.grid.iou.value(), scores.grid_true_poses.iou.value(), 0.08);
   EXPECT_NEAR(scores.grid.iou_seen.value(), scores.grid_true_poses.iou_seen.value(), 0.08);
   EXPECT_GT(scores.grid.iou_seen.value(), scores.grid.iou.value() + 0.2);

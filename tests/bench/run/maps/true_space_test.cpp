@@ -35,7 +35,8 @@ std::set<std::array<int, 3>> surface_of(const TrueSpace& space) {
   return found;
 }
 
-// Flat in each of the three planes: the voxels below its longest side, and no others of its box.
+// A triangle flat in each of the three planes: it is in the voxels below its longest side, and in
+// no others of its bounding box.
 TEST(TrueSpace, ATriangleIsInTheVoxelsThatItTouches) {
   for (int flat = 0; flat < 3; ++flat) {
     const auto turned = [&](auto a, auto b, auto c) {
@@ -56,7 +57,7 @@ TEST(TrueSpace, ATriangleIsInTheVoxelsThatItTouches) {
   }
 }
 
-// Through the corners of a cube's diagonal, a plane misses the two voxels that it leaves.
+// A plane through the diagonal corners of a cube does not touch the two voxels at the sides.
 TEST(TrueSpace, ASlantedTriangleMissesVoxelsOfItsBox) {
   const Scene scene =
       scene_of({{1.9F, 0.05F, 0.05F}, {0.05F, 1.9F, 0.05F}, {0.05F, 0.05F, 1.9F}}, {{0, 1, 2}});

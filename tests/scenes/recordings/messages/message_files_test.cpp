@@ -47,7 +47,7 @@ Read read_all(const std::string& bytes) {
   return read;
 }
 
-/// A text that does not get shorter by compression.
+/// A text that compression does not shorten.
 std::string noise(int seed) {
   const RandomStream random(static_cast<std::uint64_t>(seed));
   std::string text(900'000, '\0');
@@ -57,7 +57,7 @@ std::string noise(int seed) {
 
 enum class Kind { kMcap, kBag };
 
-/// Files of 40 messages on two topics, in chunks of about ten.
+/// Files with 40 messages on two topics, in chunks of about ten.
 class MessageFiles : public testing::TestWithParam<std::tuple<Kind, ChunkCompression>> {
  protected:
   std::unique_ptr<MessageWriter> writer() const {
@@ -140,11 +140,12 @@ TEST_P(MessageFiles, AWrongByteCostsNoMoreThanItsChunk) {
 TEST_P(MessageFiles, TheFirstChunksDamageDoesNotTakeTheOthersTopics) {
   const auto written = write();
   std::string bytes = read_file(file());
-  const std::size_t name = bytes.find("/text");  // none if it is compressed
+  const std::size_t name = bytes.find("/text");  // not found if it is compressed
   if (name == std::string::npos) {
     bytes[bytes.size() / 10] ^= 0x55;
   } else {
-    for (std::size_t i = 0; i < 5; ++i) bytes[name - 1 - i] ^= 0x55;  // what tells where it begins
+    for (std::size_t i = 0; i < 5; ++i)
+      bytes[name - 1 - i] ^= 0x55;  // the bytes that say where the name begins
   }
   const Read read = read_all(bytes);
   ASSERT_GE(read.messages.size(), 20u);
@@ -162,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(All, MessageFiles,
                                          std::tuple(Kind::kBag, ChunkCompression::kNone),
                                          std::tuple(Kind::kBag, ChunkCompression::kLz4)));
 
-/// Builds an MCAP by hand.
+/// Builds an MCAP record by record.
 class Mcap {
  public:
   Mcap() { bytes_.raw(mcap::kMagic); }
@@ -207,7 +208,7 @@ class Mcap {
     c.raw(records);
     return record(mcap::Opcode::kChunk, c.bytes());
   }
-  /// Data's end, footer, magic.
+  /// Adds the end of the data, the footer and the magic bytes.
   Mcap& end(std::uint32_t crc_of_data = 0) {
     ByteWriter data_end;
     data_end.number(crc_of_data);
@@ -260,10 +261,10 @@ TEST(McapByHand, AnEndThatIsAnotherIsTold) {
   expect_told(Mcap(file).record(mcap::Opcode::kDataEnd, std::string(4, '\0')).bytes(),
               "it has no footer");
   expect_told(whole.substr(0, whole.size() - 20), "it has no footer");
-  expect_told(whole.substr(0, whole.size() - 1), "is not followed by MCAP's last bytes");
+  expect_told(whole.substr(0, whole.size() - 1), "is not followed by MCAP's closing bytes");
   expect_told(whole + whole,
               fmt::format("{} bytes after its end are left out", whole.size()).c_str());
-  expect_told(Mcap(file).end(1).bytes(), "its data's CRC is another");
+  expect_told(Mcap(file).end(1).bytes(), "its data's CRC does not match");
   const std::string data = file.bytes();
   EXPECT_EQ(
       note_of(read_all(Mcap(file).end(libdeflate_crc32(0, data.data(), data.size())).bytes())), "");
@@ -278,15 +279,15 @@ TEST(McapByHand, LiesAreCounted) {
     EXPECT_TRUE(read.messages.empty());
     EXPECT_NE(note_of(read).find(part), std::string::npos) << note_of(read);
   };
-  expect_left_out(Mcap().chunk(records, "", records.size(), 1), "its CRC is another");
+  expect_left_out(Mcap().chunk(records, "", records.size(), 1), "its CRC does not match");
   expect_left_out(Mcap().chunk(records, "", 5, 0), "claims 5 bytes");
   expect_left_out(Mcap().chunk(zstd, "zstd", 1, 0), "it holds more bytes, not 1");
   expect_left_out(Mcap().chunk(zstd, "zstd", records.size() + 1, 0), "bytes, not");
   expect_left_out(Mcap().chunk(zstd, "zstd", std::uint64_t{1} << 50, 0), "claims 1125899906842624");
   expect_left_out(Mcap().chunk(zstd, "lz4", records.size(), 0), "its lz4 data");
   expect_left_out(Mcap().chunk(zstd, "snappy", records.size(), 0),
-                  "by 'snappy', which is not read");
-  expect_left_out(Mcap().message(7, "m"), "a message is of no channel");
+                  "with 'snappy', which is not supported");
+  expect_left_out(Mcap().message(7, "m"), "a message belongs to no channel");
   expect_left_out(Mcap().record(mcap::Opcode::kChannel, "x"), "ends too early");
 }
 
@@ -299,12 +300,12 @@ TEST(Bag, OfWhichSomethingFollowsOrARecordIsOfNoKindSaysSo) {
       << note_of(longer);
   std::string unknown = whole;
   unknown[unknown.find("op=\x07", unknown.find("op=\x05")) + 3] = '\x1f';
-  EXPECT_NE(note_of(read_all(unknown)).find("'op' is 31, a record of no known kind"),
+  EXPECT_NE(note_of(read_all(unknown)).find("'op' is 31, an unknown kind of record"),
             std::string::npos)
       << note_of(read_all(unknown));
 }
 
-// Readers of others look for the keys, whichever of the two places they read.
+// Other programs look for the keys in either of the two places.
 TEST(Bag, NamesATopicInItsConnectionsHeaderAndData) {
   const TemporaryFolder work(fs::temp_directory_path());
   const auto out = write_bag(work.path() / "out/file", ChunkCompression::kNone);
@@ -315,13 +316,13 @@ TEST(Bag, NamesATopicInItsConnectionsHeaderAndData) {
   int found = 0;
   for (auto at = bag.find(field); at != std::string::npos; at = bag.find(field, at + 1)) ++found;
   EXPECT_EQ(found, 4) << "in the chunk and in the index, each with header and data";
-  // The record of the bag's header takes 4096 bytes, so that it can be written last.
+  // The bag header record takes 4096 bytes, so that it can be written last.
   const auto number_at = [&](std::size_t at) {
     std::uint32_t number = 0;
     std::memcpy(&number, bag.data() + at, sizeof number);
     return number;
   };
-  constexpr std::size_t kMagic = 13;  // "#ROSBAG V2.0" and the end of its line
+  constexpr std::size_t kMagic = 13;  // "#ROSBAG V2.0" and its newline
   const std::uint32_t header_bytes = number_at(kMagic);
   EXPECT_EQ(4 + header_bytes + 4 + number_at(kMagic + 4 + header_bytes), 4096u);
 }

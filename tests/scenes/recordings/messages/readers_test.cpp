@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our files through readers of others: @mcap/core with @foxglove/rosmsg2-serialization (npm), and
-// python3-rosbag. Where they are missing the tests are skipped.
+// Our files in readers by others: @mcap/core with @foxglove/rosmsg2-serialization (npm), and
+// python3-rosbag. If a reader is missing, its test is skipped.
 #include <sys/wait.h>
 
 #include <cstdio>
@@ -64,7 +64,7 @@ void write_markers(MessageWriter& file) {
   write("/voxels", cubes);
 }
 
-/// Writes everything that a drive and a map can hold.
+/// Writes everything that a drive and a map can contain.
 void write_drive(std::unique_ptr<MessageWriter> file) {
   auto equipment = std::make_shared<Equipment>();
   for (const char* name : {"front", "left", "right"})
@@ -115,7 +115,7 @@ Ran run(const std::string& command) {
   return ran;
 }
 
-/// What either reader has to find.
+/// Checks what both readers have to find.
 void expect_all_topics(const nlohmann::json& found, const char* infix) {
   const auto expect_topic = [&](const std::string& name, const std::string& type,
                                 const std::string& frame_id, int count = kFrames) {

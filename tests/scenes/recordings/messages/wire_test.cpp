@@ -10,7 +10,7 @@
 namespace mh::ros {
 namespace {
 
-/// A message with something in each field.
+/// A message with a value in every field.
 TransformStamped transform() {
   return {{7, {12'345'678'901}, "map"}, "camera_link", {{1, 2, 3}, {0, 0, 1, 0}}};
 }
@@ -24,7 +24,7 @@ Detection2DArray detections() {
 }
 
 TEST(Wire, CdrIsAsTheStandardPrescribes) {
-  // Seconds, nanoseconds, length of "map" with its zero, the text; in ROS 2 there is no `seq`.
+  // Seconds, nanoseconds, length of "map" with its terminating zero, the text; ROS 2 has no `seq`.
   const std::string expected("\0\1\0\0\x0c\0\0\0\x35\xa4\x9a\x14\4\0\0\0map\0", 20);
   EXPECT_EQ(serialized(transform().header, Wire::kCdr), expected);
 }
@@ -35,7 +35,7 @@ TEST(Wire, Ros1IsPacked) {
 }
 
 TEST(Wire, NumbersOfCdrStandAtMultiplesOfTheirSize) {
-  // Range: a byte is followed by floats; three bytes of nothing are between them.
+  // In a Range, a byte is followed by floats, with three bytes of padding in between.
   Range range;
   range.field_of_view = 1;
   const std::string bytes = serialized(range, Wire::kCdr);
@@ -43,7 +43,7 @@ TEST(Wire, NumbersOfCdrStandAtMultiplesOfTheirSize) {
   EXPECT_EQ(bytes.substr(4 + 16, 4), std::string("\0\0\x80\x3f", 4));
 }
 
-/// Whether a message reads back as it was written, and no shorter text of bytes does.
+/// Expects that a message reads back as it was written, and that no truncated bytes do.
 template <class M>
 void expect_round_trip(const M& message) {
   for (const Wire wire : {Wire::kRos1, Wire::kCdr}) {

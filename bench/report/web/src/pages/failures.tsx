@@ -10,7 +10,7 @@ import { Chart } from "../view/Chart";
 import { DataTable } from "../view/DataTable";
 import { Choice, Missing, PerFolder, Piece } from "../view/parts";
 
-/** In the order in which a query meets them: results.sqlite's stages, audit.csv's causes. */
+/** In the order in which a query reaches them: results.sqlite's stages, audit.csv's causes. */
 const kOrder = ["none", "no candidate", "matches", "pnp", "inliers", "verified", "nothing in sight", "wrong candidates", "few matches", "few inliers", "false answer"];
 
 interface CountsProps {
@@ -66,7 +66,7 @@ const kFailed = ["unanswered", "false positive"];
 function FailuresOf({ folder, place, written }: { folder: Folder; place: number; written: WrittenTable }): JSX.Element {
   const table = useMemo(() => new Table(written), [written]);
   const sets = table.words("query_set");
-  // At first the set with the most failures.
+  // The set with the most failures is shown first.
   const failures = (key: string) => table.where({ query_set: key }).filter((row) => kFailed.includes(table.text("outcome", row))).length;
   const usual = useMemo(() => [...sets].sort((a, b) => failures(b) - failures(a))[0] ?? "", [table]);
   const [picked, setSet] = useNoted(`set-${place}`, usual);

@@ -12,7 +12,7 @@ import { Choice, Missing, PerFolder, Piece } from "../view/parts";
 import { queryPlaces, topView } from "../view/topview";
 import { GradedCurves } from "./graded";
 
-/** Rows of the level that a reader picked, where there are several. @param key  of the choice */
+/** Rows of the level that the reader chose, if there are several. @param noted  key of the choice */
 function useArm(table: Table, noted: string): { rows: number[]; picker: JSX.Element | null; arm: string } {
   const arms = [...new Set(Array.from({ length: table.rows }, (_, r) => `${table.text("level", r)}, ${table.text("labels", r)}`))];
   const levels = table.words("level");
@@ -54,9 +54,9 @@ function Density({ folder, density }: { folder: Folder; density: NonNullable<Fig
   const make = useCallback(
     (): Plot.PlotOptions => {
       const color = (d: { arm: string }) => style(d.arm).color;
-      // Quartiles of fewer than five values say nothing: their dots and mean stand alone.
+      // Quartiles of fewer than five values say nothing: only their dots and mean are drawn.
       const boxed = values.filter((v) => (means.find((m) => m.group === v.group && m.arm === v.arm)?.count ?? 0) >= 5);
-      // One value far beyond the others would press them to the axis; figures for papers do the same.
+      // One value far beyond the others would squeeze them against the axis; figures for papers do the same.
       const sorted = values.map((v) => v.value).sort((a, b) => a - b);
       const middle = sorted[Math.floor(sorted.length / 2)] ?? 0;
       const log = column?.unit !== "%" && (sorted[0] ?? 0) > 0 && (sorted.at(-1) ?? 0) > 10 * middle;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Success over what queries are graded by: distance, angle, share in sight, speed.
+// Success as a function of what queries are graded by: distance, angle, share in sight, speed.
 import * as Plot from "@observablehq/plot";
 import type { JSX } from "preact";
 import { useCallback } from "preact/hooks";

@@ -38,7 +38,7 @@ function Differences({ all, unit }: { all: Difference[]; unit: string }): JSX.El
   const make = useCallback(
     (width: number): Plot.PlotOptions => {
       const room = 30 + 6.4 * Math.max(...shown.map((d) => d.what.length));
-      const beside = room < 0.45 * width; // names; otherwise above their intervals
+      const beside = room < 0.45 * width; // names next to their intervals; otherwise above them
       const letters = Math.floor((width - 40) / 7);
       const lines = beside ? 1 : Math.max(...shown.map((d) => Math.ceil(d.what.length / letters)));
       const ends = [0, ...shown.map((d) => d.difference), ...bounded.flatMap((d) => [d.low ?? 0, d.high ?? 0])];
@@ -124,7 +124,7 @@ function withUnit(value: number, unit: string, decimals: number): string {
   return `${shownNumber(value, unit, decimals)} ${unit}`;
 }
 
-/** The figures of a row that matter first. */
+/** The most important figures of a row. */
 function tilesOf(tiles: Table, row: number): Tile[] {
   return tiles.columns
     .filter((c) => !c.isText && !c.key.endsWith(".success"))
@@ -225,7 +225,7 @@ function Frames({ frames }: { frames: NonNullable<PlaceImages["frames"]> }): JSX
   );
 }
 
-/** The place: as it was drawn from above or, where no drawing is left, its paths. */
+/** The place: its drawing from above or, if there is none, its paths. */
 function PlaceSeen({ place }: { place: number }): JSX.Element {
   return (
     <Piece<PlaceImages | null> piece={`${place}/place`}>
@@ -265,7 +265,7 @@ function counted(count: number, one: string): string {
 
 function Top({ folder, place, overview }: { folder: Folder; place: number; overview: Overview }): JSX.Element | null {
   const { suite, verdicts } = overview;
-  const [open, setOpen] = useState(false); // a chart needs to know its width
+  const [open, setOpen] = useState(false); // charts are drawn once open: they need to know their width
   const [picked, setLevel] = useNoted(`level-${place}`, suite?.levels[0] ?? "");
   if (!suite || !verdicts || !overview.tiles) return null;
   const tiles = new Table(overview.tiles);

@@ -91,7 +91,7 @@ function Tracking({ run }: { run: RunPaths }): JSX.Element {
   );
 }
 
-/** Everything that is known of one query. */
+/** Everything that is known about one query. */
 function Query({ queries, row, place, views }: { queries: Table; row: number; place: number; views: string | null }): JSX.Element {
   const run = queries.text("run", row);
   const own = queries.where({ run });

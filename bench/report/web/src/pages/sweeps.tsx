@@ -67,7 +67,7 @@ function HeatMap({ view, across, down }: { view: View; across: Column; down: Col
   return <Chart title={`Heat map: ${heading(measure)}`} about={`${heading(measure)} over ${across.title} and ${down.title}. ${view.about}`} marks={{ cell: cells.length }} make={make} />;
 }
 
-/** One curve per value of the other setting, if there are few; else points alone. */
+/** One curve per value of the other setting, if there are few; else only points. */
 function Response({ view, across, other }: { view: View; across: Column; other: Column | undefined }): JSX.Element | null {
   const { table, rows, measure } = view;
   const points = useMemo(
@@ -87,7 +87,7 @@ function Response({ view, across, other }: { view: View; across: Column; other: 
   const names = [...new Set(points.map((p) => p.other))];
   const lines = names.length <= 6;
   const bounded = points.filter((p) => p.low !== null);
-  // Curves that coincide stand beside one another.
+  // Curves that coincide are drawn beside one another.
   const xs = points.map((p) => p.x);
   const apart = lines ? 0.012 * (Math.max(...xs) - Math.min(...xs)) : 0;
   const shift = (name: string) => (names.indexOf(name) - (names.length - 1) / 2) * apart;

@@ -10,7 +10,7 @@ export interface LegendEntry {
   name: string;
   color: string;
   dash?: string;
-  mark?: string; // a letter in the place of a line
+  mark?: string; // a letter in place of a line
 }
 
 interface Props {
@@ -23,8 +23,8 @@ interface Props {
   wide?: boolean;
 }
 
-/** What all charts share. Its style element would be refused by the content-security policy; the
- * rules stand in app.css, and saveChart() puts them into the file. */
+/** What all charts share. Plot's style element would be refused by the content-security policy; the
+ * rules are in app.css, and saveChart() puts them into the file. */
 export function drawn(options: Plot.PlotOptions, width: number): SVGSVGElement {
   const { text } = ink();
   const made = Plot.plot({
@@ -38,7 +38,7 @@ export function drawn(options: Plot.PlotOptions, width: number): SVGSVGElement {
   } as Plot.PlotOptions);
   const svg = (made instanceof SVGSVGElement ? made : made.querySelector("svg")) as SVGSVGElement;
   for (const style of svg.querySelectorAll("style")) style.remove();
-  // The whole is one image with a label; its parts are none of a screen reader's.
+  // A screen reader sees the whole as one labeled image, without its parts.
   for (const part of svg.querySelectorAll("[aria-label]")) part.removeAttribute("aria-label");
   svg.setAttribute("color", text);
   svg.setAttribute("fill", "currentColor");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table that sorts, filters and copies. Its state stands in the address, so that it has a link.
+// A table that sorts, filters and copies. Its state is in the address, so that it has a link.
 import type { JSX } from "preact";
 import { useMemo, useState } from "preact/hooks";
 import { type Column, type Table, heading } from "../data";
@@ -39,7 +39,7 @@ function compare(table: Table, column: Column, down: boolean): (a: number, b: nu
   };
 }
 
-/** Words as they are compared: a blank in a column's name is written as "_". */
+/** Words as they are compared: a space in a column's name is written as "_". */
 const plain = (text: string) => text.toLowerCase().replaceAll(" ", "_");
 
 /** Rows that hold every word of a filter, in some cell that is shown; "column:word" in that one.
@@ -76,7 +76,7 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
   const [said, setSaid] = useState("");
 
   const open = table.columns.filter((c) => !c.hidden);
-  // A text that is the same in all rows is said once, above them.
+  // A text that is the same in all rows is shown once, above them.
   const same = useMemo(() => {
     const shown = rows ?? Array.from({ length: table.rows }, (_, row) => row);
     return shown.length < 3 ? [] : open.slice(1).filter((c) => c.isText && shown.every((row) => table.text(c.key, row) === table.text(c.key, shown[0] ?? 0)));
@@ -93,12 +93,12 @@ export function DataTable({ id, table, rows, usual, link }: Props): JSX.Element 
 
   const sortBy = (column: Column) => {
     const same = sorting?.key === column.key;
-    // Numbers first from the largest; a third click ends the sorting.
+    // Numbers are sorted first from the largest; a third click ends the sorting.
     const first = !column.isText;
     const next = !same ? { key: column.key, down: first } : sorting.down === first ? { key: column.key, down: !first } : null;
     setSorted(next ? `${next.down ? "-" : ""}${next.key}` : "");
   };
-  // Names in the first column stand in one line, unless one of them is very long.
+  // Names in the first column do not wrap unless one of them is very long.
   const first = columns[0];
   const longest = useMemo(() => (first?.isText ? Math.max(0, ...table.words(first.key).map((word) => word.length)) : 0), [table, first]);
   const copy = async (format: Format) => {

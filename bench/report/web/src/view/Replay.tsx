@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The replay of a run: play, step, scrub, speed; its moment stands in the address.
+// The replay of a run: play, step, scrub, speed; the current time is in the address.
 import type { JSX } from "preact";
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type RunPaths, type Table, load } from "../data";
@@ -14,8 +14,8 @@ interface Props {
   run: RunPaths;
   queries: Table;
   rows: number[];
-  piece: string | null; // of what was recorded by running it again; null: it was not
-  views: string | null; // the piece of what it saw then
+  piece: string | null; // what was recorded by repeating the run; null if it was not repeated
+  views: string | null; // the piece with the images of that recording
 }
 
 let script: Promise<void> | null = null;
@@ -64,7 +64,7 @@ function Player({ run, queries, rows, piece, views, focus, onFail }: Props & { f
   const places = useMemo(() => placesOf(queries, rows), [queries, rows]);
 
   useEffect(() => {
-    // A link to another moment of a replay that is already open.
+    // A link to a different time of a replay that is already open.
     const follow = () => currentRoute().at.has("t") && (setPlaying(false), setMs(linked()));
     addEventListener("hashchange", follow);
     return () => removeEventListener("hashchange", follow);
@@ -121,7 +121,7 @@ function Player({ run, queries, rows, piece, views, focus, onFail }: Props & { f
     return () => cancelAnimationFrame(handle);
   }, [playing, speed]);
 
-  /** To the moment of the path after or before this one. */
+  /** Goes to the next or previous pose of the path. */
   const step = (by: number) => {
     setPlaying(false);
     const here = by > 0 ? path.ms.findIndex((t) => t > ms + 0.5) : path.ms.findLastIndex((t) => t < ms - 0.5);

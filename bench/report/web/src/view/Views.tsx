@@ -8,7 +8,7 @@ import { Choice, Missing } from "./parts";
 
 export type ClassColors = Record<string, { name: string; color: string }>;
 const kGap = 8; // between two pictures
-const kScale = 2; // canvas pixels for one of a picture
+const kScale = 2; // canvas pixels per pixel of a picture
 
 function useImage(jpeg: string): HTMLImageElement | null {
   const [image, setImage] = useState<HTMLImageElement | null>(null);
@@ -61,7 +61,7 @@ function drawKeypoints(context: CanvasRenderingContext2D, keypoints: Keypoint[],
   }
 }
 
-/** The keyframe that was made last at a moment, with its keypoints. */
+/** The last keyframe that was made up to a given time, with its keypoints. */
 export function LastKeyframe({ views, ms, classes }: { views: WrittenViews; ms: number; classes: ClassColors }): JSX.Element {
   const place = views.keyframes.findLastIndex((keyframe) => keyframe.ms <= ms);
   const keyframe = views.keyframes[Math.max(0, place)];

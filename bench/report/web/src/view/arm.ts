@@ -14,7 +14,7 @@ export function armStyle(i: number): Style {
 }
 
 const armKey = (system: string, labels: string) => `${system}\n${labels}`;
-/** Of all folders, each once, in the order of the first that has it. */
+/** The arms of all folders, each once, in the order of the first folder that has it. */
 const kArms = [...new Set(folders.flatMap((folder) => folder.arms.map((arm) => armKey(arm.system, arm.labels))))];
 
 /** The style of a system with its labels: the same on all pages, and in all folders. A folder's
@@ -31,8 +31,8 @@ export interface Arms {
   style: (name: string) => Style;
 }
 
-/** What the rows of a table are of: the system, with its labels and the level where a table has
- * several of them. Rows of one arm may be counted together. */
+/** The arms that a table's rows belong to: the system, with its labels and the level where a table
+ * has several of them. Rows of one arm may be counted together. */
 export function armsOf(folder: Folder, table: Table, rows: number[]): Arms {
   const different = (key: string) => new Set(rows.map((row) => table.text(key, row)).filter((word) => word !== "none" && word !== "")).size > 1;
   const parts = ["labels", "level"].filter(different);
@@ -46,7 +46,7 @@ export function armsOf(folder: Folder, table: Table, rows: number[]): Arms {
   return { name, names: [...styles.keys()], style: (of) => styles.get(of) ?? armStyle(0) };
 }
 
-/** Room for names left of a chart, and what of a name fits there. */
+/** The margin for names left of a chart, and the part of a name that fits there. */
 export function nameMargin(names: string[], width: number): { margin: number; fitted: (name: string) => string } {
   const px = 6.8; // of a letter
   const margin = Math.max(60, Math.min(0.36 * width, 18 + px * Math.max(...names.map((name) => name.length))));

@@ -17,7 +17,7 @@ const kLatex: Record<string, string> = {
   "²": "$^2$",
   "°": "$^\\circ$",
 };
-/** As latex_cell() of bench/report/export.cpp. */
+/** Like latex_cell() of bench/report/export.cpp. */
 function latexCell(text: string): string {
   return text
     .replace(/[\\~^<>|²°&%$#_{}]/gu, (c) => kLatex[c] ?? `\\${c}`)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pages share: pieces of data on their way, what is missing, folders side by side.
+// What pages share: loading pieces of data, notes on what is missing, folders side by side.
 import { Component, type ComponentChildren, type JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { type Folder, folders, load } from "../data";
@@ -32,12 +32,12 @@ export function Piece<T>({ piece, children }: PieceProps<T>): JSX.Element {
   return <Guarded><Drawn of={() => children(found)} /></Guarded>;
 }
 
-/** Draws inside of Guarded: what fails there is caught. */
+/** Draws inside Guarded, which catches what fails. */
 function Drawn({ of }: { of: () => ComponentChildren }): JSX.Element {
   return <>{of()}</>;
 }
 
-/** Says so where a part of a page cannot be drawn, in place of the whole page. */
+/** If a part of a page cannot be drawn, shows an error there instead of losing the whole page. */
 class Guarded extends Component<{ children: ComponentChildren }, { error: string | null }> {
   override state = { error: null as string | null };
   override componentDidCatch(error: Error): void {
@@ -48,7 +48,7 @@ class Guarded extends Component<{ children: ComponentChildren }, { error: string
   }
 }
 
-/** States what is not there, in place of an empty chart. */
+/** States what is missing, in place of an empty chart. */
 export function Missing({ children }: { children: ComponentChildren }): JSX.Element {
   return <p class="missing">{children}</p>;
 }
@@ -100,7 +100,7 @@ export function Choice({ label, options, value, onPick }: ChoiceProps): JSX.Elem
   );
 }
 
-/** Facts as a list of terms. */
+/** Facts as a list of terms and values. */
 export function Facts({ facts }: { facts: [string, ComponentChildren][] }): JSX.Element {
   return (
     <dl class="facts">

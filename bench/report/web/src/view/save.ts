@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Charts as files: with title, legend, units and source, which stand beside them on the page.
+// Charts as files: with title, legend, units and source, which are next to them on the page.
 import { ink } from "../theme";
 import type { LegendEntry } from "./Chart";
 
@@ -17,7 +17,7 @@ function element(name: string, attributes: Record<string, string | number>, text
   return made;
 }
 
-/** Lines of at most so many characters, broken between words. */
+/** Lines of at most `most` characters, broken between words. */
 function lines(text: string, most: number): string[] {
   const made: string[] = [""];
   for (const word of text.split(" ")) {

@@ -44,7 +44,7 @@ export interface QueryPlaces {
   errors: { x1: number; y1: number; x2: number; y2: number }[];
 }
 
-/** True places of queries, places that were answered, and a line from each to the other. */
+/** True places of queries, the places that were answered, and a line between the two. */
 export function queryPlaces(queries: Table, rows: number[]): QueryPlaces {
   const made: QueryPlaces = { truths: [], answers: [], errors: [] };
   for (const row of rows) {
@@ -61,7 +61,7 @@ export function queryPlaces(queries: Table, rows: number[]): QueryPlaces {
   return made;
 }
 
-/** @param chosen  the row of a query to be framed */
+/** @param chosen  the row of a query to frame */
 export function topView(
   run: RunPaths,
   found: QueryPlaces,
@@ -83,7 +83,7 @@ export function topView(
   const y = extent(ys);
   const inner = width - 70;
   const height = Math.min(640, Math.max(220, (inner * (y[1] - y[0])) / (x[1] - x[0]) + 60));
-  // As many px to a meter across as up: what is too narrow gets room on both sides.
+  // The same scale in both directions: a plan that is too narrow gets margins on both sides.
   const scale = Math.min(inner / (x[1] - x[0]), (height - 60) / (y[1] - y[0]));
   const spare = Math.max(0, inner / scale - (x[1] - x[0])) / 2;
   x = [x[0] - spare, x[1] + spare];

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Reads a bag with python3-rosbag, decodes every message by the definition in the bag and prints
-what it found; exit code 77 where the library is missing. Usage: read_bag.py FILE"""
+"""Reads a bag with python3-rosbag, decodes every message using the definition in the bag and
+prints what it found; exit code 77 if the library is missing. Usage: read_bag.py FILE"""
 import json
 import sys
 
@@ -14,7 +14,7 @@ except ImportError:
 topics = {}
 with rosbag.Bag(sys.argv[1]) as bag:
     for connection in bag._get_connections():
-        # The checksum that the definition gives is that which the bag states.
+        # The checksum of the definition must be the one in the bag.
         generated = genpy.dynamic.generate_dynamic(connection.datatype, connection.msg_def)
         if generated[connection.datatype]._md5sum != connection.md5sum:
             sys.exit(f"{connection.datatype}: md5 is {generated[connection.datatype]._md5sum}")

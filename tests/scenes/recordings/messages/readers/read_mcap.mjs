@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an MCAP file with @mcap/core, by its index and as a stream, decodes every message with
+// Reads an MCAP file with @mcap/core, through its index and as a stream, decodes every message with
 // @foxglove/rosmsg2-serialization and prints what it found: read_mcap.mjs FILE
 import { open, readFile } from "node:fs/promises";
 
@@ -22,7 +22,7 @@ const readable = {
 
 const nanoseconds = (stamp) => BigInt(stamp.sec) * 1000000000n + BigInt(stamp.nsec ?? stamp.nanosec);
 
-/** The first header in a message: that of a TFMessage's first transform, for example. */
+/** The first header in a message, such as that of the first transform in a TFMessage. */
 function headerOf(message) {
   return message.header ?? message.transforms?.[0]?.header;
 }
@@ -57,7 +57,7 @@ for (const [id, count] of statistics.channelMessageCounts) {
   if (BigInt(topic.count) !== count) throw new Error(`statistics count ${count} of ${id}`);
 }
 
-// Once more as a stream, which checks every checksum.
+// Once more as a stream, which verifies all checksums.
 let streamed = 0;
 const stream = new McapStreamReader({ decompressHandlers, validateCrcs: true });
 stream.append(await readFile(file));
