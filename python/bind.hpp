@@ -46,7 +46,7 @@ py::array view_of(const Grid2d<T>& grid, py::handle owner) {
   return view;
 }
 
-/// The same for an image that nothing else holds.
+/// A read-only view that takes over the image and keeps it alive.
 template <class T>
 py::array array_of(Grid2d<T> grid) {
   auto held = std::make_unique<Grid2d<T>>(std::move(grid));
@@ -55,7 +55,8 @@ py::array array_of(Grid2d<T> grid) {
   return view_of(image, owner);
 }
 
-/// @throws py::value_error naming the argument, its shape and the shape that was expected
+/// Copies an array to a grid. @throws py::value_error naming the argument, its number of dimensions
+/// and the shape that was expected
 template <class T>
 Grid2d<T> grid_of(const Array<T>& image, const char* what) {
   if (image.ndim() != 2)
@@ -67,14 +68,14 @@ Grid2d<T> grid_of(const Array<T>& image, const char* what) {
 }
 Grid2d<Rgb8> color_of(const Array<std::uint8_t>& image);
 
-/// Converts a list or an array with numpy. @throws py::value_error if numpy cannot
+/// Converts a list or an array with numpy. @throws py::value_error if numpy cannot convert it
 inline py::array array_of_numbers(const py::object& object, const char* what) {
   py::array array = py::array::ensure(object);
   if (!array) throw py::value_error(std::string(what) + ": is not an array");
   return array;
 }
 
-/// Largest accepted coordinate of a place and distance of a pose from the origin.
+/// Largest accepted coordinate of a place, and largest accepted distance of a pose from the origin.
 inline constexpr double kFarthest_m = 1e6;
 
 /// 4 x 4.

@@ -117,8 +117,8 @@ RgbdFrame frame_at(const Recording& recording, py::ssize_t i) {
   return recording.frames->frame(at, RandomStream(0).fork(at));
 }
 
-/// @throws py::value_error unless numbers are of one of these kinds ("u", "i", "f"), since others
-/// would be converted to something that was not meant
+/// @throws py::value_error unless the image's numbers are of one of these kinds ("u", "i", "f"):
+/// numbers of other kinds would be converted to something that was not meant
 void require_kind(const py::array& image, const std::string& kinds, const char* what,
                   const char* expected) {
   if (kinds.find(image.dtype().kind()) == std::string::npos)

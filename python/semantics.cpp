@@ -13,8 +13,7 @@
 namespace mh::python {
 namespace {
 
-/// Ids of labels or words. @throws py::value_error unless they are integers that fit in 32 bits,
-/// unsigned
+/// Ids of labels or words. @throws py::value_error unless they are integers from 0 to 2^32 - 1
 class Ids {
  public:
   Ids(const py::object& object, const char* what) {

@@ -24,7 +24,7 @@ LabelMode label_mode(const std::string& word) {
       fmt::format("labels='{}' is not one of none, exact, annotated, boxes, detector", word));
 }
 
-/// What a step delivers, with the robot's equipment for the sensors' names.
+/// What a step delivers, and the robot's equipment, which holds the sensors' names.
 struct Observed {
   RobotObservation seen;
   std::shared_ptr<RgbdFrame> frame;  ///< or null

@@ -16,7 +16,7 @@
 namespace mh::python {
 namespace {
 
-/// The settings that {"features.count": 1000, ...} names, or those of a file.
+/// The settings in a dict such as {"features.count": 1000}, or in a file.
 /// @param base  values of all other settings
 SlamConfig config_of(const py::object& settings, const SlamConfig& base) {
   if (settings.is_none()) return base;

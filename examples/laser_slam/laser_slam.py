@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""SLAM from laser scans alone: each scan is matched to a map of all before it; a lost robot is
-searched for wherever it has been.
+"""SLAM from laser scans alone: each scan is matched to a map of all earlier scans; a lost
+robot is searched for at all places where it has been.
 
 The images are not read. Needs `senses: [laser]` and numpy: apt-get install python3-numpy. With
 `senses: [laser, odometry]`, wheel odometry predicts the motion.
@@ -13,9 +13,9 @@ from modelhouse.system import Reply, System, serve
 CELL_M = 0.05      # cells of the map, a square of CELLS x CELLS cells around the start
 CELLS = 1200
 SIGMA_M = 0.07     # standard deviation of the blur of a ray's end
-KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # a scan this far from all in the map is added
+KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # a scan this far from all scans in the map is added to it
 LEAST_ENDS = 20    # ray ends that a scan needs to be useful
-LEAST_SHARE = 0.85  # of a scan's ends that must match the map for a pose to be believed
+LEAST_SHARE = 0.85  # share of a scan's ends that must match the map for a pose to be believed
 
 
 def planar(pose):
@@ -37,7 +37,7 @@ def compose(a, b):
 
 
 def ends_of(scans):
-    """Where the rays of all lasers end, in the plane of the first, m; N x 2."""
+    """The end points of all lasers' rays, m, in the plane of the first laser; N x 2."""
     ends = []
     for scan in scans:
         hit = scan.ranges > 0
@@ -51,11 +51,11 @@ def ends_of(scans):
 
 
 class Map:
-    """How many rays ended in or beside each cell, spread by SIGMA_M: densest on the walls."""
+    """For each cell, the number of rays that ended in it or near it, weighted by a Gaussian of SIGMA_M."""
 
     def __init__(self):
         self.ends = np.zeros((CELLS, CELLS), np.float32)
-        self.seen_from = []  # poses of the scans in it
+        self.seen_from = []  # poses of the scans in the map
         reach = int(3 * SIGMA_M / CELL_M)
         off = np.arange(-reach, reach + 1) * CELL_M
         self.stamp = np.exp(-0.5 * (off[:, None] ** 2 + off[None, :] ** 2) / SIGMA_M ** 2)
@@ -72,11 +72,11 @@ class Map:
         return into(y), into(x)
 
     def score(self, poses, ends):
-        """How well the ends fit, for each pose; a wall that was seen often counts only a little more."""
+        """How well the ends fit the map at each pose; walls that were seen more often count only a little more."""
         return np.log1p(self.ends[self.cells(poses, ends)]).mean(axis=-1)
 
     def share(self, pose, ends):
-        """The share of the ends that are where earlier ends were."""
+        """The share of the ends that lie where the ends of mapped scans lie."""
         return (self.ends[self.cells(pose, ends)] > 0.5).mean()
 
     def add(self, pose, ends):
@@ -105,7 +105,7 @@ class Map:
         return pose
 
     def search(self, ends):
-        """The best pose near any from which the map was seen, with any heading."""
+        """The best pose, with any heading, near any place from which a mapped scan was taken."""
         if len(ends) < LEAST_ENDS:
             return np.zeros(3)
         few = ends[::max(1, len(ends) // 90)]

@@ -6,18 +6,18 @@ Needs apt-get install python3-open3d
 """
 import os
 
-os.environ["OMP_NUM_THREADS"] = "1"  # the same sums every run
+os.environ["OMP_NUM_THREADS"] = "1"  # sums are the same in every run
 import numpy as np
 import open3d as o3d
 
 from modelhouse.system import Reply, System, serve
 
 STEP = 2                               # every second pixel: a quarter of the time
-FAR_M = 4.0                            # depth beyond is noise
+FAR_M = 4.0                            # depth beyond this is noise
 KEYFRAME_M, KEYFRAME_RAD = 0.15, 0.15  # a frame this far from the last keyframe becomes one
 LOST_M, LOST_RAD = 0.3, 0.3            # no camera moves this far between two frames
 LOOP_M, LOOP_RAD, LOOP_GAP = 0.8, 0.5, 15  # keyframes this close, but this many apart, may close a loop
-LOOP_ERROR_M, LOOP_ERROR_RAD = 0.3, 0.2    # a loop with a larger error contradicts the path: rejected
+LOOP_ERROR_M, LOOP_ERROR_RAD = 0.3, 0.2    # a loop that deviates more from the path is rejected
 
 
 def size_of(motion):
@@ -32,7 +32,7 @@ class Open3dSlam(System):
         self.intrinsic = o3d.camera.PinholeCameraIntrinsic(
             c.width // STEP, c.height // STEP, c.fx / STEP, c.fy / STEP, c.cx / STEP, c.cy / STEP)
         self.graph = o3d.pipelines.registration.PoseGraph()
-        self.images, self.frames = [], []  # of keyframes; (stamp, keyframe, keyframe_from_frame)
+        self.images, self.frames = [], []  # the keyframes' images; each frame's (stamp, keyframe, keyframe_from_frame)
         self.last = None                   # keyframe_from_frame of the last frame; None: lost
         self.pose = np.eye(4)
 
@@ -43,7 +43,7 @@ class Open3dSlam(System):
         self.last = None
 
     def align(self, image, keyframe, guess):
-        """keyframe_from_image and its information; None if they do not fit."""
+        """keyframe_from_image and its information matrix; None if the two images do not fit."""
         odometry = o3d.pipelines.odometry
         options = odometry.OdometryOption()
         options.depth_max = FAR_M

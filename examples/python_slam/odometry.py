@@ -30,14 +30,14 @@ def find_keypoints(orb, image, depth_m, k, distortion):
     pixels = np.array([keypoint.pt for keypoint in keypoints])
     columns, rows = np.rint(pixels).astype(int).T
     z = depth_m[rows, columns]
-    near = (z > 0.3) & (z < 5.0)  # beyond that, a structured-light sensor's depth is noise
+    near = (z > 0.3) & (z < 5.0)  # beyond 5 m, a structured-light sensor's depth is noise
     rays = cv2.undistortPoints(pixels[:, None], k, distortion)[:, 0]
     points = np.column_stack([rays * z[:, None], z])
     return pixels[near], descriptors[near], points[near]
 
 
 def estimate_motion(before, now, k, distortion):
-    """now_from_before as a 4 x 4 matrix; None if too few keypoints agree on one."""
+    """now_from_before as a 4 x 4 matrix; None if too few keypoints agree on a motion."""
     _, descriptors_before, points_before = before
     pixels, descriptors, _ = now
     if len(descriptors_before) < 20 or len(descriptors) < 20:
@@ -59,7 +59,7 @@ def estimate_motion(before, now, k, distortion):
 
 
 def recover(now, keyframes, last, k, distortion):
-    """world_from_camera of a frame that cannot be matched to the one before, from a keyframe near it."""
+    """world_from_camera of a frame that does not match the previous frame, from a keyframe near the last pose."""
     near = sorted(keyframes, key=lambda of: np.linalg.norm(of[1][:3, 3] - last[:3, 3]))
     for features, world_from_keyframe in near[:20]:
         motion = estimate_motion(features, now, k, distortion)
@@ -69,7 +69,7 @@ def recover(now, keyframes, last, k, distortion):
 
 
 def is_new(world_from_camera, keyframes):
-    """Whether no keyframe is within 0.25 m and 0.3 rad."""
+    """Whether no keyframe is both within 0.25 m and within 0.3 rad."""
     return all(np.linalg.norm(pose[:3, 3] - world_from_camera[:3, 3]) > 0.25
                or (np.trace(pose[:3, :3].T @ world_from_camera[:3, :3]) - 1) / 2 < np.cos(0.3)
                for _, pose in keyframes)
@@ -106,7 +106,7 @@ def main():
                          else recover(now, keyframes, world_from_camera, k, distortion))
                 if found is None:
                     before = None
-                    continue  # lost: this frame has no pose; the next is sought among the keyframes
+                    continue  # lost: this frame has no pose; the next one is matched to keyframes
                 world_from_camera = found
             before = now
             if is_new(world_from_camera, keyframes):

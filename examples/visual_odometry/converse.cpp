@@ -23,7 +23,7 @@ FILE* open_replies() {
   return replies;
 }
 
-/// Where the wheels place the camera, if the request contains it.
+/// The camera's pose from wheel odometry, if the request contains it.
 std::optional<cv::Affine3d> wheels_of(const cv::FileStorage& request) {
   const cv::FileNode told = request["odometry"];
   if (told.size() != 7) return {};

@@ -21,7 +21,8 @@ struct Library {
   char* message;
 };
 
-/// No exception may leave the library: its text becomes the message.
+/// Calls `work`. No exception may leave the library, so the text of one becomes the message.
+/// @returns 0, or 1 after an exception
 template <class Work>
 int guarded(void* self, Work&& work) {
   auto& library = *static_cast<Library*>(self);
@@ -101,7 +102,7 @@ mh_system* mh_make_system(const mh_setup* setup) try {
                      .rewind = rewind,
                      .reset = reset,
                      .freeze = freeze,
-                     .trajectory = nullptr,   // the replies suffice
+                     .trajectory = nullptr,   // the poses in the replies suffice
                      .begin_query = nullptr,  // relocalize() keeps no state:
                      .blank = nullptr,        // nothing to forget or to lose
                      .relocalize = relocalize,

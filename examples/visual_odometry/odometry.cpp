@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMinFirst = 80;        // points with depth for a frame to become the origin
 constexpr int kMinTracked = 20;      // inliers to accept a pose tracked from a keyframe
-constexpr int kMinRelocalized = 30;  // and one found by relocalization
+constexpr int kMinRelocalized = 30;  // inliers to accept a pose found by relocalization
 constexpr int kCandidates = 5;       // keyframes tried in relocalization
 constexpr int kVoters = 200;         // descriptors used to choose them
 constexpr float kRatio = 0.75F;
@@ -23,7 +23,7 @@ constexpr double kReprojection_px = 2.5;
 constexpr double kKeyframeDistance_m = 0.15, kKeyframeAngle_rad = 0.2;
 constexpr int kKeyframeInliers = 80;
 
-/// Pairs (query row, train row) whose best match beats the second by the ratio.
+/// The best match (query row, train row) of each query row that passes the ratio test.
 std::vector<cv::DMatch> match(const cv::Mat& query, const cv::Mat& train) {
   std::vector<cv::DMatch> good;
   if (query.rows < 2 || train.rows < 2) return good;
@@ -190,7 +190,7 @@ Found VisualOdometry::track(const cv::Mat& bgr, const cv::Mat& depth,
     return cv::norm(motion.translation()) > kKeyframeDistance_m ||
            cv::norm(motion.rvec()) > kKeyframeAngle_rad;
   };
-  // If the pose came from relocalization, another keyframe may be near.
+  // If the pose came from relocalization, a keyframe other than the reference may be near.
   const bool new_ground = std::all_of(keyframes_.begin(), keyframes_.end(), moved);
   if (new_ground || found.inliers < kKeyframeInliers) {
     found.keyframe_added = true;

@@ -56,13 +56,13 @@ class VisualOdometry {
   explicit VisualOdometry(Camera camera);
 
   /// Localizes the next frame and extends the map. The first frame is the origin.
-  /// @param wheels  where odometry places the camera in its own world, if it is known
+  /// @param wheels  the camera's pose in the frame of wheel odometry, if known
   Found track(const cv::Mat& bgr, const cv::Mat& depth,
               const std::optional<cv::Affine3d>& wheels = {});
   /// Localizes a frame in the map without a prior pose. Changes nothing, so that the answer depends
   /// only on the map and the frame.
   Found relocalize(const cv::Mat& bgr, const cv::Mat& depth) const;
-  /// Tracking is treated as lost; the map stays.
+  /// Treats tracking as lost; keeps the map.
   void lose() { reference_.reset(); }
   void forget_map();
 
@@ -76,7 +76,7 @@ class VisualOdometry {
   cv::Ptr<cv::ORB> orb_;
   std::vector<Keyframe> keyframes_;
   std::optional<std::size_t> reference_;         ///< the keyframe being tracked against; none: lost
-  std::optional<cv::Affine3d> world_from_odom_;  ///< as of the last frame that was found by image
+  std::optional<cv::Affine3d> world_from_odom_;  ///< from the last frame localized by its image
 };
 
 }  // namespace example

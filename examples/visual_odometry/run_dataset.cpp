@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Where the wheels place the camera, by stamp; empty if the folder has no odometry.
+/// The camera's poses from wheel odometry, by stamp; empty if the folder has no odometry.
 std::map<std::string, cv::Affine3d> read_wheels(const std::string& file) {
   std::map<std::string, cv::Affine3d> wheels;
   std::ifstream lines(file);

@@ -30,8 +30,8 @@ class SearchEnv:
 
     def reset(self, *, seed: Optional[int] = None,
               options: Optional[Dict[str, Any]] = None) -> Tuple[Observation, Dict[str, Any]]:
-        """Puts the robot somewhere else; the same seed gives the same start. Returns what it senses
-        after a step at rest, and `goal`."""
+        """Puts the robot somewhere else; the same seed gives the same start. Returns what the robot
+        senses after a step at rest, and info: `goal`."""
         number = self._episodes if seed is None else seed
         self._episodes += 1
         self.start = self.simulation.draw_start(self.goals, number, self.arrival_m)

@@ -62,7 +62,7 @@ class Results:
     def table(self, names: Sequence[str] = ("ate_rmse_m", "completeness", "held_out.correct",
                                             "second_tour.correct")
               ) -> List[Tuple[str, str, str, Dict[str, float]]]:
-        """Environment, system, labels, and medians over trials of these metrics."""
+        """Rows of environment, system, labels, and the median over trials of each of these metrics."""
         cells: Dict[Tuple[str, str, str], Dict[str, List[float]]] = {}
         marks = ",".join("?" * len(names))
         for environment, system, labels, name, value in self._database.execute(

@@ -135,7 +135,7 @@ class Frame:
 
     @property
     def odometry(self) -> Optional[Floats]:
-        """4 x 4: where the wheels alone place the camera, in a world that drifts; None if the suite
+        """4 x 4: the camera's pose from wheel odometry alone, in a world that drifts; None if the suite
         does not provide it."""
         pose = self._request.get("odometry")
         return None if pose is None else matrix(pose)
@@ -189,7 +189,7 @@ class System:
         return None
 
     def blank(self, frame: Frame) -> Union[Pose, Reply, None]:
-        """A black frame before a query. A system that still returns a pose is shown another one."""
+        """A black frame before a query. A system that still returns a pose is shown another black frame."""
         return None
 
     def rewind(self) -> None:
@@ -199,8 +199,8 @@ class System:
         """Forgets everything, the map included."""
 
     def freeze(self) -> Optional[List[Tuple[str, Pose]]]:
-        """From now on, the map must not change. May return the final trajectory: Frame.stamp_text and
-        pose of each tracked frame; None: the poses in the replies count."""
+        """From now on, the map must not change. May return the final trajectory, as Frame.stamp_text
+        and pose of each tracked frame; None means that the poses in the replies are used."""
         return None
 
 

@@ -23,7 +23,7 @@ const SE3& WheelOdometer::drive_to(const SE3& world_from_base) {
     // tangent: translation, then rotation; the base moves in the plane.
     const Vector6d moved = (before_->inverse() * world_from_base).log();
     PerWheel rims_m =
-        rim_speeds_m_per_s(wheels_, {moved[0], moved[1], moved[5]});  // of a step that lasts 1 s
+        rim_speeds_m_per_s(wheels_, {moved[0], moved[1], moved[5]});  // of a step of 1 s
     for (Eigen::Index w = 0; w < rims_m.size(); ++w) {
       const double slip = errors_.slip_per_sqrt_m * std::sqrt(std::abs(rims_m[w])) *
                           stream_.fork(1 + step_).normal(static_cast<std::uint64_t>(w));

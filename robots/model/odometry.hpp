@@ -37,9 +37,9 @@ class WheelOdometer {
   std::uint64_t step_ = 0;
 };
 
-/// The same along a whole path.
+/// Simulates wheel odometry along a whole path.
 /// @param base  world_from_base
-/// @returns odom_from_base at the same stamps, the first one as it is in `base`
+/// @returns odom_from_base at the same stamps; the first pose is that of `base`
 Trajectory wheel_odometry(const Trajectory& base, const WheelBase& wheels,
                           const OdometryErrors& errors, std::uint64_t seed);
 

@@ -26,7 +26,7 @@ Fields read_fields(YamlReader& mapping) {
   return read;
 }
 
-/// Reads a mapping that contains nothing else.
+/// Reads the fields of a list from a mapping that contains nothing else.
 template <class Fields>
 Fields read_all(YamlReader mapping) {
   const auto read = read_fields<Fields>(mapping);
@@ -50,8 +50,8 @@ Camera read_lens(YamlReader& yaml) {
   camera.cy_px = 0.5 * (camera.height_px - 1);
   camera.rate_hz = lens.rate_hz;
   camera.baseline_m = lens.baseline_m;
-  // As in the sensor levels: a Kinect's 0.0019 z^2 m (Nguyen et al., 3DIMPVT 2012) is 0.08 px at fx
-  // = 577 px, rounded up.
+  // The same as in the sensor levels: a Kinect's depth noise of 0.0019 z^2 m (Nguyen et al.,
+  // 3DIMPVT 2012) corresponds to 0.08 px at fx = 577 px; rounded up.
   camera.disparity_sigma_px = 0.1;
   camera.disparity_sigma_is_given = true;
   return camera;
@@ -140,7 +140,7 @@ class EquipmentReader {
   }
 
  private:
-  /// The entries of a mapping, none if it is absent.
+  /// The entries of a mapping; empty if the mapping is absent.
   std::vector<std::pair<std::string, YamlReader>> entries(const std::string& key) {
     auto found = yaml_.find(key);
     return found ? found->entries() : std::vector<std::pair<std::string, YamlReader>>{};
@@ -183,7 +183,7 @@ class EquipmentReader {
     MappingReader reader(yaml);
     wheel_fields(wheels, reader);
     const YamlReader joints = yaml.at("joints");
-    double highest_m = 0;  // from the floor
+    double highest_m = 0;  // of the wheel whose bottom is farthest from the floor
     for (const YamlReader& name : joints.items()) {
       const Joint& wheel = joint(name);
       if (std::ranges::find(wheels.wheels, wheel.name, &WheelBase::Wheel::joint) !=

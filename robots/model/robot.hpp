@@ -42,10 +42,10 @@ struct WheelBase {
   Kind kind = Kind::kOmnidirectional;
   std::vector<Wheel> wheels = {};
   double radius_m = 0.07;
-  /// The joints' velocity limit times the radius; infinite if they have none.
+  /// The joints' velocity limit times the wheels' radius; infinite if the joints have no limit.
   double max_rim_m_per_s = std::numeric_limits<double>::infinity();
-  /// Base frame: the middle of its wheels, about which a differential base turns and where it never
-  /// moves sideways.
+  /// The middle of the wheels, base frame. A differential base turns about it, and it never moves
+  /// sideways.
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
 };
 
@@ -63,7 +63,7 @@ struct LaserScanner {
   int rays = 15;
   double field_of_view_rad = 1.0472;
   double min_range_m = 0.1, max_range_m = 3.0;
-  double sigma_m = 0, sigma_share = 0;  ///< noise: the larger of a length and a share of the range
+  double sigma_m = 0, sigma_share = 0;  ///< noise: the larger of m and a share of the range
 
   /// Direction of a ray about z, from x.
   double angle_rad(std::size_t ray) const {
@@ -81,8 +81,8 @@ struct Sonar {
   double resolution_m = 0.03;
 };
 
-/// Where the external-collision reflex stops the robot: if an obstacle is closer, it drives no
-/// farther in that direction.
+/// Distances of the external-collision reflex: the robot drives no farther toward an obstacle that
+/// is closer.
 struct CollisionReflex {
   double ahead_m = 0.40;  ///< from the shell, in the direction of travel
   double aside_m = 0.10;  ///< to either side of that path
@@ -101,7 +101,7 @@ struct HeadJoints {
 /// Equipment other than base and camera, for a robot with a URDF. Each part is optional.
 struct Equipment {
   KinematicTree tree;
-  SE3 base_from_root;                    ///< of the tree
+  SE3 base_from_root;                    ///< the root of the tree of links
   std::optional<WheelBase> wheels = {};  ///< none: omnidirectional, no odometry
   std::optional<HeadJoints> head = {};
   std::string depth_camera_link;  ///< where Robot::camera is mounted; empty: the base

@@ -9,7 +9,7 @@
 namespace mh {
 namespace {
 
-/// Lists keys: numbers as a visitor of their fields, the rest explicitly.
+/// Lists keys: those of numbers by visiting their fields, the others explicitly.
 class KeyLister {
  public:
   void mapping(const char* name) { mapping_ = name; }

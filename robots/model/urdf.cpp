@@ -51,8 +51,8 @@ std::pair<urdf::ModelInterfaceSharedPtr, std::string> try_urdf(const std::string
   return {nullptr, messages.first().empty() ? "is not URDF" : messages.first()};
 }
 
-/// Locations of links and joints in a file, which urdfdom does not report, and a check that they
-/// are connected. Unnamed elements are left to urdfdom.
+/// Finds the lines of links and joints in a file, which urdfdom does not report, and checks that
+/// they are connected. Unnamed elements are left to urdfdom.
 class Places {
  public:
   Places(const std::string& text, const std::filesystem::path& file) : file_(file.string()) {
@@ -162,7 +162,7 @@ class Places {
 
   std::string file_;
   std::map<std::string, int> line_of_link_, line_of_joint_;
-  // The text of each element, as in a URDF of its own.
+  // Text of each element, for a small URDF that contains it alone: see fail_somewhere().
   std::string materials_;
   std::vector<std::pair<std::string, std::string>> links_, joints_;  // name, text
   std::map<std::string, Way> way_up_;                                // by child

@@ -26,7 +26,8 @@ struct Joint {
   Kind kind = Kind::kFixed;
   SE3 parent_from_child;                            ///< at position 0
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the child's frame
-  // rad or m, the same per second, N m or N; infinite without limits.
+  // Limits of position (rad or m), velocity (the same per second) and effort (N m or N); infinite
+  // if there are none.
   double lower = 0, upper = 0, velocity = 0, effort = 0;
 };
 
@@ -48,7 +49,8 @@ struct KinematicTree {
 /// Reads a URDF with urdfdom. @throws InputError naming file and link or joint: not XML or not a
 /// URDF, a joint to a missing link, a link with two parents, a cycle of joints, a negative mass,
 /// reversed limits.
-/// @param warnings  receives a line for each inertia that no body can have (none is used here)
+/// @param warnings  receives a line for each inertia that no body can have (inertias are not used
+///                  here)
 KinematicTree load_urdf(const std::filesystem::path& file,
                         std::vector<std::string>* warnings = nullptr);
 

@@ -22,7 +22,8 @@ Eigen::Matrix3d rims_from_twist(const WheelBase& wheels) {
   Eigen::Matrix3d rows;
   for (int i = 0; i < 3; ++i) {
     const WheelBase::Wheel& wheel = wheels.wheels[static_cast<std::size_t>(i)];
-    // Perpendicular to the axle; as the base turns, the wheel's place moves by turn x place.
+    // The rolling direction, perpendicular to the axle. When the base turns, the wheel moves at
+    // turn x place.
     const Eigen::Vector2d drive(-std::sin(wheel.axle_rad), std::cos(wheel.axle_rad));
     rows.row(i) << drive.x(), drive.y(),
         wheel.place_m.x() * drive.y() - wheel.place_m.y() * drive.x();
@@ -58,7 +59,8 @@ std::string find_kind(WheelBase& base) {
           "parallel axles",
           wheels.size());
     base.kind = WheelBase::Kind::kOmnidirectional;
-    // In meters. If all wheels roll toward one point, for example, the base turns about it freely.
+    // The determinant is in meters. It is 0, for example, if all wheels roll toward one point,
+    // about which the base then turns freely.
     if (std::abs(rims_from_twist(base).determinant()) < 1e-6)
       return "the axles of these wheels leave a direction in which no rim moves";
     return "";
@@ -166,12 +168,12 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
       turn_acceleration_rad_per_s2_ +
       std::clamp(turn_wanted - turn_acceleration_rad_per_s2_, -turn_unit, turn_unit);
 
-  // Changing the direction of the acceleration takes time, in which the speed keeps growing: a step
-  // does so only if reducing the acceleration right after it would still end within the limits.
-  // Otherwise the acceleration is reduced now; the previous step made sure that there is enough
-  // time for that.
+  // Reducing an acceleration to zero takes time, during which the speed keeps growing. A step
+  // therefore takes the wanted acceleration only if reducing it from the next step on would still
+  // end within the limits. Otherwise it reduces the acceleration now; the previous step made sure
+  // that this stays within the limits.
   const auto gained = [this](double acceleration, double j,
-                             bool has_limit) {  // while it is reduced
+                             bool has_limit) {  // speed gained while it is reduced
     if (!has_limit) return 0.0;
     return std::max(
         0.0, 0.5 * acceleration * (acceleration / j - step_s_) + 0.125 * j * step_s_ * step_s_);

@@ -32,8 +32,8 @@ PerWheel rim_speeds_m_per_s(const WheelBase& wheels, const Twist2d& twist);
 /// wheels, the result is the least-squares fit.
 Twist2d twist_of_rims(const WheelBase& wheels, const PerWheel& rims_m_per_s);
 
-/// The motion of a differential base whose middle drives ahead and that turns: the twist is that of
-/// the base's origin, which swings sideways if it is not the middle.
+/// The twist of a differential base's origin when its middle drives ahead and the base turns. The
+/// origin swings sideways unless it is the middle.
 Twist2d twist_of(const WheelBase& differential, double ahead_m_per_s, double turn_rad_per_s);
 /// How fast the middle drives ahead in a motion of the base. The inverse of twist_of().
 double ahead_of(const WheelBase& differential, const Twist2d& twist);
@@ -58,7 +58,7 @@ class JerkLimiter {
     double turn_rad_per_s = 0;
   };
   Velocity step(const Velocity& command);
-  /// Something else changed the velocity: continues from there, without acceleration.
+  /// Continues from this velocity, which something else caused, without acceleration.
   void stopped_at(const Velocity& velocity);
 
  private:

@@ -9,13 +9,14 @@ namespace mh {
 
 struct BeliefConfig {
   int agreeing = 5;         ///< agreeing answers in a row before they are accepted
-  double agree_m = 0.15;    ///< largest distance of agreeing answers, given odometry,
-  double agree_rad = 0.12;  ///< and difference of their headings
-  double blind_m = 4.0;     ///< after driving this far without an answer, it is lost
+  double agree_m = 0.15;    ///< largest distance between agreeing answers, given odometry
+  double agree_rad = 0.12;  ///< largest difference of their headings
+  double blind_m = 4.0;     ///< after driving this far without an accepted answer, it is lost
 };
 
 /// The robot's estimate of its pose in its map: the SLAM system's answers, extrapolated by wheel
-/// odometry between them. One answer alone is not accepted; several in a row that agree are.
+/// odometry between them. An answer that agrees with the estimate is accepted; any other is
+/// accepted only once several in a row agree with each other.
 class PlaceBelief {
  public:
   explicit PlaceBelief(const BeliefConfig& config = {}) : config_(config) {}

@@ -31,7 +31,7 @@ double speed_before(std::span<const Vector2d> obstacles_m, const Vector2d& place
     const Vector2d away = obstacle - place_m;
     const double ahead_m = direction.dot(away);
     const double aside_m = direction.x() * away.y() - direction.y() * away.x();
-    if (away.norm() < radius_m) {  // too near already: it may leave, or pass by
+    if (away.norm() < radius_m) {  // too near already: the robot may move away or pass by
       if (ahead_m > kToward * away.norm()) free_m = 0;
       continue;
     }
@@ -78,7 +78,7 @@ Steering follow(const std::vector<Vector2d>& path, const Pose2& at,
   const double off_rad = turn_to(at.heading_rad, std::atan2(to_aim.y(), to_aim.x()));
   const double braking = config.braking * robot.limits.max_acceleration_m_per_s2;
   steering.command = turn_in_place(off_rad, robot.limits, config, 0.01);
-  // An omnidirectional base slides the last 15 cm sideways instead of turning first.
+  // For the last 15 cm, an omnidirectional base drives in any direction instead of turning first.
   const bool faces = std::abs(off_rad) < config.face_rad || (!ahead_only && steering.left_m < 0.15);
   const double radius_m = robot.footprint_radius_m + config.shell_margin_m;
   const double before_m_per_s = speed_before(obstacles_m, at.place_m, direction, radius_m, braking);

@@ -11,17 +11,17 @@ namespace mh {
 
 struct FollowConfig {
   double speed_m_per_s = 0.35;   ///< MaxVelXY's default (robots/pepper/pepper.yaml)
-  double turn_rad_per_s = 0.6;   ///< lower than the base's: at 10 Hz, 3.4 degrees per frame
+  double turn_rad_per_s = 0.6;   ///< lower than the base's limit: 3.4 degrees per frame at 10 Hz
   double ahead_m = 0.30;         ///< it steers toward the place this far along the path
-  double braking = 0.4;          ///< share of the base's acceleration: the jerk limit delays it
-  double face_rad = 0.5;         ///< turned farther from its path than this, it only turns
-  double shell_margin_m = 0.04;  ///< distance kept from what the sensors show
+  double braking = 0.4;          ///< share of the acceleration to brake with: jerk limits delay it
+  double face_rad = 0.5;         ///< if its heading is farther off the path, it only turns
+  double shell_margin_m = 0.04;  ///< extra distance of the shell from what the sensors show
   double arrived_m = 0.08;       ///< within this distance of the path's end
 };
 
 /// The highest speed in a direction at which the base can still stop before the nearest of some
 /// places; infinite if none is in the way.
-/// @param radius_m  of the disc that must not touch
+/// @param radius_m  radius of the disc that must not touch any of them
 double speed_before(std::span<const Eigen::Vector2d> obstacles_m, const Eigen::Vector2d& place_m,
                     const Eigen::Vector2d& direction, double radius_m, double braking_m_per_s2);
 

@@ -29,7 +29,7 @@ struct FloorGrid {
   }
   /// Clearance of the cell that contains a place; 0 outside the grid.
   double clearance_at(const Eigen::Vector2d& place_m) const;
-  /// Whether the straight line keeps that distance from everything.
+  /// Whether the straight line keeps `clearance_m` from everything.
   bool clear_line(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m,
                   double clearance_m) const;
 };
@@ -42,8 +42,8 @@ Grid2d<std::uint8_t> largest_region(const FloorGrid& grid, double clearance_m);
 /// none. Exact: Felzenszwalb and Huttenlocher, "Distance transforms of sampled functions", 2012.
 Grid2d<float> distances(const Grid2d<std::uint8_t>& marked);
 
-/// Clearances of cells, where a cell is blocked if anything touches it: an obstacle may be up to
-/// half a diagonal closer than the center of its cell.
+/// Clearances of cells. Since a cell is blocked if anything touches it, an obstacle may be up to
+/// half a cell's diagonal closer than the center of its cell; the clearances are reduced by that.
 Grid2d<float> clearances_m(const Grid2d<std::uint8_t>& blocked, double resolution_m);
 
 /// The grid of a map that shows where obstacles are, but not which objects they are.

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kEscape_m = 0.5;  // how far the first place with clearance may be
+constexpr double kEscape_m = 0.5;  // how far away the nearest place with clearance may be
 
 }  // namespace
 

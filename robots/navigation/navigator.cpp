@@ -22,10 +22,10 @@ constexpr double kReplan_s = 1.0;
 constexpr double kProgress_m = 0.10;
 constexpr double kBackOff_s = 1.5, kBackOff_m_per_s = 0.08;
 constexpr double kShown_m = 1.5;       // anything nearer is considered for braking
-constexpr double kSamePlace_m = 0.10;  // counts as equally near: then the shortest path decides
+constexpr double kSamePlace_m = 0.10;  // less counts as equally near: the shortest path decides
 constexpr double kFaced_rad = 0.1;
 constexpr double kBeforeThing_m = 0.1;
-constexpr double kReachSlack_m = 0.3;  // distances are kept this far beyond arrival
+constexpr double kReachSlack_m = 0.3;  // distances to the goal are computed this far beyond reach_m
 
 /// Whether a wall crosses the straight line between two places; what is within 10 cm of `to_m` does
 /// not count, since objects are placed against walls.
@@ -215,7 +215,7 @@ Twist2d Navigator::look(const Perception& now) {
   heading_before_ = heading_rad;
   if (turned_rad_ < 2 * M_PI && now.time_s - since_s_ < 60)
     return {0, 0, std::min(config_.follow.turn_rad_per_s, robot_.limits.max_turn_rad_per_s)};
-  if (belief_.known()) {  // it only looked around for another path
+  if (belief_.known()) {  // not lost: it only looked around for another path
     enter(NavigatorState::kPlanning, now.time_s);
     return Twist2d::Zero();
   }

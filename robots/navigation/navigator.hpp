@@ -39,7 +39,7 @@ struct NavigatorConfig {
   double margin_m = 0.08, least_margin_m = 0.03;
   double worth_margin_m = 1.0;  ///< detour accepted for the desired margin instead of the minimum
   double reach_m = 0.9;         ///< it has arrived if the goal is no farther than this
-  double patience_s = 10;       ///< without progress
+  double patience_s = 10;       ///< time without progress after which it gives up a path
   int most_recoveries = 4, most_bumps = 3;
 };
 
@@ -123,7 +123,8 @@ class Navigator {
   bool touched(const Perception& now);
   /// The map with what the sensors show now.
   FloorGrid present_grid(const Pose2& map_from_base) const;
-  /// Makes this the current goal; false if it cannot stand within reach of it anywhere in the map.
+  /// Makes this the current goal; false if the robot cannot stand within reach of the goal anywhere
+  /// in the map.
   bool aim_at(const NavigatorGoal& goal);
   bool find_way(const Pose2& map_from_base);
   std::string all_goals() const;
@@ -155,14 +156,14 @@ class Navigator {
   bool was_known_ = false;
 };
 
-/// Distance (m) of each cell of a map from the nearest of some places, infinite beyond `reach_m`
-/// and where a wall is in between: standing behind a wall is not arrival.
+/// Distance (m) of each cell of a map from the nearest of some places, infinite in blocked cells,
+/// beyond `reach_m`, and where a wall is in between: standing behind a wall is not arrival.
 Grid2d<float> distances_m(const KnownMap& map, std::span<const Eigen::Vector2d> places_m,
                           double reach_m);
 
 /// The best place of a map to stand in front of a thing: the nearest to it or, among equally near
-/// ones, the one with the shortest path; nullopt if no place that can be reached from `from_m` is
-/// within reach.
+/// ones, the one with the shortest path; nullopt if no path from `from_m` leads to a place within
+/// `reach_m` of the thing.
 /// @param away_m  distance of each cell from the thing
 std::optional<Eigen::Vector2d> place_before(const FloorGrid& grid, const Grid2d<float>& away_m,
                                             const Eigen::Vector2d& from_m, double clearance_m,

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kColumnStep_px = 8, kRowStep_px = 6;  // at 640 x 480 and 3.5 m: 5 cm by 4 cm
+constexpr int kColumnStep_px = 8, kRowStep_px = 6;  // 5 cm by 4 cm at 3.5 m in 640 x 480
 constexpr double kShort_m = 0.15;  // a ray stops clearing this far before an obstacle
 constexpr double kMove_m = 1.0;    // the window moves in steps of this size
 

@@ -17,8 +17,8 @@ namespace mh {
 struct NearMapConfig {
   double resolution_m = 0.05;
   double half_size_m = 5.0;  ///< of the window that moves along with the robot
-  // What the depth camera shows between these heights is an obstacle. 8 cm: depth noise at
-  // max_depth_m, seen from 1.1 m, stays below it.
+  // What the depth camera shows between these heights is an obstacle. The lower one, 8 cm, is above
+  // the depth noise of a floor at max_depth_m, seen from 1.1 m.
   double bottom_m = 0.08, top_m = 1.25;
   double max_depth_m = 3.5;
   /// Nearer than this, the camera looks over things lower than itself, so nothing is cleared there.
@@ -26,8 +26,8 @@ struct NearMapConfig {
 };
 
 /// What lasers, bumpers and the depth camera have recently shown around the robot, in the frame of
-/// the wheel odometry: it needs no map and no pose in one. What was seen stays until the same kind
-/// of sensor sees through it.
+/// the wheel odometry: it needs neither a map nor a pose in one. An obstacle is kept until the same
+/// kind of sensor sees through it.
 class NearMap {
  public:
   explicit NearMap(const NearMapConfig& config = {});
@@ -59,7 +59,7 @@ class NearMap {
                    double to_m, Layer layer);
 
   NearMapConfig config_;
-  int cells_;                     ///< of a side of the window
+  int cells_;                     ///< cells per side of the window
   Eigen::Vector2i corner_{0, 0};  ///< cell of the odometry frame that is cell (0, 0) of the window
   Grid2d<std::uint8_t> layers_;
 };

@@ -19,8 +19,8 @@ using Eigen::Vector2d;
 using Cell = FloorGrid::Cell;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr double kNarrowPrice = 2.0;  // a meter at the minimum clearance costs as much as three
-constexpr double kPoint_m = 1e-6;     // blocked cells have no clearance: not even a point passes
+constexpr double kNarrowPrice = 2.0;  // a meter at the minimum clearance costs 3 m in the open
+constexpr double kPoint_m = 1e-6;     // not even a point passes through blocked cells
 
 /// Shortest paths from the nearest of the `starts`, each step weighted by `price`; stops early at
 /// `goal`.
@@ -64,7 +64,7 @@ struct Search {
   }
 };
 
-/// The nearest free cell within a cell and a half, to start from: the place itself may be on the
+/// The free cell nearest to a place, at most a cell and a half away: the place itself may be on the
 /// border of the free cells.
 std::optional<Cell> free_cell(const FloorGrid& grid, const Vector2d& place_m, double clearance_m) {
   clearance_m = std::max(clearance_m, kPoint_m);
@@ -90,7 +90,7 @@ double narrow_price(double room_m, double clearance_m) {
 }
 
 /// Removes corners while the straight line keeps as much clearance as the path that it replaces (or
-/// twice what is needed).
+/// twice the required clearance, if the path has more).
 std::vector<Vector2d> straightened(const FloorGrid& grid, const std::vector<Vector2d>& way,
                                    double clearance_m) {
   std::vector<Vector2d> result{way.front()};

@@ -9,11 +9,11 @@
 
 namespace mh {
 
-/// Plans a path over the floor between two places that keeps the clearance from everything. Returns
-/// its corners, both ends included; nullopt if there is none. Open space is worth a detour: where
-/// the clearance is less than twice the required one, length costs up to three times as much. A*
-/// over the grid's cells (Hart, Nilsson and Raphael, 1968), then corners that a straight line can
-/// replace are removed.
+/// Plans a path over the floor from one place to another that keeps `clearance_m` from everything.
+/// Returns its corners, both ends included; nullopt if there is no such path. Open space is worth a
+/// detour: where the clearance is less than twice the required one, length costs up to three times
+/// as much. A* over the grid's cells (Hart, Nilsson and Raphael, 1968), then corners that a
+/// straight line can replace are removed.
 /// @param clearance_m  of the robot's center: its radius plus its tracking error
 std::optional<std::vector<Eigen::Vector2d>> plan_way(const FloorGrid& grid,
                                                      const Eigen::Vector2d& from_m,
@@ -27,7 +27,7 @@ Grid2d<float> way_lengths(const FloorGrid& grid, const Eigen::Vector2d& from_m, 
 Grid2d<float> way_lengths(const FloorGrid& grid, std::span<const Eigen::Vector2d> from_m,
                           double clearance_m);
 
-/// Places spread over a region, each as far as possible from those before it, seeded.
+/// Places spread over a region by a seed, each as far as possible from those before it.
 /// @param apart_m  minimum distance between any two
 /// @param most     maximum number of places
 std::vector<Eigen::Vector2d> spread_places(const FloorGrid& grid,
@@ -41,7 +41,7 @@ std::vector<std::vector<double>> lengths_between(const FloorGrid& grid,
 
 struct RoundTrip {
   std::vector<std::size_t> order = {};  ///< of the places; begins with the first
-  double length_m = 0;                  ///< including the way back to the first
+  double length_m = 0;                  ///< including the return to the first
 };
 
 /// A short round trip through the first `count` places: nearest neighbor, then pairs of legs are

@@ -8,7 +8,7 @@ namespace mh {
 namespace {
 
 constexpr int kRounds = 60;
-constexpr double kPull = 0.5;  // share of the distance to the neighbors' midpoint
+constexpr double kPull = 0.5;  // step of a sample: share of the way to its neighbors' midpoint
 
 }  // namespace
 

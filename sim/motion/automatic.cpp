@@ -30,7 +30,7 @@ bool keeps_clear(const FloorGrid& grid, const RoundedPath& path, double clearanc
 }
 
 /// Returns the path with extra points near each corner, so that the arc there reaches at most
-/// `cut_m` to either side of it (RoundedPath cuts a corner by at most half a leg).
+/// `cut_m` on either side of the corner (RoundedPath cuts a corner by at most half a leg).
 std::vector<Vector2d> narrowed(const std::vector<Vector2d>& way, double cut_m) {
   std::vector<Vector2d> result{way.front()};
   for (std::size_t i = 1; i < way.size(); ++i) {
@@ -90,7 +90,7 @@ Tour automatic_tour(const Scene& scene, const Robot& robot, const AutomaticTourC
       tour.waypoints.push_back(
           {.position_m = places[order[i]], .turn_rad = config.survey ? kAround_rad : 0.0});
     if (order.size() > 1) tour.waypoints.push_back({.position_m = tour.start_m});
-    // Continues past the start, so that what was seen first is seen again.
+    // Ends at the start with the initial heading, so that what was seen first is seen again.
     tour.waypoints.push_back(
         {.position_m = tour.start_m, .heading_rad = tour.start_heading_rad, .pause_s = 0.5});
     return planned(scene, robot, tour);

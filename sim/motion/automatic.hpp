@@ -11,7 +11,7 @@ namespace mh {
 struct AutomaticTourConfig {
   std::uint64_t seed = 0;
   double apart_m = 1.6;     ///< approximate distance between visited places
-  std::size_t places = 24;  ///< maximum number of them
+  std::size_t places = 24;  ///< maximum number of visited places
   bool survey = false;      ///< looks around at every place, not only at the start
 };
 

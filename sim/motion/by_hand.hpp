@@ -20,7 +20,7 @@ struct HandheldConfig {
   std::optional<std::size_t> frames = {};
 
   double height_m = 1.40;           ///< approximate camera height over the floor
-  double walking_m_per_s = 0.25;    ///< median between pauses
+  double walking_m_per_s = 0.25;    ///< median speed between pauses
   double turning_rad_per_s = 0.42;  ///< median of the turns' peaks
   /// One turn in this many is fast: 1.2 to 2.1 rad/s at its peak, as in TUM's fr1/rpy (67 deg/s
   /// median, 120 deg/s the 95th percentile). 0 = none.
@@ -48,7 +48,7 @@ struct HandheldConfig {
 /// bare walls, from 1.5 to 3 m if there is space (CubiCasa, "Best scanning practices"), and prefers
 /// what has been seen least. It keeps clear of everything between knee and head height. A different
 /// seed gives a different path through the same place. DrivenPath::base is the floor point below
-/// the camera, facing the same way.
+/// the camera, facing the same direction.
 /// @throws InputError if there is no floor, or no space on it for a person.
 DrivenPath scan_by_hand(const Scene& scene, const Camera& camera,
                         const HandheldConfig& config = {});

@@ -83,8 +83,8 @@ void CommandedBase::step(const Twist2d& command) {
         {time_s(),
          std::clamp(before.velocity_m_per_s.dot(contact_.direction), 0.0, driven_m_per_s_),
          contact_.instance});
-  // After a push, the limiter brakes from the pushed speed: only as much as the larger of the
-  // previous driven speed and the commanded speed counts as driven.
+  // After a push, the limiter brakes from a speed that the wheels did not cause: the driven speed
+  // is at most the larger of the previous driven speed and the commanded speed.
   driven_m_per_s_ = std::min(next.m_per_s.norm(), std::max(driven_m_per_s_, wanted.norm()));
   length_m_ += (state_.position_m - before.position_m).norm();
   max_penetration_m_ = std::max(max_penetration_m_, contact_.penetration_m);

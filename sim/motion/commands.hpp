@@ -41,7 +41,7 @@ CommandScript load_commands(const std::filesystem::path& file);
 
 struct CommandedDrive {
   DrivenPath path;
-  double reflex_time_s = 0;  ///< spent below the commanded speed because something was near
+  double reflex_time_s = 0;  ///< time that the reflex kept the robot below the commanded speed
 };
 
 /// Drives the robot as scripted, with physics: velocity, acceleration, jerk and wheel rim speed

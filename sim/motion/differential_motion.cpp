@@ -18,7 +18,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRounding_rad = 1e-9;  // the base faces its path: skips only rounding errors
+constexpr double kRounding_rad =
+    1e-9;  // smaller turns are rounding errors, since the base faces its path
 // Tangential and lateral acceleration share one limit (0.7^2 + 0.7^2 < 1), and smoothing the path
 // adds to both.
 constexpr double kShare = 0.7;
@@ -136,7 +137,8 @@ class DifferentialPlanner {
         waypoint);
   }
 
-  /// The highest constant speed through a bend; at constant speed, only the bend turns the base.
+  /// The highest constant speed through a bend; at constant speed, the bend's curvature alone
+  /// determines how the base turns.
   double fastest_through(const RoundedPath::Bend& bend) const {
     double most = std::min(
         planned_.max_turn_rad_per_s / bend.curvature_per_m,
@@ -177,7 +179,7 @@ class DifferentialPlanner {
   }
 
   /// Adds a stretch along one coordinate (distance or angle) that begins at rest at 0, smoothed to
-  /// limit its jerk, as slow as the limits require.
+  /// limit its jerk, and driven as slowly as the limits require.
   /// @param profile_at the coordinate over time when driven more slowly by the given factor
   void add(const std::function<std::vector<double>(double)>& profile_at,
            const std::optional<double>& jerk, const PoseAt& pose_at,

@@ -28,7 +28,7 @@ constexpr double kSteer_per_m = 2.0;
 constexpr double kStuck_m = 0.15;  // if this far behind the plan, something is in the way
 constexpr double kArrived_m = 0.01, kTurned_rad = 0.005;
 constexpr double kAtRest_m_per_s = 0.01;
-constexpr double kPatience_s = 3.0;  // for the last 1 cm of an arrival
+constexpr double kPatience_s = 3.0;  // how long to wait for an arrival
 
 /// A robot on its tour: steps the physics and records the motion.
 class Driver {

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3f;
 
-constexpr double kFloorReach_m = 0.1;  // floor is extended this far: closes gaps of twice that
+constexpr double kFloorReach_m = 0.1;  // extends the floor, which closes gaps of twice this width
 constexpr double kLevel = 0.85;        // cosine of the slope up to which a face is floor
 constexpr int kMostCells = 4096;
 

@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kAhead_s = 1.5;  // gaze targets are chosen for the position at the end of the turn
+constexpr double kAhead_s = 1.5;  // targets are chosen for the position this much later
 constexpr double kFastTurn_rad = 60 * kDegree;  // a fast turn goes at least this far
 
-/// Weight of a view that ends at this distance: a near end shows little, so that below 1.5 m the
-/// weight falls with the square of the distance.
+/// Weight of a view that ends at this distance: a view that ends nearby shows little, so the weight
+/// falls with the square of the distance below 1.5 m.
 double room_before(double d_m) {
   return std::min(1.0, d_m * d_m / (1.5 * 1.5));
 }
@@ -62,7 +62,7 @@ class Gaze {
     for (int i = 0; i < kRays; ++i)
       for (int k = -half_view_rays_; k <= half_view_rays_; ++k)
         worth_of_view[index(i)] += worth_of_ray[index(i + k)];
-    // Relative to the best available: however much has already been seen, the person looks at the
+    // Relative to the best view: even when nearly everything has been seen, the person looks at the
     // rest.
     const double most = std::max(1e-9, std::ranges::max(worth_of_view));
 
@@ -114,7 +114,7 @@ class Gaze {
   }
   Look look_of(InstanceId id) const { return id < looks_.size() ? looks_[id] : Look{}; }
 
-  /// Returns what is in a direction, up to what blocks the view at eye level, which comes last.
+  /// Returns the things in a direction, in order; the last is where the view at eye level ends.
   std::vector<Sight> sights(const Vector2d& from_m, double yaw_rad) const {
     const FloorGrid &low = ground_.floor, &eyes = ground_.eyes;
     const Vector2d step = eyes.resolution_m * Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
@@ -141,7 +141,7 @@ class Gaze {
     return (look_of(sight.id).bare || sight.id == 0 ? kBareWorth : 1.0) * from_here(sight.d_m) /
            (1.0 + (seen == seen_.end() ? 0 : seen->second));
   }
-  /// Worth of a direction: 0 if the view ends right away, regardless of what is below eye level.
+  /// Worth of a direction: near 0 if the view at eye level ends nearby, whatever is below that.
   double worth(const std::vector<Sight>& ray) const {
     double sum = 0;
     for (const Sight& sight : ray) sum += worth(sight);

@@ -33,7 +33,7 @@ struct Tour {
   Eigen::Vector2d start_m = Eigen::Vector2d::Zero();
   double start_heading_rad = 0.0;
   int start_line = 0;  ///< in the file, for messages; 0 = none
-  // A tour may limit the robot below its own maximum; never above.
+  // Limits of the tour itself; they can lower the robot's own limits, but not raise them.
   std::optional<double> max_velocity_m_per_s;
   std::optional<double> max_turn_rad_per_s;
   bool plan = false;  ///< paths over the free floor between waypoints instead of straight lines

@@ -10,7 +10,7 @@ namespace mh {
 
 /// Converts between the base's velocity over the floor and that of its motors
 /// (JerkLimiter::Velocity): for an omnidirectional base they are the same; for a differential one,
-/// the motors' is the forward speed of its middle.
+/// the velocity of the motors is the forward speed of the base's middle.
 class Motors {
  public:
   /// @param differential  its wheels, which must outlive this; null for an omnidirectional base

@@ -10,12 +10,12 @@
 namespace mh {
 
 struct PathConfig {
-  /// An arc starts and ends at most this far from its corner, m; so a right angle is rounded with
-  /// this radius and passes the corner at 0.41 of that distance.
+  /// An arc starts and ends at most this far from its corner, m; so the arc of a right angle has
+  /// this radius and passes the corner at 0.41 times this distance.
   double cut_m = 0.45;
   /// The curvature grows and shrinks smoothly along a bend instead of jumping at its ends, as
-  /// required by a base that turns only along its path. Such a bend lies between the corner and its
-  /// arc.
+  /// required by a base that turns only along its path. An eased bend lies between the corner and
+  /// the arc that it replaces.
   bool eased = false;
 };
 

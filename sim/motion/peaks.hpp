@@ -16,7 +16,7 @@ class PeakMeter {
   explicit PeakMeter(double step_s) : step_s_(step_s) {}
   /// @param wheels  null if the robot has none
   void add(const BaseState& state, const WheelBase* wheels);
-  /// A contact changed the velocity, which is not an acceleration by the motors.
+  /// Notes that a contact changed the velocity, which does not count as an acceleration.
   void pushed(const BaseState& state);
   const DrivePeaks& peaks() const { return peaks_; }
 

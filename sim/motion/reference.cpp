@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 
 constexpr double kSharpTurn_rad = 2.1;  // beyond 120 degrees a corner is a stop, not an arc
 constexpr double kLookAhead_m = 0.7;    // while driving, the robot faces the path this far ahead
-constexpr double kFaceFirst_rad = 0.8;  // if it faces farther off its path: turns before driving
+constexpr double kFaceFirst_rad = 0.8;  // if its heading is farther off its path, it turns first
 constexpr double kHeadingGain_per_s = 3.0;
 constexpr double kNoTurn_rad = 0.005;  // a smaller turn is skipped
 // Shares of the limits: the rest is left to the controller that keeps the base on its reference,
@@ -154,7 +154,7 @@ class Planner {
     const SpeedProfile profile(path, {limits_.max_velocity_m_per_s, share, share});
     const Waypoint& toward = tour_.waypoints[first];
     if (!toward.heading_rad && !toward.look_at_m) {
-      // A robot that should face the direction of travel does not start sideways.
+      // A robot that should face the direction of travel does not start driving sideways.
       const double error_rad = heading_error(toward, path, 0, heading_rad_, 0);
       if (std::abs(error_rad) > kFaceFirst_rad) turn(error_rad, first);
     }

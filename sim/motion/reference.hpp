@@ -11,7 +11,7 @@ namespace mh {
 struct Stretch {
   std::vector<Eigen::Vector2d> position_m;
   std::vector<double> heading_rad;    ///< unwrapped: includes full turns
-  std::vector<std::size_t> waypoint;  ///< index of the one that it is heading for
+  std::vector<std::size_t> waypoint;  ///< index of the waypoint that the base heads for
 };
 
 /// Returns the moving average over the shortest window that respects the jerk limits; position and
@@ -39,12 +39,12 @@ struct TourRun {
 };
 /// @param turns_at_stops  a waypoint with a heading is a stop
 std::vector<TourRun> runs_of(const Tour& tour, bool turns_at_stops);
-/// Shorter legs are not driven.
+/// Legs shorter than this are not driven.
 inline constexpr double kNoWay_m = 0.01;
 /// The limits minus the reserve for the controller that keeps the base on its reference.
 BaseLimits planned_limits(BaseLimits limits);
-/// Angles of a turn in place at each step until it is at rest: accelerates up to the turn rate and
-/// back down.
+/// Angles of a turn in place at each step until it is at rest; the turn accelerates up to the turn
+/// rate and slows back down.
 std::vector<double> turn_profile(double angle_rad, const BaseLimits& limits, double step_s);
 
 }  // namespace mh

@@ -55,7 +55,7 @@ double Reflex::allowed_m_per_s(const Vector2d& place_m, const Vector2d& directio
 }
 
 /// Length of the last stretch, on which the speed is kFade_per_s times the remaining distance;
-/// where it begins, both rules brake equally.
+/// where it begins, this rule brakes as hard as braking at a constant rate.
 double Reflex::soft_m() const {
   return brake_m_per_s2_ / (kFade_per_s * kFade_per_s);
 }
@@ -66,7 +66,7 @@ double Reflex::way_to_disc_m(const Vector2d& middle, double size_m) const {
   return way_to_point_m(middle, reach_m);
 }
 
-/// The same as way_to_point_m(), for the part of the edge from a to b that is ahead of the base's
+/// The smallest way_to_point_m() on the part of the edge from a to b that is ahead of the base's
 /// center and not too far to the side. Coordinates are meters ahead and to the left of that center.
 double Reflex::way_to_edge_m(const Vector2d& a, const Vector2d& b) const {
   const Vector2d d = b - a;

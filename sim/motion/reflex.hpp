@@ -13,7 +13,7 @@
 namespace mh {
 
 /// The external-collision reflex: how fast the base may keep moving in a direction.
-/// @pre the robot has one
+/// @pre the robot has this reflex
 class Reflex {
  public:
   Reflex(const Scene& scene, const Robot& robot);

@@ -20,9 +20,9 @@ struct ReplayConfig {
 };
 
 /// Moves a camera through a scene along a recorded trajectory (z up, as in TUM's), sampled at the
-/// camera's rate, translated and rotated about z as a whole; heights stay. Between two poses the
-/// camera moves by a constant twist. Stamps start at 0. DrivenPath::moved describes where the poses
-/// were moved.
+/// camera's rate. The whole trajectory is translated horizontally and rotated about z, so its
+/// heights do not change. Between two poses the camera moves by a constant twist. Stamps start at
+/// 0. DrivenPath::moved describes where the poses were moved.
 /// @param name  of the trajectory, for messages
 /// @throws InputError if the trajectory has fewer than two poses, or no placement in the scene is
 /// clear of everything.
@@ -32,7 +32,7 @@ DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& re
 /// Whose poses a file holds: world_from_camera (z forward), or world_from_base (x forward, z up).
 enum class PosesOf { kCamera, kRobot };
 
-/// Exactly these poses, in the scene's world, with their stamps. The head is at rest.
+/// A path with exactly these poses and stamps, in the scene's world. The head is at rest.
 DrivenPath as_given(const Trajectory& poses, PosesOf of, const SE3& base_from_camera);
 
 }  // namespace mh

@@ -70,7 +70,7 @@ const Equipment& equipment_with_lasers(const Robot& robot) {
 }
 
 RandomStream laser_noise(std::uint64_t seed, std::size_t tick) {
-  constexpr std::uint64_t kLasers = ~0ULL;  // frames use their tick's number
+  constexpr std::uint64_t kLasers = ~0ULL;  // the streams of frames use the number of their tick
   return RandomStream(seed).fork(kLasers).fork(tick);
 }
 

@@ -14,9 +14,10 @@ namespace mh {
 /// and the top of the robot's head, exactly, apart from range, resolution and the lasers' noise.
 struct RobotReading {
   Stamp stamp_ns = 0;
-  std::vector<std::vector<float>> lasers_m;  ///< by laser, right to left; 0 = nothing in range
-  std::vector<float> sonars_m;               ///< by sonar; 0 = nothing in range
-  std::vector<bool> bumpers;                 ///< by bumper: pressed
+  std::vector<std::vector<float>>
+      lasers_m;                 ///< by laser, rays from right to left; 0 = nothing in range
+  std::vector<float> sonars_m;  ///< by sonar; 0 = nothing in range
+  std::vector<bool> bumpers;    ///< by bumper: pressed
   /// Specific force (accelerometer) and angular rate (gyroscope), IMU frame: the exact mean over
   /// the time between two frames. Without an IMU: 0.
   Eigen::Vector3d specific_force_m_per_s2 = Eigen::Vector3d::Zero();
@@ -43,8 +44,8 @@ RobotReading read_ranges(const PlanarWorld& world, const Equipment& equipment,
 /// Which bumpers a contact presses, by bumper.
 std::vector<bool> pressed_bumpers(const Contact& contact, const Equipment& equipment,
                                   const SE3& world_from_base);
-/// Fills in the IMU's readings, from the second difference of its position; the poses are the
-/// base's.
+/// Fills in the IMU's readings; the specific force is from the second difference of the IMU's
+/// position. The poses are those of the base.
 void feel(RobotReading& reading, const TimedPose& before, const TimedPose& here,
           const TimedPose& after, const SE3& base_from_imu);
 

@@ -7,8 +7,8 @@
 
 namespace mh {
 
-/// Contacts of the base (a sphere that represents a disc) with the outline. Bullet's own
-/// sphere-mesh collision lets a shallow contact replace a deep one in the same direction, and
+/// Contacts of the base (a sphere that represents a disc) with the outline. Replaces Bullet's own
+/// sphere-mesh collision, in which a shallow contact can replace a deep one in the same direction:
 /// furniture has many layers a few millimeters apart.
 class OutlineContacts final : public btCollisionAlgorithm {
  public:

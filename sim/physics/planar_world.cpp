@@ -180,7 +180,8 @@ struct PlanarWorld::Impl {
       const bool robot_is_first = manifold->getBody0() == robot.get();
       for (int k = 0; k < manifold->getNumContacts(); ++k) {
         const btManifoldPoint& point = manifold->getContactPoint(k);
-        // Distances are from before the step; what pushed during the step has been reached.
+        // Distances are from before the step; an obstacle that pushed during the step counts as
+        // reached.
         const double now_m = point.getAppliedImpulse() > 0
                                  ? std::min<double>(point.getDistance(), 0)
                                  : point.getDistance();

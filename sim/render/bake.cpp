@@ -39,8 +39,8 @@ constexpr float kInsideShare = 0.5F;
 // like the inside of a closed box that is turned inside out.
 constexpr float kDarkShare = 0.02F;
 /// Evenly spread points of the unit disc (Vogel's sunflower), rotated by a random angle and shifted
-/// by a random share of a step: the same low-discrepancy pattern at each vertex, but no two
-/// identical.
+/// by a random share of a step: all vertices use the same low-discrepancy pattern, each with its
+/// own rotation and shift.
 class DiscPattern {
  public:
   explicit DiscPattern(int count) {
@@ -185,7 +185,8 @@ class Baker {
     if (albedo_.empty()) albedo_.push_back(Vector3f::Constant(kMaxAlbedo));
   }
 
-  /// The radiance that each face emits, without what its lamp accounts for.
+  /// The radiance that each face emits; 0 for the faces of a lamp, whose light is computed from the
+  /// lamp.
   void find_glow() {
     glow_.assign(scene_.triangles.size(), Vector3f::Zero());
     for (std::size_t f = 0; f < glow_.size(); ++f) {
@@ -279,7 +280,7 @@ class Baker {
   /// faces and faces that reflect `leaving_`: irradiance / pi.
   Gathered gather(std::size_t v, float side, int round) const {
     const Vector3f normal = side * points_.normal(v);
-    // The last round averages out the noise of earlier ones over many faces.
+    // Earlier rounds use fewer rays, since the last round averages out their noise over many faces.
     const DiscPattern& pattern = round < config_.bounces ? rough_ : hemisphere_;
     Vector3f a, b;
     make_frame(normal, a, b);

@@ -30,19 +30,18 @@ std::uint64_t digest(const BakeConfig& config);
 /// `bounces` diffuse interreflections gathered from the vertices' light of the previous bounce.
 ///
 /// How vertices are handled in real-world scenes:
-/// - Light is that of the side that the faces' normals point to. Only if that side gets almost none
-///   (a closed box turned inside out) is the other side's used. Always using the brighter side
-///   would let the sky shine through every thin outer wall.
-/// - Light is sampled all over the nearer half of the vertex's faces, so that a vertex in a corner
-///   is not sampled inside the neighboring wall, and the edge of a shadow becomes a ramp as wide as
-///   the faces instead of a staircase.
+/// - Light is that of the side that the faces' normals point to. Only if that side gets almost no
+///   light (a closed box turned inside out) is the other side's light used. Always using the
+///   brighter side would let the sky shine through every thin outer wall.
+/// - Light is sampled all over the vertex's faces, up to halfway to the opposite edge, so that a
+///   vertex in a corner is not sampled inside the neighboring wall, and the edge of a shadow
+///   becomes a ramp as wide as the faces instead of a staircase.
 /// - A vertex inside something solid (furniture standing on a tessellated floor) sees mostly back
 ///   faces; its light is filled in from its neighbors, so that it does not darken the surrounding
 ///   floor.
 /// - Luminous faces cast no shadow for suns and lamps (lamp shades, window panes), and near a
-///   lamp's center (three radii, at least 0.3 m) their emission is that lamp's and is not counted
-///   twice.
-/// Deterministic: random numbers are keyed by (seed, vertex).
+/// lamp's center (three radii, at least 0.3 m) their emission counts as that lamp's and is not
+/// counted twice. Deterministic: random numbers are keyed by (seed, vertex).
 /// @param watch  may be empty; called from any thread, never from two at once
 /// @throws std::invalid_argument if a count is negative or samples is 0.
 void bake_light(Scene& scene, const BakeConfig& config = {}, const BakeWatch& watch = {});

@@ -10,7 +10,7 @@ using Eigen::Vector3f;
 
 // Light is averaged only between vertices whose normals differ by less than 25 deg, with weights
 // that fall once their light differs by more than kNoise, the relative size of the noise, so that
-// contact shadows stay.
+// contact shadows are preserved.
 constexpr float kSameSurface = 0.9F;
 constexpr float kNoise = 0.1F;
 

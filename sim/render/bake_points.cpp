@@ -39,7 +39,7 @@ BakePoints::BakePoints(const Scene& scene) : scene_(scene) {
   for (std::uint32_t f = 0; f < scene.triangles.size(); ++f)
     for (std::uint32_t k = 0; k < 3; ++k) faces_[next[scene.triangles[f][k]]++] = 4 * f + k;
   for (std::size_t v = 0; v < count; ++v) {
-    // Back-to-back faces cancel out; then the largest face decides.
+    // The normals of back-to-back faces cancel out; then the normal of the largest face is used.
     const bool canceled = sum[v].norm() < 0.2F * area[v];
     const Eigen::Vector3f& n = canceled ? largest[v] : sum[v];
     normals_.push_back(area[v] > 0.0F ? n.normalized() : Eigen::Vector3f::UnitZ());
@@ -59,7 +59,7 @@ Eigen::Vector3f BakePoints::origin_m(std::size_t vertex, int i, float shift, flo
   if (r + s > 1.0F) r = 1.0F - r, s = 1.0F - s;
   const Eigen::Vector3f on_face = v + 0.5F * (r * (scene_.positions_m[t[(k + 1) % 3]] - v) +
                                               s * (scene_.positions_m[t[(k + 2) % 3]] - v));
-  // Faces that point away from the vertex's side are also lifted to that side.
+  // Samples on faces that point away from the vertex's side are lifted to that side, too.
   const Eigen::Vector3f& lift = lifts_[entry / 4];
   const float toward = lift.dot(normals_[vertex]) < 0.0F ? -side : side;
   return on_face + toward * lift;

@@ -13,14 +13,14 @@
 namespace mh {
 
 /// Positions and directions at which the light of each vertex is sampled: not at the vertex itself,
-/// which may be in a corner or on the edge of a shadow, but spread over the nearer half of its
-/// faces.
+/// which may be in a corner or on the edge of a shadow, but spread over its faces, up to halfway to
+/// the opposite edge.
 class BakePoints {
  public:
   explicit BakePoints(const Scene& scene);
 
   std::size_t size() const { return normals_.size(); }
-  /// Unit normal, the area-weighted mean of the faces'; z if they have no area.
+  /// Unit normal, the area-weighted mean of the faces' normals; z if the faces have no area.
   const Eigen::Vector3f& normal(std::size_t vertex) const { return normals_[vertex]; }
   /// Sample i of the positions where a vertex's light is sampled, lifted off the surface to the
   /// normal's side (side = 1) or the other one (-1). `shift` in [0, 1) varies the pattern.

@@ -28,8 +28,8 @@ void decode_row(std::span<const Rgb8> row, float* linear);
 /// linear_to_srgb() of each channel of `linear`.
 void encode_row(const float* linear, std::span<Rgb8> row);
 
-/// The table behind linear_to_srgb: entry i is for linear i / kSrgbTableMax. Four bytes can be read
-/// starting at any entry.
+/// The table behind linear_to_srgb: entry i is for the linear value i / kSrgbTableMax. Four bytes
+/// can be read starting at any entry.
 inline constexpr int kSrgbTableMax = 16383;
 extern const std::array<std::uint8_t, kSrgbTableMax + 4> kSrgbTable;
 

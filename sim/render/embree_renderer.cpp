@@ -22,9 +22,9 @@
 namespace mh {
 namespace {
 
-// Packets are traced a tile at a time and then shaded, so that the BVH and the shading data do not
-// evict each other from the caches, and the rays have long been in memory when the tracer loads
-// them.
+// All packets of a tile are traced before any is shaded. So the BVH and the shading data do not
+// evict each other from the caches, and the rays are long in memory when the tracer loads them.
+
 constexpr float kDepth16PerM = 5000.0F;
 
 // Where an edge pixel is sampled in addition to its center: offset by 1/3 of a pixel in columns and

@@ -53,7 +53,8 @@ class EmbreeScene {
  public:
   /// @param portable    pins the instruction set to AVX2, so that results agree across processors.
   /// @param watertight  no ray slips between two faces that share an edge; 1/5 slower. Otherwise,
-  ///                    one in two million camera rays does, and many that start on a face.
+  ///                    one in two million camera rays slips through, and so do many rays that
+  ///                    start on a face.
   /// @throws MachineError if Embree fails (out of memory, or no AVX2 when pinned to it).
   EmbreeScene(const Scene& scene, int build_threads, bool portable, bool watertight = false,
               Faces which = Faces::kSurfaces);

@@ -50,7 +50,7 @@ class FaceRecords {
 
   /// Whether any face has a texture.
   bool textured() const { return !textured_faces_.empty(); }
-  /// By position in `order`, stride() bytes apart.
+  /// The records by position in `order`, stride() bytes apart.
   const FaceRecord* data() const {
     return textured() ? &textured_faces_.front().record : plain_faces_.data();
   }

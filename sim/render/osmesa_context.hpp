@@ -83,7 +83,8 @@ class OffscreenContext {
 
   const Gl& gl() const { return gl_; }
 
-  /// Makes the context the calling thread's during its own lifetime; one at a time.
+  /// Makes the context current on the calling thread during its own lifetime; at most one may exist
+  /// at a time.
   class Current {
    public:
     explicit Current(const OffscreenContext& context);

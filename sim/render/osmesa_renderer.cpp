@@ -62,7 +62,8 @@ class OsmesaRenderer final : public Renderer {
   }
 
  private:
-  /// Where light is cut off: behind a pane, light brighter than white may end up darker than white.
+  /// Where light is cut off: not at white if the scene has panes, which may dim brighter light to
+  /// below white.
   float white() const { return has_panes_ ? std::numeric_limits<float>::max() : 1.0F; }
 
   void check(const char* what) const {

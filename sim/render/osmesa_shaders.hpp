@@ -24,9 +24,9 @@ void main() {
 }
 )";
 
-// The level of detail follows TextureTable::place: the texels that a pixel covers. Holes follow
-// CutOuts::is_hole. Only a scene with holes pays for them: with a shader that may discard, the
-// depth test runs after it.
+// The level of detail is chosen as in TextureTable::place, by the texels that a pixel covers; holes
+// are found as in CutOuts::is_hole. Only a scene with holes uses a shader that may discard, since
+// the depth test then runs after the shader.
 inline constexpr const char* kVersion = "#version 450 core\n";
 inline constexpr const char* kVersionWithHoles = "#version 450 core\n#define HOLES\n";
 inline constexpr const char* kFragmentShader = R"(

@@ -22,7 +22,7 @@ struct Voxel {
   float distance_m = 0;  ///< mean signed distance along the ray, positive before the surface
   std::uint16_t views = 0;
   InstanceId instance = 0;
-  std::uint8_t votes = 0;  ///< of that instance over others (Boyer-Moore majority vote)
+  std::uint8_t votes = 0;  ///< lead of that instance over others (Boyer-Moore majority vote)
   std::array<float, 3> color{};
 };
 
@@ -161,7 +161,7 @@ class Volume {
                 const std::vector<InstanceId>& owner, Scene& out) const {
     const Voxel &a = voxels_[index(at)], &b = voxels_[index(at + Vector3i::Unit(axis))];
     if (!known(a) || !known(b) || (a.distance_m < 0) == (b.distance_m < 0)) return;
-    // Far behind a surface, the sign flips again at the end of another view's band: that is no
+    // Far behind a surface, the sign flips again at the end of another view's band: that is not a
     // surface.
     if (std::abs(a.distance_m - b.distance_m) > 2.5 * config_.voxel_m) return;
     const Vector3i u = Vector3i::Unit((axis + 1) % 3), v = Vector3i::Unit((axis + 2) % 3);
@@ -171,7 +171,7 @@ class Volume {
       q[k] = vertex_of[index(cells[k])];
       if (q[k] == kNone) return;
     }
-    if (a.distance_m > 0) std::swap(q[1], q[3]);  // faces face where they were seen from
+    if (a.distance_m > 0) std::swap(q[1], q[3]);  // faces point toward the views that saw them
     for (const auto& t : {std::array{q[0], q[2], q[1]}, std::array{q[0], q[3], q[2]}}) {
       out.triangles.push_back(t);
       out.instance_of.push_back(owner[t[0]]);
@@ -218,7 +218,7 @@ Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& came
         if (frame.depth_m(x, y) > 0)
           use(pose * camera.unproject(x, y, static_cast<double>(frame.depth_m(x, y))));
   };
-  // Nothing is scanned outside the scene's rooms, such as what windows show.
+  // Nothing outside the scene's rooms is scanned, such as what is seen through windows.
   Bounds rooms, seen;
   for (const Room& room : scene.rooms)
     for (const Eigen::Vector2d& p : room.polygon_m) {

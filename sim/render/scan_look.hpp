@@ -14,7 +14,7 @@ struct ScanLookConfig {
   double band_m = 0.06;   ///< truncation distance around a surface; at least 2 voxels
   /// Smooth depth error at 2 m, which grows with the square of depth and makes walls uneven.
   double bump_m = 0.006;
-  int least_views = 2;  ///< a voxel seen less often is a hole
+  int least_views = 2;  ///< a voxel seen by fewer views is a hole
   std::uint64_t seed = 0;
 };
 

@@ -71,7 +71,8 @@ Radiance Shading::shade(const Packet& packet, const Seen& seen) const {
       const FaceRecord& record = *seen.record[i + k];
       const __m256 u = _mm256_broadcast_ss(packet.rays.hit.u + i + k);
       const __m256 v = _mm256_broadcast_ss(packet.rays.hit.v + i + k);
-      // Halves of registers: gain and its first step; its second step and the emission.
+      // Each register holds two fields: the gain and its first step, or its second step and the
+      // emission.
       const __m256 first = load_halves(record.gain.data());
       rest[k] = load_halves(record.gain_step2.data());
       gain[k] =

@@ -175,7 +175,7 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
                   y - to_float(y0)};
   };
   const Corner fine = corner(levels[0]), coarse = corner(levels[1]);
-  // Truncated toward zero, so that four shares of 1 never sum to more than 1.
+  // Truncated toward zero, so that the four shares, which should sum to 1, never sum to more.
   const auto share = [](Float8 part) { return to_int(part * kOne); };
   const auto two = [](Int8 low, Int8 high) { return low | high << 16; };
   const auto store = [](std::array<std::uint64_t, 8>& to, Int8 low, Int8 high) {
@@ -194,7 +194,8 @@ void TextureTable::look_up(const Place& place, Lookup& lookup) const {
         two(share(blend * (1.0F - coarse.right)), share(blend * coarse.right)));
   store(lookup.down, two(share(1.0F - fine.down), share(fine.down)),
         two(share(1.0F - coarse.down), share(coarse.down)));
-  // The coarser level's lower row is left out: it is mostly near its upper one or another lane's.
+  // The coarser level's lower row is not prefetched: it is mostly near its upper row or near a row
+  // of another lane.
   for (const std::array<unsigned, 8>& places : std::span(lookup.texels).first(3))
     for (const unsigned at_texel : places)
       _mm_prefetch(reinterpret_cast<const char*>(texel(at_texel)), _MM_HINT_T0);

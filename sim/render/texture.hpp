@@ -60,9 +60,9 @@ class TextureTable {
   };
   /// Prepares a trilinear lookup at (u, v). Separate from look_up, so that one can proceed while
   /// another waits.
-  /// @param first   add's results, as bits
-  /// @param texels  texels of level 0 that a pixel covers; the level at which it would cover one is
-  ///                read: half the base-2 logarithm, to within 0.05.
+  /// @param first   results of add(), stored as the bits of floats
+  /// @param texels  texels of level 0 that a pixel covers. The level at which the pixel would cover
+  ///                one texel is read: half the base-2 logarithm of this, to within 0.05.
   Place place(Float8 first, Float8 u, Float8 v, Float8 texels) const;
   /// Also prefetches the texels.
   void look_up(const Place& place, Lookup& lookup) const;

@@ -30,7 +30,7 @@ struct FloatImage {
 /// Blurs an image with a Gaussian, horizontally and then vertically, keeping in memory only the
 /// rows that the kernel spans; beyond its borders, the image is extended by its outermost pixels.
 /// @param kernel  see gaussian_kernel()
-/// @param fill    fill(y, row) writes row y; called for rows in order, for each before it is used
+/// @param fill    fill(y, row) writes row y; called for rows in order, before each is used
 /// @param use     use(y, row) receives the blurred row y; called for rows in order
 template <class Fill, class Use>
 void blur_rows(const FloatImage& image, const std::vector<float>& kernel, const Fill& fill,

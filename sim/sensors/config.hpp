@@ -24,7 +24,7 @@ inline constexpr double kSecondsPerMs = 1e-3;
 struct DepthNoiseConfig {
   bool enabled = true;            ///< off: the exact depth at any range
   bool axial = true;              ///< sigma_z(z, incidence)
-  bool lateral = true;            ///< ragged edges: normal lookup offsets, sigma_L(incidence) px
+  bool lateral = true;            ///< ragged edges: lookup offsets, sigma_L(incidence) px
   bool quantization = true;       ///< 1/8 px disparity steps
   bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
   bool projector_shadow = false;  ///< no return where the projector's light is blocked
@@ -238,8 +238,8 @@ void fields(C& c, Visit& v) {
     "how much later than the stamp the depth is captured");
 }
 
-/// What calibration leaves of a depth camera's systematic errors; they stay the same from frame to
-/// frame: depth_bias.hpp. Neutral by default.
+/// Systematic errors of a depth camera that remain after its calibration, the same in every frame;
+/// see depth_bias.hpp. Neutral by default.
 struct DepthBiasConfig {
   bool enabled = false;
   /// TUM's Kinects before their authors corrected them: 1.035 (freiburg1), 1.031 (freiburg2).
@@ -308,9 +308,9 @@ struct MotionSampling {
 };
 
 /// An inertial sensor in the camera's housing. Defaults: noise of the Bosch BMI055 (data sheet:
-/// 0.014 deg/s/sqrt(Hz), 150 ug/sqrt(Hz), zero-rate offset 1 deg/s), as in Intel's D435i; the walks
-/// of the ADIS16448 in EuRoC's sensor.yaml (Burri et al., IJRR 2016), and an accelerometer offset
-/// as in that data set's ground truth.
+/// 0.014 deg/s/sqrt(Hz), 150 ug/sqrt(Hz), zero-rate offset 1 deg/s), as in Intel's D435i; bias
+/// walks of the ADIS16448 from EuRoC's sensor.yaml (Burri et al., IJRR 2016); an accelerometer
+/// offset as in that data set's ground truth.
 struct ImuConfig {
   double rate_hz = 200;
   double gyro_noise = 2.44e-4;   ///< rad/s/sqrt(Hz)

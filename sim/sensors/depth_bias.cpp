@@ -37,7 +37,7 @@ Shape shape_of(std::uint64_t camera, double rms) {
       a[i][j] = stream.normal(draw++);
       b[i][j] = stream.normal(draw++);
       if (i == 0 && j == 0) a[i][j] = 0;
-      // The mean of cos^2 is 1/2, except for the constant.
+      // The mean of cos^2 is 1/2, except for order 0, where it is 1.
       const double mean = (i == 0 ? 1.0 : 0.5) * (j == 0 ? 1.0 : 0.5);
       squares += mean * (a[i][j] * a[i][j] + b[i][j] * b[i][j]);
     }

@@ -118,7 +118,7 @@ struct Row {
         by_incidence(width),
         disparity_px(width),
         column(width) {}
-  std::vector<float> normal_x, normal_y, normal_z;  ///< drawn: for the lateral and axial noise
+  std::vector<float> normal_x, normal_y, normal_z;  ///< random, for lateral and axial noise
   std::vector<int> seen;              ///< index of the pixel whose surface each pixel sees
   std::vector<float> away_x, away_y;  ///< from that pixel to this one, px
   std::vector<float> inverse_depth, slope_x, slope_y, cosine;  ///< of that surface
@@ -205,8 +205,8 @@ class DepthSensor {
   }
 
   /// Depth at each pixel, on the plane of the surface that it sees, which was measured some pixels
-  /// away. Following these planes limits the lateral noise to the edges: on a slope it would
-  /// duplicate the axial noise.
+  /// away. Following these planes limits the lateral noise to edges; without it, lateral noise
+  /// would duplicate the axial noise on slopes.
   void follow_planes(std::span<float> depth) const {
     const float *inverse = row_.inverse_depth.data(), *slope_x = row_.slope_x.data(),
                 *slope_y = row_.slope_y.data(), *dx = row_.away_x.data(), *dy = row_.away_y.data();

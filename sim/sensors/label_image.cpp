@@ -36,7 +36,7 @@ SemanticImage boxes_image(const RenderedFrame& truth, std::vector<VisibleObject>
 }
 
 /// Gives each visible object an entry of its own: equal distributions under different entries. If
-/// the palette is too small, the smallest objects stay under the entry of their class.
+/// the palette is too small, the smallest objects keep the entry of their class.
 /// @param image  labels by class: entry c is class c
 void name_objects(SemanticImage& image, const Grid2d<InstanceId>& instances) {
   constexpr std::size_t kMost = 256;
@@ -72,7 +72,8 @@ void name_objects(SemanticImage& image, const Grid2d<InstanceId>& instances) {
       image.index.data()[i] = object->entry;
 }
 
-/// Each pixel's class, or the class assigned to its instance; instances without one are void.
+/// Each pixel's class, or the class that a fault gave to its instance; instances that lost their
+/// class are void.
 SemanticImage exact_image(const RenderedFrame& truth, const std::vector<VisibleObject>& before,
                           const std::vector<VisibleObject>& after) {
   SemanticImage image{truth.classes, one_hot_palette()};

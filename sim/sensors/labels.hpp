@@ -46,8 +46,9 @@ struct DetectorConfig {
   /// Share of an object's detections with the wrong class: 31 % of the 30 % that are false [B, C],
   /// relative to all detections of objects.
   double confusion = 0.097;
-  /// Expected detections of nothing per image: 14 % of the 30 % that are false, relative to the 4.3
-  /// correct ones per image, from 36,781 / 5,000 objects at a recall of 0.58 [A, B, C].
+  /// Expected false detections where there is no object, per image: 14 % of the 30 % that are
+  /// false, relative to the 4.3 correct ones per image, from 36,781 / 5,000 objects at a recall of
+  /// 0.58 [A, B, C].
   double false_alarms = 0.26;
   /// Standard deviation of the error of each side of a box, as a share of the box's width or
   /// height: chosen so that 34.4 / 57.9 of the boxes with an IoU above 0.5 have an IoU above 0.75
@@ -75,7 +76,7 @@ struct LabelNoiseConfig {
   double confusion = 0.0;  ///< share of instances that carry a wrong class
   double swap = 0.0;       ///< share of instances that start an exchange of classes with their
                            ///< nearest neighbor in the image
-  double dropout = 0.0;    ///< share of instances that carry no label (no box, in those modes)
+  double dropout = 0.0;    ///< share of instances that carry no label (or no box)
   int erosion_px = 0;      ///< pixels within this many px of a border between labels become void
   ClassSet class_set = ClassSet::kAll;
   /// Whether labels are left unchanged.
@@ -102,13 +103,13 @@ void fields(C& c, Visit& v) {
 /// Label faults depend on what is seen and from where, as a network's do: each is decided by a
 /// standard normal number that is the sum of a part that is constant for an instance, a part that
 /// changes smoothly with the view (over about 1 m and 30 degrees; equal for equal views, whenever
-/// they occur) and a part drawn again in each frame. No published data give their shares: they are
-/// a choice.
+/// they occur) and a part drawn again in each frame. The shares of the three parts are our choice,
+/// since no published data give them.
 struct LabelConfig {
   LabelNoiseConfig noise = {};
   DetectorConfig detector = {};
   double persistent_share = 0.4;  ///< of the variance, 0 to 1
-  double frame_share = 0.1;       ///< as above; the two sum to at most 1, the rest is the view's
+  double frame_share = 0.1;       ///< as above; sum at most 1, the rest depends on the view
   std::uint64_t seed = 0;         ///< a different seed acts as a different network
   friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
 };
@@ -129,7 +130,7 @@ void for_each_setting(C& config, Visit& v) {
 }
 
 /// Labels without faults; kDetector gives those of kBoxes. kNone: an empty image. Smaller boxes
-/// cover larger ones; of equal ones, higher instance ids cover lower ones.
+/// cover larger ones; among equally large boxes, those of higher instance ids cover the others.
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode);
 
 /// The same with the faults of `config`.

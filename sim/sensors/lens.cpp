@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-// A wider margin than this is not rendered: the lens is outside the range of its model.
+// Pixels that need a wider margin, as a share of the image, are not rendered: the lens is outside
+// the range of its model there.
 constexpr double kMostMargin = 0.5;
 
 }  // namespace

@@ -38,7 +38,7 @@ SensorConfig exact_sensors() {
 
 SensorConfig parse_sensor_config(const std::string& text, const std::string& name) {
   YamlReader level = YamlReader::parse(text, name);
-  // Required, so that leaving them out decides neither for nor against noise.
+  // Required, so that every level decides for or against noise explicitly.
   for (const char* section : {"depth_noise", "color_noise"}) level.at(section);
   SensorConfig config;
   LevelReader reader(level);

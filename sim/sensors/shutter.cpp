@@ -50,7 +50,7 @@ double farthest_motion_px(const Camera& camera, std::span<const Eigen::Vector2i>
 /// The times within a frame at which rows are exposed.
 class Rows {
  public:
-  /// @param images  over the whole time in which any row is exposed
+  /// @param images  number of images over the whole time in which any row is exposed
   Rows(const SensorConfig& config, int height, int images)
       : height_(height),
         images_(images),
@@ -181,7 +181,7 @@ Shutter::Exposed Shutter::expose(std::size_t i, LabelMode labels) const {
   const int images = images_within(i);
   const double offset_s = config_.depth_offset.offset_s();
   RenderedFrame image = images > 1 && offset_s != 0.0 && labels != LabelMode::kAnnotated
-                            ? RenderedFrame{}  // neither its depth nor most of its rows are seen
+                            ? RenderedFrame{}  // neither its depth nor most of its rows are used
                             : render(lens_.pinhole(), i, 0.0);
   if (images > 1) blur(image, i, images, labels);
   if (offset_s != 0.0) {

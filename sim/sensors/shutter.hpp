@@ -17,8 +17,8 @@ namespace mh {
 /// with a constant twist; before the first and after the last it is at rest.
 SE3 pose_at(const Trajectory& path, std::size_t i, double after_s);
 
-/// Indices of the frames that arrive, at least the first. Random draws are keyed by the frame's
-/// index.
+/// Indices of the frames that arrive, always including the first. Random draws are keyed by the
+/// frame's index.
 std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config,
                                   RandomStream stream);
 /// The frames of a path that arrive.
@@ -39,8 +39,9 @@ class Shutter {
 
   struct Exposed {
     /// Depth is that of the stamp plus its offset, all rows at once. Classes and instances of a row
-    /// are those of the middle of its exposure, from the motion's image nearest in time, at most
-    /// half of MotionSampling::step_px away; for kAnnotated they are those of the stamp.
+    /// are those of the middle of its exposure, from the image along the motion that is nearest in
+    /// time, at most half of MotionSampling::step_px away; for kAnnotated, they are those of the
+    /// stamp.
     RenderedFrame seen;
     double gain = 1.0;  ///< of the exposure control, not yet applied
   };

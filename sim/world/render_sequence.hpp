@@ -11,11 +11,11 @@
 namespace mh {
 
 struct RenderSequenceOptions {
-  std::size_t frames = SIZE_MAX;  ///< at most this many of the path
+  std::size_t frames = SIZE_MAX;  ///< at most this many frames of the path
   std::size_t every = 1;          ///< only every n-th of them
   LabelMode labels = LabelMode::kExact;
   std::uint64_t seed = 0;  ///< of the sensors' noise
-  bool is_second = false;  ///< camera of a pair: has its own noise but loses the same frames
+  bool is_second = false;  ///< second camera of a pair: its own noise, but the same lost frames
   int threads = 2;         ///< each works on its own frame, from rays to files
   bool resume = false;     ///< skips frames that already exist
   /// If set, replaces the labels of the frame at the path's i-th pose. Called by several threads.
@@ -26,8 +26,8 @@ struct RenderSequenceOptions {
 /// frames.
 Camera recorded_camera(Camera camera, const RenderSequenceOptions& options);
 
-/// Returns the indices of the requested poses of the shutter's path whose frames are delivered, in
-/// order.
+/// Returns, in order, the indices of the requested poses of the shutter's path whose frames are
+/// delivered.
 std::vector<std::size_t> moments(const Shutter& shutter, const SensorConfig& sensors,
                                  const RenderSequenceOptions& options);
 

@@ -154,7 +154,7 @@ SharedExposures::SharedExposures(SharedImages where, const std::string& name, co
   file_descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   append_descriptor_ = open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file_descriptor_ < 0) return;
-  // Records begin after the entries, whichever process comes first.
+  // Makes room for all entries, so that records begin after them, whichever process comes first.
   flock(file_descriptor_, LOCK_EX);
   struct stat status {};
   const auto entries = static_cast<off_t>(frames * sizeof(Entry));
@@ -186,7 +186,8 @@ Shutter::Exposed SharedExposures::get(std::size_t i, const Make& make) {
   }
 }
 
-/// Makes the next frame that no process has made or is making; false if there is none nearby.
+/// Makes the next frame that no process has made or is making; false if there is no such frame
+/// within kAhead steps.
 bool SharedExposures::make_ahead(std::size_t i, std::size_t step, const Make& make) {
   constexpr std::size_t kAhead = 16;  // steps
   for (std::size_t k = 1, next = i + step; k <= kAhead && next < frames_; ++k, next += step) {

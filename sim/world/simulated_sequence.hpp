@@ -38,7 +38,8 @@ class SimulatedSequence : public Sequence {
                     std::shared_ptr<const PedestrianScene> pedestrian_scene = nullptr);
 
   /// From now on, exposures are shared with the processes that pass the same folder and name;
-  /// frames with one of images.noises, with those that also pass the same noises.
+  /// frames whose noise is one of images.noises are shared with the processes that also pass the
+  /// same noises.
   /// @param name identifies everything that the constructor received, except labels
   void share(const SharedImages& images, const std::string& name);
 

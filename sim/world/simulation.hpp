@@ -43,7 +43,7 @@ struct RobotObservation {
   /// Set if a frame was due during the step (the latest, if several were). Stamped one tick of the
   /// camera before it arrives: an exposure is over before it is read out.
   std::optional<RgbdFrame> frame;
-  Grid2d<InstanceId> instances;  ///< of its pixels, not for SLAM; empty without a frame
+  Grid2d<InstanceId> instances;  ///< of the frame's pixels, not for SLAM; empty without a frame
   /// Lasers, sonars and bumpers now; the IMU one tick ago.
   RobotReading reading;
   SE3 odom_from_base;    ///< wheel odometry
@@ -73,7 +73,8 @@ class Simulation {
 
   // The ground truth: for scoring only.
   const CommandedBase& truth() const { return base_; }
-  /// world_from_camera of the last frame that was delivered, at its stamp; or none.
+  /// world_from_camera of the last frame that was delivered, at its stamp; nullopt if there is
+  /// none.
   const std::optional<TimedPose>& truth_of_frame() const { return frame_pose_; }
   double time_s() const { return base_.time_s(); }
 

@@ -76,7 +76,8 @@ Motion parse(const std::string& motion) {
   return result;
 }
 
-/// Notes on the parts of a recorded path that cannot be replayed. @throws InputError if none can be
+/// Notes on the parts of a recorded path that cannot be replayed. @throws InputError if no part can
+/// be replayed
 std::vector<std::string> notes_on_replay(const std::filesystem::path& file) {
   std::vector<std::string> notes;
   read_trajectory(file, &notes);

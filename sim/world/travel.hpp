@@ -15,7 +15,7 @@
 
 namespace mh {
 
-/// The beginnings of the names of motions that are generated for a scene.
+/// Prefixes of the names of motions that are generated for a scene.
 inline constexpr std::array<const char*, 3> kMadeMotions{"auto", "survey", "handheld"};
 
 /// Moves the camera through a scene along a named motion:
@@ -41,9 +41,9 @@ std::optional<std::size_t> frames_stated(const std::string& motion);
 /// drive, become NaN. @returns whether anything was cut off
 bool cut(DrivenPath& path, std::size_t max_frames);
 
-/// Returns the path of a handheld camera in less time, as specified by the level's `hurry`: poses
-/// at the camera's rate, interpolated where a frame falls between two of the path's. A robot that
-/// drives keeps its own speed. @param motion what `path` came from
+/// Returns the path of a handheld camera, traveled in less time as specified by the level's
+/// `hurry`: poses at the camera's rate, interpolated where a frame falls between two of the path's.
+/// A robot that drives keeps its own speed. @param motion what `path` came from
 DrivenPath hurried(DrivenPath path, const std::string& motion, const SensorConfig& level,
                    double rate_hz);
 
