@@ -63,8 +63,7 @@ void validate(const HandheldConfig& config) {
 
 DrivenPath scan_by_hand(const Scene& scene, const Camera& camera, const HandheldConfig& config) {
   validate(config);
-  const RandomStream stream =
-      RandomStream(config.seed).fork(0x68616e64);  // used by this motion alone
+  const RandomStream stream = RandomStream(config.seed).fork(0x68616e64);  // for this motion only
   const Ground ground = ground_of(scene, config.height_m);
   const std::size_t frames = config.frames.value_or(frames_for(ground.area_m2, camera.rate_hz));
 

@@ -14,10 +14,9 @@ namespace mh {
 /// and the top of the robot's head, exactly, apart from range, resolution and the lasers' noise.
 struct RobotReading {
   Stamp stamp_ns = 0;
-  std::vector<std::vector<float>>
-      lasers_m;                 ///< by laser, rays from right to left; 0 = nothing in range
-  std::vector<float> sonars_m;  ///< by sonar; 0 = nothing in range
-  std::vector<bool> bumpers;    ///< by bumper: pressed
+  std::vector<std::vector<float>> lasers_m;  ///< by laser, right to left; 0 = nothing in range
+  std::vector<float> sonars_m;               ///< by sonar; 0 = nothing in range
+  std::vector<bool> bumpers;                 ///< by bumper: pressed
   /// Specific force (accelerometer) and angular rate (gyroscope), IMU frame: the exact mean over
   /// the time between two frames. Without an IMU: 0.
   Eigen::Vector3d specific_force_m_per_s2 = Eigen::Vector3d::Zero();

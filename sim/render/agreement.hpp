@@ -14,10 +14,9 @@ struct Agreement {
   /// Pixels that show different instances at the same depth (relative difference up to 1e-5): two
   /// coplanar objects, where either answer is right.
   std::int64_t ties = 0;
-  std::int64_t same_color = 0;  ///< every channel within two gray levels
-  std::int64_t smooth = 0;      ///< pixels outside silhouettes, see add()
-  double square_depth_m2 =
-      0.0;  ///< summed squared depth differences over the pixels counted in smooth
+  std::int64_t same_color = 0;   ///< every channel within two gray levels
+  std::int64_t smooth = 0;       ///< pixels outside silhouettes, see add()
+  double square_depth_m2 = 0.0;  ///< summed squared depth differences of those `smooth` pixels
 
   double class_share() const { return share(same_class); }
   double instance_share() const { return share(same_instance); }

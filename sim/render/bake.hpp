@@ -40,8 +40,9 @@ std::uint64_t digest(const BakeConfig& config);
 ///   faces; its light is filled in from its neighbors, so that it does not darken the surrounding
 ///   floor.
 /// - Luminous faces cast no shadow for suns and lamps (lamp shades, window panes), and near a
-/// lamp's center (three radii, at least 0.3 m) their emission counts as that lamp's and is not
-/// counted twice. Deterministic: random numbers are keyed by (seed, vertex).
+///   lamp's center (three radii, at least 0.3 m) their emission counts as that lamp's and is not
+///   counted twice.
+/// Deterministic: random numbers are keyed by (seed, vertex).
 /// @param watch  may be empty; called from any thread, never from two at once
 /// @throws std::invalid_argument if a count is negative or samples is 0.
 void bake_light(Scene& scene, const BakeConfig& config = {}, const BakeWatch& watch = {});

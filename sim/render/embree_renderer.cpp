@@ -22,8 +22,9 @@
 namespace mh {
 namespace {
 
-// All packets of a tile are traced before any is shaded. So the BVH and the shading data do not
-// evict each other from the caches, and the rays are long in memory when the tracer loads them.
+// All packets of a tile are traced before any is shaded, so that the BVH and the shading data do
+// not evict each other from the caches. All its rays are set up before any is traced, so that they
+// have reached memory by the time the tracer loads them.
 
 constexpr float kDepth16PerM = 5000.0F;
 

@@ -24,7 +24,7 @@ inline constexpr double kSecondsPerMs = 1e-3;
 struct DepthNoiseConfig {
   bool enabled = true;            ///< off: the exact depth at any range
   bool axial = true;              ///< sigma_z(z, incidence)
-  bool lateral = true;            ///< ragged edges: lookup offsets, sigma_L(incidence) px
+  bool lateral = true;            ///< ragged edges: Gaussian lookup offsets, sigma_L(incidence) px
   bool quantization = true;       ///< 1/8 px disparity steps
   bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
   bool projector_shadow = false;  ///< no return where the projector's light is blocked
@@ -173,7 +173,7 @@ void fields(C& c, Visit& v) {
 }
 
 struct LensDistortionConfig {
-  bool enabled = false;  ///< off: the camera's own
+  bool enabled = false;  ///< off: the camera's own lens
   Distortion lens;
   friend bool operator==(const LensDistortionConfig&, const LensDistortionConfig&) = default;
 };
@@ -284,7 +284,7 @@ void fields(C& c, Visit& v) {
 /// A handheld camera covers its path in less time: hurried(), sim/world/travel.hpp.
 struct HurryConfig {
   bool enabled = false;
-  double speed = 1.0;  ///< multiple of the path's own
+  double speed = 1.0;  ///< multiple of the path's own speed
   double factor() const { return enabled ? speed : 1.0; }
   friend bool operator==(const HurryConfig&, const HurryConfig&) = default;
 };
