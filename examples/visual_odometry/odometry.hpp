@@ -28,7 +28,7 @@ Camera read_settings(const std::string& file);
 cv::Affine3d pose_of(const std::array<double, 7>& values);
 /// The pose as x, y, z, qx, qy, qz, qw.
 std::array<double, 7> pose_values(const cv::Affine3d& pose);
-/// The same as text, with all digits that a double has.
+/// The pose as text, with all digits that a double has.
 std::string pose_numbers(const cv::Affine3d& pose, char separator);
 
 /// The features of an image: keypoints with depth, as points in its camera's frame.
@@ -46,8 +46,8 @@ struct Keyframe {
 struct Found {
   std::optional<cv::Affine3d> world_from_camera;
   int inliers = 0;
-  int keyframes = 0;   ///< in the map
-  int candidates = 0;  ///< keyframes that a pose was estimated against
+  int keyframes = 0;   ///< number of keyframes in the map
+  int candidates = 0;  ///< number of keyframes that a pose was estimated against
   bool keyframe_added = false;
 };
 

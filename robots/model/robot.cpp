@@ -191,7 +191,7 @@ class EquipmentReader {
         name.fail(fmt::format("'{}' is listed twice", wheel.name));
       const SE3 base_from_wheel = e_.base_from(wheel.child);
       const Eigen::Vector3d axle = base_from_wheel.rotation() * wheel.axis;
-      constexpr double kSteep = 0.5;  // 30 degrees: cambered wheels roll, a steered axis does not
+      constexpr double kSteep = 0.5;  // 30 degrees: accepts cambered wheels but no steering axis
       if (wheel.kind != Joint::Kind::kTurning || std::abs(axle.z()) > kSteep)
         name.fail(fmt::format(
             "joint '{}' is not a wheel joint: it {}", wheel.name,

@@ -24,7 +24,7 @@ struct Joint {
   enum class Kind { kFixed, kTurning, kSliding };
   std::string name, parent, child;
   Kind kind = Kind::kFixed;
-  SE3 parent_from_child;                            ///< at position 0
+  SE3 parent_from_child;                            ///< with the joint at position 0
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, in the child's frame
   // Limits of position (rad or m), velocity (the same per second) and effort (N m or N); infinite
   // if there are none.

@@ -75,7 +75,7 @@ std::string find_kind(WheelBase& base) {
   for (const WheelBase::Wheel& wheel : wheels)
     base.middle_m += wheel.place_m / static_cast<double>(wheels.size());
   const auto on_side = [&](double side) {
-    constexpr double kLeast_m = 0.005;  // to the side of the middle
+    constexpr double kLeast_m = 0.005;  // least lateral distance from the middle
     return std::ranges::count_if(wheels, [&](const WheelBase::Wheel& wheel) {
       return side * (wheel.place_m.y() - base.middle_m.y()) > kLeast_m;
     });
@@ -142,7 +142,7 @@ JerkLimiter::Velocity JerkLimiter::step(const Velocity& command) {
       limited(command.m_per_s, command.m_per_s.norm(), limits_.max_velocity_m_per_s);
   double turn_goal =
       std::clamp(command.turn_rad_per_s, -limits_.max_turn_rad_per_s, limits_.max_turn_rad_per_s);
-  constexpr double kRimShare = 0.98;  // of the rims' limit, so that a command is reachable
+  constexpr double kRimShare = 0.98;  // share of the rims' limit, so that a command is reachable
   const double asked = goal.norm() + reach_m_ * std::abs(turn_goal);
   if (asked > kRimShare * most_m_per_s_) {
     goal *= kRimShare * most_m_per_s_ / asked;

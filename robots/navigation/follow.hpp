@@ -30,14 +30,14 @@ double speed_before(std::span<const Eigen::Vector2d> obstacles_m, const Eigen::V
 /// only where it faces.
 struct Steering {
   Twist2d command = Twist2d::Zero();
-  double left_m = 0;     ///< of the path
-  bool arrived = false;  ///< at its end
+  double left_m = 0;     ///< length of the path that is left
+  bool arrived = false;  ///< at the path's end
   bool blocked = false;  ///< an obstacle is in the way
 };
 
 /// @param path       in the frame of `at`; at least one place
 /// @param at         pose of the base
-/// @param obstacles  in the same frame
+/// @param obstacles  in the same frame as `path`
 Steering follow(const std::vector<Eigen::Vector2d>& path, const Pose2& at,
                 std::span<const Eigen::Vector2d> obstacles_m, const Robot& robot,
                 const FollowConfig& config = {});

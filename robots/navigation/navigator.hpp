@@ -26,7 +26,7 @@ struct KnownMap {
 
 /// A goal: an object in the robot's own map, seen from above.
 struct NavigatorGoal {
-  std::string name;                       ///< for the navigator's messages
+  std::string name;                       ///< name for the navigator's messages
   std::vector<Eigen::Vector2d> places_m;  ///< centers of the cells that it covers, map frame
 };
 

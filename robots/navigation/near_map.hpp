@@ -16,7 +16,7 @@ namespace mh {
 
 struct NearMapConfig {
   double resolution_m = 0.05;
-  double half_size_m = 5.0;  ///< of the window that moves along with the robot
+  double half_size_m = 5.0;  ///< half the side of the window that moves along with the robot
   // What the depth camera shows between these heights is an obstacle. The lower one, 8 cm, is above
   // the depth noise of a floor at max_depth_m, seen from 1.1 m.
   double bottom_m = 0.08, top_m = 1.25;

@@ -14,7 +14,7 @@ namespace mh {
 /// detour: where the clearance is less than twice the required one, length costs up to three times
 /// as much. A* over the grid's cells (Hart, Nilsson and Raphael, 1968), then corners that a
 /// straight line can replace are removed.
-/// @param clearance_m  of the robot's center: its radius plus its tracking error
+/// @param clearance_m  clearance of the robot's center: its radius plus its tracking error
 std::optional<std::vector<Eigen::Vector2d>> plan_way(const FloorGrid& grid,
                                                      const Eigen::Vector2d& from_m,
                                                      const Eigen::Vector2d& to_m,
@@ -23,7 +23,7 @@ std::optional<std::vector<Eigen::Vector2d>> plan_way(const FloorGrid& grid,
 /// Length (m) of the shortest path over the grid from a place to every cell, infinite if there is
 /// none.
 Grid2d<float> way_lengths(const FloorGrid& grid, const Eigen::Vector2d& from_m, double clearance_m);
-/// The same from the nearest of several places.
+/// The same lengths from the nearest of several places.
 Grid2d<float> way_lengths(const FloorGrid& grid, std::span<const Eigen::Vector2d> from_m,
                           double clearance_m);
 
@@ -40,7 +40,7 @@ std::vector<std::vector<double>> lengths_between(const FloorGrid& grid,
                                                  double clearance_m);
 
 struct RoundTrip {
-  std::vector<std::size_t> order = {};  ///< of the places; begins with the first
+  std::vector<std::size_t> order = {};  ///< indices of the places in order; begins with the first
   double length_m = 0;                  ///< including the return to the first
 };
 

@@ -43,7 +43,7 @@ class CommandedBase {
   const PlanarWorld& world() const { return world_; }
   const BaseState& state() const { return state_; }
   SE3 world_from_base() const;
-  const Contact& contact() const { return contact_; }  ///< of the last step
+  const Contact& contact() const { return contact_; }  ///< contact of the last step
   double step_s() const { return world_.step_s(); }
   /// Physics steps per frame of the robot's camera.
   int steps_per_frame() const { return steps_per_frame_; }

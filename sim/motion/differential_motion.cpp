@@ -18,8 +18,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRounding_rad =
-    1e-9;  // the base faces its path: smaller turns are rounding errors
+constexpr double kRounding_rad = 1e-9;  // smaller turns are only rounding errors
 // Tangential and lateral acceleration share one limit (0.7^2 + 0.7^2 < 1), and smoothing the path
 // adds to both.
 constexpr double kShare = 0.7;

@@ -23,7 +23,7 @@ struct Ground {
   double area_m2 = 0;
 };
 
-/// @param height_m  of the camera
+/// @param height_m  height of the camera
 /// @throws InputError if there is no floor, or no space on it for a person
 Ground ground_of(const Scene& scene, double height_m);
 

@@ -90,8 +90,8 @@ class Gaze {
  private:
   static constexpr int kRays = 48;
   static constexpr double kRayStep_rad = 2 * M_PI / kRays;
-  static constexpr double kTurnCost = 0.1;   // per radian
-  static constexpr double kBareWorth = 0.3;  // of a wall relative to furniture
+  static constexpr double kTurnCost = 0.1;   // worth that a turn loses per radian
+  static constexpr double kBareWorth = 0.3;  // worth of a bare surface relative to furniture
   static constexpr double kFarthest_m = 8.0;
   using Bin = std::pair<long, long>;  ///< a 0.3 m square of the seen area
   struct Look {

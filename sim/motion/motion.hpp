@@ -52,7 +52,7 @@ Tour load_tour(const std::filesystem::path& file);
 struct DrivePeaks {
   double m_per_s = 0, m_per_s2 = 0, m_per_s3 = 0;
   double rad_per_s = 0, rad_per_s2 = 0, rad_per_s3 = 0;
-  double rim_m_per_s = 0;  ///< of any wheel, if the robot has wheels
+  double rim_m_per_s = 0;  ///< rim speed of any wheel, if the robot has wheels
 };
 
 /// The robot's actual motion: base and camera, at the camera's rate.

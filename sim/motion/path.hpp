@@ -39,7 +39,7 @@ class RoundedPath {
   /// ends.
   struct Bend {
     double curvature_per_m = 0;
-    double change_per_m2 = 0, second_change_per_m3 = 0;  ///< of the curvature: its derivatives
+    double change_per_m2 = 0, second_change_per_m3 = 0;  ///< derivatives of the curvature
   };
   Bend bend_at(double s_m) const;
   /// Arc length of the point that represents corner i (the middle of its arc).

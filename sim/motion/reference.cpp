@@ -51,7 +51,7 @@ class Samples {
   /// Length (steps) of the shortest moving average that keeps the jerk limit.
   long window(double jerk, double step_s) const {
     const long n = static_cast<long>(values_.size());
-    std::vector<T> acceleration;  // 0 beyond the ends
+    std::vector<T> acceleration;  // acceleration is 0 beyond the ends
     for (long i = 0; i < n; ++i)
       acceleration.push_back(((*this)[i + 1] - (*this)[i] - ((*this)[i] - (*this)[i - 1])) /
                              (step_s * step_s));

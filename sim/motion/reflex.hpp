@@ -18,7 +18,7 @@ class Reflex {
  public:
   Reflex(const Scene& scene, const Robot& robot);
 
-  /// @param direction  of travel, world, unit
+  /// @param direction  direction of travel, world, unit
   /// @param others     moving obstacles: place and radius, m
   double allowed_m_per_s(const Eigen::Vector2d& place_m, const Eigen::Vector2d& direction,
                          const std::vector<std::pair<Eigen::Vector2d, double>>& others) const;

@@ -23,7 +23,7 @@ struct ReplayConfig {
 /// camera's rate. The whole trajectory is translated horizontally and rotated about z, so its
 /// heights do not change. Between two poses the camera moves by a constant twist. Stamps start at
 /// 0. DrivenPath::moved describes where the poses were moved.
-/// @param name  of the trajectory, for messages
+/// @param name  name of the trajectory, for messages
 /// @throws InputError if the trajectory has fewer than two poses, or no placement in the scene is
 /// clear of everything.
 DrivenPath replay(const Scene& scene, const Camera& camera, const Trajectory& recorded,

@@ -31,7 +31,7 @@ struct RobotReadings {
 /// @throws InputError if the robot has no lasers
 const Equipment& equipment_with_lasers(const Robot& robot);
 /// The noise of a robot's lasers.
-/// @param tick  of the camera, since the drive began
+/// @param tick  number of camera ticks since the drive began
 RandomStream laser_noise(std::uint64_t seed, std::size_t tick);
 /// What the lasers measure, by laser and ray, m; 0 = nothing in range.
 /// @param noise  random stream for these scans

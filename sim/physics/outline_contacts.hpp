@@ -44,7 +44,7 @@ class OutlineContacts final : public btCollisionAlgorithm {
   struct Near {
     btScalar distance_m;
     int triangle;
-    btVector3 point;  // of the wall, at the height of the base's middle
+    btVector3 point;  // point of the wall at the height of the base's middle
   };
 
   /// Finds walls within a distance of the center, nearest first.

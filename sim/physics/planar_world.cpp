@@ -43,11 +43,11 @@ Eigen::Vector2d gripped_change(const BaseCommand& command, const BaseState& now,
 // Members are destroyed in reverse order: the world before what it refers to.
 struct PlanarWorld::Impl {
   BaseLimits limits;
-  bool grips;  // its wheels hold it sideways: see step()
+  bool grips;  // the wheels keep the base from moving sideways: see step()
   double radius_m, height_m;
   double step_s;
   std::unique_ptr<Obstacles> seen, felt;
-  std::unique_ptr<btRigidBody> house;  // of felt_obstacles; null if there is nothing to hit
+  std::unique_ptr<btRigidBody> house;  // body of felt_obstacles; null if there is nothing to hit
   btSphereShape robot_shape;           // see felt_obstacles
   std::unique_ptr<btRigidBody> robot;
   struct Mover {

@@ -7,7 +7,7 @@
 namespace mh {
 namespace {
 
-constexpr float kLiftM = 1e-3F;  // off the surface: smaller than any visible gap
+constexpr float kLiftM = 1e-3F;  // distance off the surface: smaller than any visible gap
 
 float fraction(float x) {
   return x - std::floor(x);

@@ -50,7 +50,7 @@ struct Scratch {
   }
   std::vector<Packet> packets;
   std::vector<Seen> seen;
-  std::vector<Radiance> light;  // when supersampling
+  std::vector<Radiance> light;  // only when supersampling
   Tile tile;
   FlushDenormals flush;
 };

@@ -23,7 +23,7 @@ void store_halves(std::array<std::uint16_t, N>& out, const Vector3f& value) {
 /// What the faces of a material share.
 struct Surface {
   std::uint32_t texture = TextureTable::kWhite;
-  float texels = 0.0F;                   // of level 0
+  float texels = 0.0F;                   // number of texels of level 0
   Vector3f base = Vector3f::Ones();      // linear
   Vector3f emission = Vector3f::Zero();  // linear x exposure
 };
@@ -88,7 +88,7 @@ FaceTexture make_texture(const Scene& scene, const Surface& surface, std::size_t
   if (surface.texture == TextureTable::kWhite) return record;
   const auto& corners = scene.triangles[face];
   const Eigen::Vector2f& first = scene.uvs[corners[0]];
-  const Eigen::Vector2f at = first - first.array().floor().matrix();  // periodic: keep it small
+  const Eigen::Vector2f at = first - first.array().floor().matrix();  // periodic: keeps it small
   const Eigen::Vector2f step1 = scene.uvs[corners[1]] - first;
   const Eigen::Vector2f step2 = scene.uvs[corners[2]] - first;
   record.u = at.x(), record.v = at.y();

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Nearer surfaces are clipped; a ray tracer sees them.
+// Surfaces nearer than this are clipped; a ray tracer would see them.
 constexpr float kNearM = 1e-3F;
 
 class OsmesaRenderer final : public Renderer {
@@ -208,7 +208,7 @@ class OsmesaRenderer final : public Renderer {
 
   OffscreenContext context_;
   const Gl& gl_;
-  float exposure_;  // of images, see RenderedFrame
+  float exposure_;  // exposure of images, see RenderedFrame
   GLuint program_ = 0;
   std::vector<Batch> batches_;
   bool has_panes_ = false;

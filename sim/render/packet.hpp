@@ -47,7 +47,7 @@ struct View {
     }
   }
 
-  /// Returns what an offset adds to a direction.
+  /// Returns what an offset within a pixel adds to its direction.
   std::array<float, 3> beside(const Offset& offset) const {
     const float a = offset.x * pixel_width, b = offset.y * pixel_height;
     return {rotation(0, 0) * a + rotation(0, 1) * b, rotation(1, 0) * a + rotation(1, 1) * b,

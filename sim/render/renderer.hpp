@@ -33,7 +33,7 @@ struct RenderedFrame {
 
   // On request (ExtraOutputs), else empty.
   Grid2d<std::uint16_t> depth16{};  ///< 5000 per meter as in TUM's files; 0 beyond 13.1 m
-  Grid2d<std::uint32_t> faces{};    ///< index in Scene::triangles; kNoFace
+  Grid2d<std::uint32_t> faces{};    ///< index in Scene::triangles, or kNoFace
   Grid2d<std::array<float, 2>> barycentric{};  ///< shares of the face's corners 1 and 2
   Grid2d<Eigen::Vector3f> points_m{};          ///< world; 0 where nothing was hit
 };

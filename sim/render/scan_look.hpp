@@ -22,7 +22,7 @@ struct ScanLookConfig {
 /// distance volume (Curless and Levoy, SIGGRAPH 1996) and meshed by surface nets (Gibson, MICCAI
 /// 1998), with colors per vertex, rounded edges, uneven surfaces, and holes where no view looked.
 /// Classes, instances and rooms are those of the scene; its light is baked into the colors.
-/// @param renderer  of that scene
+/// @param renderer  renderer of `scene`
 /// @throws InputError if a size is out of range, there is no view, or the views cover more than
 /// fits in memory (600 million voxels).
 Scene scan_look(const Scene& scene, const Renderer& renderer, const Camera& camera,

@@ -64,7 +64,7 @@ class TextureTable {
   /// @param texels  texels of level 0 that a pixel covers. The level at which the pixel would cover
   ///                one texel is read: half the base-2 logarithm of this, to within 0.05.
   Place place(Float8 first, Float8 u, Float8 v, Float8 texels) const;
-  /// Also prefetches the texels.
+  /// Fills in a lookup and prefetches its texels.
   void look_up(const Place& place, Lookup& lookup) const;
 
   /// The filtered colors of a lane and the next one: linear RGB, channel 3 = 0.

@@ -29,7 +29,7 @@ struct DepthNoiseConfig {
   bool grazing_holes = true;      ///< no return beyond kMaxIncidenceRad
   bool projector_shadow = false;  ///< no return where the projector's light is blocked
   double min_range_m = 0.4;
-  double max_range_m = 8.0;  ///< above min_range_m
+  double max_range_m = 8.0;  ///< must be above min_range_m
   friend bool operator==(const DepthNoiseConfig&, const DepthNoiseConfig&) = default;
 };
 
@@ -109,7 +109,7 @@ void fields(C& c, Visit& v) {
 struct AutoExposureConfig {
   bool enabled = false;
   double target = 0.18;
-  double time_constant_s = 0.5;  ///< of the lag; 0 = none
+  double time_constant_s = 0.5;  ///< time constant of the lag; 0 = no lag
   double max_gain = 4.0;         ///< on top of the renderer's exposure; the minimum is 1 / max_gain
   friend bool operator==(const AutoExposureConfig&, const AutoExposureConfig&) = default;
 };
@@ -314,11 +314,11 @@ struct MotionSampling {
 struct ImuConfig {
   double rate_hz = 200;
   double gyro_noise = 2.44e-4;   ///< rad/s/sqrt(Hz)
-  double gyro_walk = 1.94e-5;    ///< of the bias, rad/s^2/sqrt(Hz)
-  double gyro_bias = 0.0175;     ///< at the start, rad/s
+  double gyro_walk = 1.94e-5;    ///< walk of the bias, rad/s^2/sqrt(Hz)
+  double gyro_bias = 0.0175;     ///< bias at the start, rad/s
   double accel_noise = 1.47e-3;  ///< m/s^2/sqrt(Hz)
-  double accel_walk = 3.0e-3;    ///< of the bias, m/s^3/sqrt(Hz)
-  double accel_bias = 0.1;       ///< at the start, m/s^2
+  double accel_walk = 3.0e-3;    ///< walk of the bias, m/s^3/sqrt(Hz)
+  double accel_bias = 0.1;       ///< bias at the start, m/s^2
   friend bool operator==(const ImuConfig&, const ImuConfig&) = default;
 };
 

@@ -54,7 +54,7 @@ class IncidenceTable {
 struct Surface {
   float inverse_depth = 0;         // 1/m; 0 = nothing seen
   float slope_x = 0, slope_y = 0;  // 1/m per px
-  float cosine = 0;                // of the incidence
+  float cosine = 0;                // cosine of the incidence
 };
 
 /// The smaller of the two one-sided differences: it does not cross an object's edge.
@@ -120,11 +120,11 @@ struct Row {
         column(width) {}
   std::vector<float> normal_x, normal_y, normal_z;  ///< random, for lateral and axial noise
   std::vector<int> seen;              ///< index of the pixel whose surface each pixel sees
-  std::vector<float> away_x, away_y;  ///< from that pixel to this one, px
+  std::vector<float> away_x, away_y;  ///< offset from that pixel to this one, px
   std::vector<float> inverse_depth, slope_x, slope_y, cosine;  ///< of that surface
   std::vector<float> by_incidence;  ///< looked up: first the lateral sigma, then the angular part
   std::vector<float> disparity_px;  ///< between camera and projector
-  std::vector<int> column;          ///< in the projector's image
+  std::vector<int> column;          ///< column in the projector's image
 };
 
 /// Processes an image row by row, with several passes over each row.
@@ -214,7 +214,7 @@ class DepthSensor {
     for (int x = 0; x < width_; ++x) {
       const float w = inverse[x];
       const float moved = w + slope_x[x] * dx[x] + slope_y[x] * dy[x];
-      // A thin object has no plane to follow.
+      // Limited, since the slopes on a thin object are not those of a plane.
       const float limited = std::min(std::max(moved, 0.8F * w), 1.25F * w);
       const float there = 1.0F / limited;
       z[x] = w > 0.0F ? there : 0.0F;

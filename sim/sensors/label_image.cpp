@@ -42,8 +42,8 @@ void name_objects(SemanticImage& image, const Grid2d<InstanceId>& instances) {
   constexpr std::size_t kMost = 256;
   struct Object {
     std::uint32_t pixels = 0;
-    ClassId class_id = kVoid;  ///< of its first pixel; pixels of other classes do not belong to it
-    std::uint8_t entry = 0;    ///< 0: none of its own
+    ClassId class_id = kVoid;  ///< class of its first pixel; excludes pixels of other classes
+    std::uint8_t entry = 0;    ///< 0: it has no entry of its own
   };
   std::vector<Object> objects;  // by instance
   const auto object_at = [&](std::size_t pixel) -> Object* {

@@ -17,8 +17,8 @@ namespace mh {
 /// kAnnotated: the same at a single instant, the stamp, as if a labeled mesh were rendered at the
 /// frame's pose (ScanNet's labels are made this way). kBoxes: the bounding box of the visible
 /// pixels of each instance of a COCO class is filled with its class; everything else is background.
-/// kDetector: those boxes as a network would draw them, see DetectorConfig. kNone: none. kRecorded:
-/// the labels of a recording; no simulated frame has them.
+/// kDetector: those boxes as a network would draw them, see DetectorConfig. kNone: no labels.
+/// kRecorded: the labels of a recording; no simulated frame has them.
 enum class LabelMode { kNone, kExact, kAnnotated, kBoxes, kDetector, kRecorded };
 
 /// Whether each pixel has the class of the surface seen there, not that of a box.
@@ -108,7 +108,7 @@ void fields(C& c, Visit& v) {
 struct LabelConfig {
   LabelNoiseConfig noise = {};
   DetectorConfig detector = {};
-  double persistent_share = 0.4;  ///< of the variance, 0 to 1
+  double persistent_share = 0.4;  ///< share of the variance, 0 to 1
   double frame_share = 0.1;       ///< as above; sum at most 1, the rest depends on the view
   std::uint64_t seed = 0;         ///< a different seed acts as a different network
   friend bool operator==(const LabelConfig&, const LabelConfig&) = default;
@@ -133,9 +133,9 @@ void for_each_setting(C& config, Visit& v) {
 /// cover larger ones; among equally large boxes, those of higher instance ids cover the others.
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode);
 
-/// The same with the faults of `config`.
+/// Labels with the faults of `config`.
 /// @param world_from_camera  the view that faults depend on
-/// @param stream             of this frame, for what is drawn in each frame
+/// @param stream             random stream of this frame, for what is drawn in each frame
 SemanticImage label_image(const RenderedFrame& truth, LabelMode mode, const LabelConfig& config,
                           const SE3& world_from_camera, RandomStream stream);
 

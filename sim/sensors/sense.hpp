@@ -32,8 +32,8 @@ double analog_gain(const ShotNoiseConfig& config, float exposure);
 /// Returns the frame, without labels, that a camera with these faults delivers. All noise is a
 /// function of (stream, pixel) alone; each kind uses its own stream.
 /// @param truth   the image as the shutter captured it (see shutter.hpp), or an exact one
-/// @param stream  of this frame
-/// @param gain    of the exposure control
+/// @param stream  random stream of this frame
+/// @param gain    gain of the exposure control
 RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorConfig& config,
                 RandomStream stream, Stamp stamp_ns, double gain = 1.0);
 

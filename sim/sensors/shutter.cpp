@@ -30,7 +30,7 @@ std::vector<Eigen::Vector2i> motion_grid(const Camera& camera) {
 }
 
 /// The maximum motion (px) of some pixels' content between two poses.
-/// @param depth_m  of those pixels, seen from a third pose
+/// @param depth_m  depth of those pixels, seen from a third pose
 double farthest_motion_px(const Camera& camera, std::span<const Eigen::Vector2i> pixels,
                           std::span<const float> depth_m, const SE3& first_from_seen,
                           const SE3& last_from_seen) {

@@ -31,7 +31,7 @@ class Shutter {
   /// A scene in which something moves: its renderer at a given time.
   using SceneAt = std::function<std::shared_ptr<const Renderer>(Stamp)>;
 
-  /// @param renderer  of the scene; shared: one renderer serves every path
+  /// @param renderer  renderer of the scene; shared, since one renderer serves every path
   /// @param path      world_from_camera, at least one pose
   Shutter(SceneAt scene, const Camera& camera, Trajectory path, const SensorConfig& config);
   Shutter(std::shared_ptr<const Renderer> renderer, const Camera& camera, Trajectory path,
@@ -43,7 +43,7 @@ class Shutter {
     /// time, at most half of MotionSampling::step_px away; for kAnnotated, they are those of the
     /// stamp.
     RenderedFrame seen;
-    double gain = 1.0;  ///< of the exposure control, not yet applied
+    double gain = 1.0;  ///< gain of the exposure control, not yet applied
   };
   Exposed expose(std::size_t i, LabelMode labels = LabelMode::kExact) const;
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kAxes = 6;
 constexpr double kCellM = 1.0;
-constexpr double kCellOfDirection = 0.5;  // in the unit direction vector: 29 degrees
+constexpr double kCellOfDirection = 0.5;  // length in the unit direction vector: 29 degrees
 
 double smooth(double x) {
   return x * x * (3.0 - 2.0 * x);

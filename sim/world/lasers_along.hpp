@@ -18,7 +18,7 @@ namespace mh {
 /// Safe to use from several threads.
 class LasersAlong {
  public:
-  /// @param seed    of the noise
+  /// @param seed    seed of the noise
   /// @param others  moving obstacles
   /// @throws InputError if the robot has no lasers
   LasersAlong(std::shared_ptr<const Scene> scene, const Robot& robot, const DrivenPath& path,

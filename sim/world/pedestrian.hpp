@@ -16,7 +16,7 @@ namespace mh {
 struct Pedestrian {
   std::vector<Eigen::Vector2d> path_m;  ///< two places or more, world
   double speed_m_per_s = 1.2;           ///< above 0
-  double start_s = 0;                   ///< when the pedestrian leaves the first place
+  double start_s = 0;                   ///< time at which the pedestrian leaves the first place
 };
 
 /// Reads a pedestrian (YAML): `path: [[x, y], ...]`, optional `speed_m_per_s`, `start_s`.
@@ -33,7 +33,7 @@ Scene build_pedestrian(const Eigen::Vector3f& light);
 inline constexpr double kPedestrianRadius_m = 0.22;
 inline constexpr double kPedestrianHeight_m = 1.72;
 
-/// The pedestrian's instance in a scene: one above the scene's own instances.
+/// The pedestrian's instance in a scene: one above the scene's last instance.
 InstanceId pedestrian_instance(const Scene& scene);
 
 /// A scene with a pedestrian on its floor. The two are rendered separately and merged by depth, so

@@ -14,7 +14,7 @@ struct RenderSequenceOptions {
   std::size_t frames = SIZE_MAX;  ///< at most this many frames of the path
   std::size_t every = 1;          ///< only every n-th of them
   LabelMode labels = LabelMode::kExact;
-  std::uint64_t seed = 0;  ///< of the sensors' noise
+  std::uint64_t seed = 0;  ///< seed of the sensors' noise
   bool is_second = false;  ///< second camera of a pair: its own noise, but the same lost frames
   int threads = 2;         ///< each works on its own frame, from rays to files
   bool resume = false;     ///< skips frames that already exist

@@ -15,11 +15,11 @@ namespace mh {
 /// A drive, as its robot would report it.
 struct DriveRecord {
   const Robot& robot;
-  const DrivenPath& path;                 ///< of a robot that drove
+  const DrivenPath& path;                 ///< path that the robot drove
   const Trajectory& camera;               ///< world_from_camera, stamps of the path
-  std::optional<RobotReadings> readings;  ///< of a robot with equipment
-  std::optional<FloorGrid> grid;          ///< of the level scene
-  SE3 world_from_level;                   ///< from the frame of readings and grid
+  std::optional<RobotReadings> readings;  ///< only for a robot with equipment
+  std::optional<FloorGrid> grid;          ///< grid of the level scene
+  SE3 world_from_level;                   ///< from the frame of the readings and the grid
 };
 
 /// Collects what belongs to a drive: sensor readings of a robot that has equipment, and the floor

@@ -17,7 +17,7 @@ namespace mh {
 /// What is needed to render a scene along a drive.
 struct SceneDrive {
   std::filesystem::path scene, tour, robot;
-  std::filesystem::path level;  ///< of the sensors; empty = no noise
+  std::filesystem::path level;  ///< sensor level; empty = no noise
   std::uint64_t seed = 0;       ///< determines which frames are delivered
   SceneFrame frame = {};
   std::function<void(Scene&)> light = {};  ///< adds the scene's light; empty: it is baked

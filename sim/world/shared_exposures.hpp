@@ -18,8 +18,8 @@ namespace mh {
 
 /// Where processes that need the same images share them.
 struct SharedImages {
-  std::filesystem::path folder;   ///< created if missing; empty: every process makes its own
-  std::uint64_t limit_bytes = 0;  ///< of all files in it and its subfolders
+  std::filesystem::path folder;   ///< created if missing; empty: every process makes its own images
+  std::uint64_t limit_bytes = 0;  ///< limit for all files in it and its subfolders
   /// Images with one of these noises are shared there, too.
   std::vector<RandomStream> noises = {};
 };
@@ -41,7 +41,7 @@ class SharedExposures {
 
   /// @param name    names the file, which may be in subfolders; identifies scene, camera, path,
   ///                sensors and, if the exposures include it, noise
-  /// @param camera  of the exposures
+  /// @param camera  camera of the exposures
   /// @param frames  number of frames of the path
   SharedExposures(SharedImages where, const std::string& name, const Camera& camera,
                   std::size_t frames);

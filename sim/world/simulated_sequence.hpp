@@ -72,7 +72,7 @@ class SimulatedSequence : public Sequence {
   std::vector<ImuReading> imu_;              // or empty
   LasersAt lasers_;                          // or empty
   SharedImages images_;                      // where exposures are shared
-  std::string name_;                         // of their file
+  std::string name_;                         // name of their file
   std::unique_ptr<SharedExposures> shared_;  // or null
   mutable std::mutex opening_;
   mutable std::map<std::uint64_t, std::unique_ptr<SharedExposures>> noisy_;  // by key of the noise

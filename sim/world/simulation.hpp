@@ -23,7 +23,7 @@ namespace mh {
 struct SimulatedScene {
   std::shared_ptr<const Scene> scene;  ///< its floor is z = 0 (LevelScene)
   std::shared_ptr<const Renderer> renderer;
-  std::shared_ptr<const PedestrianScene> pedestrian = nullptr;  ///< of that renderer; or null
+  std::shared_ptr<const PedestrianScene> pedestrian = nullptr;  ///< uses that renderer; or null
 };
 
 struct SimulationConfig {
@@ -33,7 +33,7 @@ struct SimulationConfig {
   /// the 10 Hz that Pepper's driver publishes (naoqi_driver aed1b87, boot_config.json).
   int ticks_per_frame = 3;
   LabelMode labels = LabelMode::kExact;
-  std::uint64_t seed = 0;  ///< of all noise
+  std::uint64_t seed = 0;  ///< seed of all noise
   bool reflex = false;     ///< the external-collision reflex is enabled
 };
 
