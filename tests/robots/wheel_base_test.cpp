@@ -83,7 +83,7 @@ TEST(WheelBase, TwoWheelsDriveAtTheirMeanAndTurnByTheirDifferenceOverTheTrack) {
   // The axle is behind the base's origin: when the base turns left, the origin swings to the left.
   const WheelBase behind = differential({wheel_at(-0.1, 0.2), wheel_at(-0.1, -0.2)});
   EXPECT_LT((twist_of(behind, 0.3, 0.5) - Twist2d(0.3, 0.05, 0.5)).norm(), 1e-15);
-  // On a skid-steered base each side counts as the mean of its wheels.
+  // On a skid-steered base each side counts as a wheel at the mean place of its wheels.
   const WheelBase four = differential(
       {wheel_at(0.2, 0.3), wheel_at(0.2, -0.3), wheel_at(-0.2, 0.3), wheel_at(-0.2, -0.3)});
   EXPECT_LT((twist_of_rims(four, Eigen::Vector4d(0.1, 0.4, 0.3, 0.8)) -
@@ -299,9 +299,9 @@ TEST(WheelOdometry, DriftsAsConfigured) {
   EXPECT_NEAR(end(10, {.scale = 0.01}, 0).x(), 10.1, 1e-9);
   EXPECT_NEAR(end(20, {.scale = 0.01}, 0).x(), 20.2, 1e-9);
   // Slip only: the two front wheels share the motion along the path. A straight path of length L
-  // needs L sin(61.6 deg) from each rim, so each reading has an error variance of slip^2 L sin, and
-  // the measured path is half the difference of the readings divided by the sine: sigma = slip
-  // sqrt(L / (2 sin)).
+  // needs L sin(61.6 deg) from each rim, so each reading has an error variance of slip^2 L sin(61.6
+  // deg), and the measured path is half the difference of the readings divided by the sine: sigma =
+  // slip sqrt(L / (2 sin)).
   const OdometryErrors slip{.slip_per_sqrt_m = 0.001};
   for (const double length_m : {5.0, 20.0}) {
     double sum = 0, square = 0;

@@ -412,7 +412,7 @@ TEST_F(Gltf, ImagesOfExtensionsAreShownOrNamedAndMagenta) {
     ASSERT_EQ(warnings_.size(), 1U);
     EXPECT_TRUE(names(warnings_[0], {"a.gltf: material look", ktx_or_dds, kind, "not read"}));
     file.json.erase("extensionsRequired");
-    file.show("t.png");  // the fallback for readers that cannot read the other one
+    file.show("t.png");  // the fallback for readers that cannot read the other image
     EXPECT_EQ(material_of(load(file)).texture(0, 0), (Rgb8{255, 0, 0}));
     EXPECT_TRUE(warnings_.empty());
   }

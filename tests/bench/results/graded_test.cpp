@@ -47,8 +47,8 @@ class GradedCurves : public testing::Test {
   }
   ~GradedCurves() override { fs::remove_all(folder_); }
 
-  /// Eight queries, the first four of them near: `near` of the near ones and `far` of the far ones
-  /// are answered.
+  /// Eight queries, the first four of them near. Answers `near` of the near ones and `far` of the
+  /// others.
   RunResult run(const RunSpec& spec, int near, int far, double speed = 0) const {
     RunResult made = made_up_run(spec, {});
     made.points = {{}};
@@ -85,8 +85,9 @@ TEST_F(GradedCurves, AreOverTheSameQueriesOfAllScenes) {
   const std::vector<RunResult> all = runs();
   const std::vector<Row> rows = make_rows(suite_, all);
   const std::vector<GradedCurve> curves = graded_curves(suite_, rows);
-  ASSERT_EQ(curves.size(),
-            5u);  // over distance, angle and share shown; over distance in each category
+  ASSERT_EQ(
+      curves.size(),
+      5u);  // one each over distance, angle and share shown, then one over distance per category
   const GradedCurve& distance = curves[0];
   EXPECT_EQ(distance.by, "distance");
   ASSERT_EQ(distance.bins.size(), 2u);

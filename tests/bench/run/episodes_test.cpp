@@ -115,7 +115,7 @@ TEST(Episodes, AProgramThatEndsEarlyOrBadlyIsReported) {
   const std::string ended =
       outside_error("[{name: broken, protocol: conversation, command: 'exit 7'}]");
   EXPECT_NE(ended.find("exited with code 7"), std::string::npos) << ended;
-  // Lost in every frame, and ends with an error code.
+  // A program that is lost in every frame and ends with an error code.
   const std::string sulked = outside_error(R"y([{name: sulking, protocol: conversation, command: "
     sed -u -E 's/^.\"id\":([0-9]+),\"do\":\"hello.*/{\"id\":\\1,\"protocol\":1}/; t;
     s/^.\"id\":([0-9]+),\"do\":\"(freeze|rewind|reset).*/{\"id\":\\1}/; t;
@@ -158,8 +158,9 @@ TEST(Episodes, WhatCanOnlyFailIsRefusedBeforeTheWork) {
 TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {
   const Place place(small_suite());
   const auto system = make_system(place.spec, place.world, {});
-  const std::vector<EpisodeScore> scores = ask_episodes(
-      place.spec, place.world, *system, {}, SE3(), RandomStream(0), {});  // it has tracked no frame
+  const std::vector<EpisodeScore> scores =
+      ask_episodes(place.spec, place.world, *system, {}, SE3(), RandomStream(0),
+                   {});  // this system has tracked no frame
   ASSERT_EQ(scores.size(), 2U);
   EXPECT_FALSE(scores[0].success);
   EXPECT_EQ(scores[0].reason, "no_map");

@@ -89,7 +89,7 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
   EXPECT_EQ(names, (std::vector<std::string>{"semantic-recorded-recorded-0", "semantic-recorded-0",
                                              "plain-recorded-0", "semantic-recorded-recorded-1",
                                              "semantic-recorded-1", "plain-recorded-1"}));
-  // A separate process gets the same.
+  // Each run's description reaches a separate process unchanged.
   for (const RunSpec& spec : expand(suite)) {
     const RunSpec back = run_spec_from_json(to_json(spec));
     EXPECT_EQ(back.environment.sequence, e.sequence);

@@ -44,7 +44,7 @@ TEST(Encode, IsTheTableForEveryEntry) {
   };
   for (int i = 0; i <= kSrgbTableMax; ++i) {
     const auto place = static_cast<float>(i), last = static_cast<float>(kSrgbTableMax);
-    // The entry itself, and both ends of the interval that belongs to it.
+    // The value of the entry itself, and both ends of the interval for which the entry is used.
     expect(place / last, (place - 0.49F) / last, (place + 0.49F) / last);
   }
   expect(-1.0F, 1.5F, 1e30F);
@@ -171,7 +171,8 @@ TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
       Vector3f sum = Vector3f::Zero();
       for (const int i : {0, 1})
         for (const int j : {0, 1}) sum += srgb_to_linear(fine.color(2 * x + i, 2 * y + j));
-      // Two roundings: to the levels of the fine pixels and to those of the mean.
+      // The tolerance allows for two roundings: to the levels of the fine pixels and to those of
+      // the mean.
       ASSERT_NEAR(mean.color(x, y).g, linear_to_srgb(sum.y() / 4.0F), 2) << x << " " << y;
     }
   EXPECT_NE(mean.color, centers.color);

@@ -114,7 +114,7 @@ TEST(Train, ManyCopiesOfOneDescriptorAreOneWord) {
   const std::vector<std::vector<Descriptor>> images(3, std::vector<Descriptor>(50, d));
   const Vocabulary v = Vocabulary::train(images, {});
   EXPECT_EQ(v.size(), 1U);
-  EXPECT_EQ(v.idf(0), 0.0F);  // in every image: carries no information
+  EXPECT_EQ(v.idf(0), 0.0F);  // the word is in every image and carries no information
 }
 
 TEST(Train, EveryWordOccursAndWeighsItsInverseDocumentFrequency) {

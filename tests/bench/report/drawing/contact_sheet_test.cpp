@@ -43,7 +43,7 @@ TEST(LookAt, PutsTheTargetInTheMiddleAndStandsUpright) {
   }
 }
 
-// A path of 100 frames is cut into parts of equal length: the middle frame of each is taken.
+// A path of 100 frames is cut into parts of equal length: the middle frame of each part is taken.
 TEST(ViewsAlong, AreTheMiddlesOfEqualParts) {
   Trajectory path;
   for (int i = 0; i < 100; ++i)
@@ -85,7 +85,7 @@ TEST(ViewsOf, LooksFromTheCornersOverThePlaceThatAllOfThemSee) {
     ASSERT_EQ(renderer.poses.size(), 5u) << "outer corners";
     std::size_t k = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      if (i == 3) continue;  // points inward
+      if (i == 3) continue;  // this corner of the L points inward
       const Eigen::Vector3d eye = renderer.poses[k].translation();
       const Eigen::Vector2d expected = turn * (shared + 0.8 * (outline[i] - shared));
       EXPECT_LT((eye.head<2>() - expected).norm(), 1e-9) << quarter << " " << i;
