@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """keys.py DECIDES ROOT: checks the rules for keys of results (cmake/code_version.cmake).
 
-DECIDES lists the files that decide a result. Files included by a deciding file decide, too. A changed byte
+DECIDES lists, for each key, the files that decide it. Files included by a deciding file decide, too. A changed byte
 in a deciding file changes the key; a changed byte in a test, a page, a report, the command line or CMake's
 own files changes no key.
 """

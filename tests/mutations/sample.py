@@ -71,8 +71,8 @@ def mutants_of(tree, name):
 
 
 def draw(tree, seed, folders):
-    """All mutants in the order in which the seed tries them. The kinds take turns, and the seed orders the
-    lines of each kind. One mutant of each line comes first; the other mutants follow after all lines."""
+    """{kind: its mutants in the order in which the seed tries them}. The seed orders the lines of a kind. One
+    mutant of each line comes first; the other mutants follow after all lines."""
     names = subprocess.run(['git', '-C', tree, 'ls-files', *folders], check=True, text=True,
                            capture_output=True).stdout.split()
     by_kind = {kind: [] for kind in KINDS}

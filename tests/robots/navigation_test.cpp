@@ -24,7 +24,7 @@ double length_m(const std::vector<Vector2d>& way) {
   return sum;
 }
 
-/// A wall across the room with a door in it.
+/// A room divided by a wall that has a door.
 Scene two_rooms(float door_m) {
   Scene scene = empty_room();
   add_box(scene, "wall south of the door", {4.9F, 0, 0}, {5.1F, 7, 2.5F});

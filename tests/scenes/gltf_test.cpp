@@ -433,7 +433,7 @@ TEST_F(Gltf, NamesMayBeOfPercentCodesAndAnyLetters) {
       write("room.yaml", "objects:\n  - {file: \"r\xc3\xa4um%20/m \xc3\xb6.gltf\"}\n"), &warnings_);
   EXPECT_EQ(material_of(scene).texture(0, 0), (Rgb8{0, 0, 255}));
   EXPECT_TRUE(warnings_.empty());
-  // The same in a binary file; and a file whose actual name contains the escape codes takes
+  // A binary file finds the same image. A file whose actual name contains the escape codes takes
   // precedence.
   const auto binary = write("a.glb", file.glb());
   EXPECT_EQ(material_of(load_mesh(binary)).texture(0, 0), (Rgb8{0, 255, 0}));

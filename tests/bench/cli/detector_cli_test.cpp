@@ -213,7 +213,8 @@ TEST_F(DetectorCommands, AnInterruptedRunLeavesTheResultBeforeIt) {
       "detector run " + path("room") + " " + network() + " --frames 2 --out " + path("kept");
   ASSERT_EQ(run(command), 0) << err_;
   const std::string before = read_file(path("kept/detections.json"));
-  // One frame has fewer bytes than this limit, the images of a run have more: writing fails midway.
+  // One frame has fewer bytes than this limit, but the images of a run have more, so writing fails
+  // midway.
   const std::string limited = "sh -c 'ulimit -f 1; " MH_EXECUTABLE " " + command + "'";
   EXPECT_EQ(std::system((limited + " >/dev/null 2>&1").c_str()) / 256, 3);
   EXPECT_EQ(read_file(path("kept/detections.json")), before);

@@ -36,7 +36,7 @@ struct Outcome {
          memory_gb = 0;  ///< time of the process and its children; memory of the largest one
 };
 
-/// One case, with its own folder.
+/// Runs one case in its own folder.
 class Trial {
  public:
   explicit Trial(const HostileCase& c)

@@ -249,7 +249,8 @@ int finished_in(const fs::path& folder) {
   }
 }
 
-/// Runs `arguments` and calls `kill_it` once `share` has finished a run. @returns the exit code
+/// Runs `arguments` and calls `kill_it` as soon as `share` has finished a run. @returns the exit
+/// code
 template <class Kill>
 int run_and_kill(const std::string& arguments, const fs::path& share, Kill&& kill_it) {
   int code = -1;

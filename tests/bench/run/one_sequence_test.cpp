@@ -172,7 +172,7 @@ TEST_F(Folder, AFrameThatCannotBeReadOrIsOfAnotherSizeIsSkippedAndCounted) {
   const auto images = load_tum_folder(folder_);
   std::ofstream(images[10].color) << "no image";
   fs::remove(images[12].depth);
-  // One image is replaced by one of a quarter of its size.
+  // One image is replaced by an image with a quarter of its pixels.
   Camera small = BoxRoom::camera();
   small.width_px /= 2;
   small.height_px /= 2;
@@ -413,8 +413,8 @@ TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
   EXPECT_EQ(score.pairs, 200U);
 }
 
-// Each query starts lost and is independent of the others. The expected pose comes from SLAM that
-// continues from the map.
+// Each query starts lost and is independent of the others. The expected poses come from SLAM that
+// goes on from the map with the same frames.
 TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
   const RandomStream stream(0);
   state.camera.disparity_sigma_px = 0.1;

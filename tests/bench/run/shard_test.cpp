@@ -182,7 +182,7 @@ TEST(PredictedCost, ImagesAreThoseOfThePlaceWhateverTheLabels) {
   dose.level = "another.yaml";
   EXPECT_NE(images_of(dose), images_of(exact));
 }
-// Only for numbers of shares that the runs can be split into evenly: images cost as much as four
+// Tests only numbers of shares into which the runs can be split evenly: images cost as much as four
 // runs, and a share consists of whole runs.
 
 TEST(Shares, OfTwentyFourRunsDifferByLessThanATenth) {

@@ -501,8 +501,8 @@ TEST_F(SuiteFile, ASweepTakesAnySetting) {
 }
 
 // Sobol's sequence by the recurrence of Joe and Kuo ("Constructing Sobol sequences with better
-// two-dimensional projections", 2008), in integers and from the first rows of their table; each
-// axis is shifted by its own bits, which are those of point 0.
+// two-dimensional projections", 2008), computed in integers from the first rows of their table.
+// Each axis is shifted by its own bits, which are those of point 0.
 TEST(Sobol, IsTheSequenceOfJoeAndKuoShifted) {
   struct Row {
     unsigned s, a;

@@ -227,7 +227,7 @@ TEST_F(OutsideFaults, TimeAndMemoryAreLimited) {
   EXPECT_HOLDS(trajectory_error(sleeper), "was still running after 0.3 s");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 
-  // tail stores the only line of its input, which never ends.
+  // tail keeps its input's last line in memory, and this line never ends.
   OutsideProgram glutton = program(OutsideMode::kTrajectory, "tail /dev/zero; : {trajectory}");
   glutton.memory_limit_mb = 50;
   EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");

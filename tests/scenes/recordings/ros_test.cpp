@@ -229,7 +229,7 @@ TEST_P(RosRecording, WithoutLabelsWhereNoneAreWanted) {
   EXPECT_TRUE(opened.sequence->frame(0, RandomStream(0)).semantics.index.empty());
 }
 
-// Otherwise the key of a run that uses no labels would differ from the key in its plan.
+// If it were not read, the key of a run that uses no labels would differ from the key in its plan.
 TEST_P(RosRecording, AClassMapIsReadEvenWhereLabelsAreLeftOut) {
   record();
   std::ofstream(folder_ / "classes.yaml") << "1: chair\n2: table\n";

@@ -255,7 +255,7 @@ TEST(Commands, WhatTheRobotLacksIsToldWithFileAndLine) {
   EXPECT_EQ(refusal(robot, script),
             "test.yaml: robot 'turtlebot3' has no reflex to enable (its file: "
             "equipment.collision_reflex)");
-  // Without wheels, or without equipment, any direction is possible.
+  // A robot without wheels, or without equipment, can move in any direction.
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
   equipment->wheels.reset();
   robot.equipment = equipment;

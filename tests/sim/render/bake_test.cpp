@@ -139,7 +139,7 @@ TEST(BakeLight, RoomsAreDarkWithoutLightEvenUnderABrightSky) {
   scene.lights.push_back({.kind = Light::Kind::kSky, .color = {9, 9, 9}});
   scene.lights.push_back(sphere_lamp({1.5F, 1.5F, 2.0F}, 1.0F));
   bake_light(scene);
-  // Only the lamp lights the room: values are far below the sky's radiance.
+  // The room is lit only by the lamp, so values are far below the sky's radiance.
   for (const Vector3f& light : scene.light) {
     ASSERT_GT(light.x(), 0.01F);
     ASSERT_LT(light.x(), 3.0F);

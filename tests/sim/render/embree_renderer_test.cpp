@@ -65,7 +65,7 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
   EXPECT_EQ(sharp.depth_m, smooth.depth_m);
   EXPECT_EQ(sharp.classes, smooth.classes);
   EXPECT_EQ(sharp.instances, smooth.instances);
-  // One of three samples is white.
+  // One of the pixel's three samples is white.
   EXPECT_NEAR(smooth.color(320, 240).g, linear_to_srgb(1.0F / 3.0F), 1);
   EXPECT_EQ(sharp.color(320, 240).g, 0);
   for (int x = 0; x < camera.width_px; ++x)
@@ -199,7 +199,7 @@ TEST(EmbreeRenderer, ThreadsAndImagesNotMultiplesOfATileChangeNoBit) {
   EXPECT_EQ(one.instances, two.instances);
   EXPECT_NE(one.instances(166, 125), 0);
 
-  // The same rays in a wider image: the left part is equal to the bit.
+  // A wider image has the same rays in its left part, which must be equal to the bit.
   Camera wider = camera;
   wider.width_px = 400;
   const RenderedFrame wide = make_embree_renderer(scene)->render(wider, kIdentity);

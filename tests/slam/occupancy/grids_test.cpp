@@ -185,7 +185,7 @@ TEST(CostMap, EndsAtWholeCells) {
   }
 }
 
-// With Nav2's defaults and Pepper's radius, in steps of 5 cm from the obstacle.
+// Costs with Nav2's defaults and Pepper's radius, in steps of 5 cm from the obstacle.
 TEST(CostMap, CostsAndWhatIsPublishedOfThemAtStatedDistances) {
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(14, 1, kFreeCell)};
   grid.cells(0, 0) = kOccupiedCell;

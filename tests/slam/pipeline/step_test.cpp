@@ -491,7 +491,8 @@ TEST(Step, MotionAlonePlacesAFrameThatCannotShowWhatTheLastOneDid) {
   for (const int i : {42, 48}) {
     const SE3 error = (world_from_origin * estimate[i / 6U].world_from_camera).inverse() *
                       BoxRoom::round_trip(i, kTurnFrames);
-    // The frame before it had only a strip of 55 px, in which turning and shifting look the same.
+    // The frame before this one had only a strip of 55 px, in which turning and shifting look the
+    // same.
     EXPECT_LT(error.translation().norm(), 0.07) << i;
     EXPECT_LT(error.log().tail<3>().norm(), 0.03) << i;
   }

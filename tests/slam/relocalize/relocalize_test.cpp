@@ -104,7 +104,7 @@ TEST(Relocalize, AnEmptyMapHasNoCandidate) {
 // As released, ORB-SLAM2 adds the score that an earlier query left in a neighbor (mRelocScore) if
 // the neighbor shares words, but not enough of them: its answers depend on the order of the
 // queries.
-/// A keyframe with words 1 to 4 and its neighbor with 4 to 7.
+/// A keyframe with words 1 to 4 and its neighbor with words 4 to 7.
 Map map_of_neighbors() {
   constexpr std::uint32_t kShared = 20;  // landmarks
   Map map;

@@ -63,8 +63,8 @@ TEST(MatchByStamp, TakesTheNearestWithinTheLimit) {
   const Trajectory estimate = {at(4 * kMillisecond, 10), at(35 * kMillisecond, 11),
                                at(110 * kMillisecond, 12), at(111 * kMillisecond, 13)};
   const MatchedTrajectories matched = match_by_stamp(truth, estimate);
-  // 4 matches 0; 35 lies between 30 and 40 and matches the earlier; 110 is just near enough to 100,
-  // 111 is not.
+  // 4 matches 0; 35 lies between 30 and 40 and matches the earlier of them; 110 is just near enough
+  // to 100, 111 is not.
   ASSERT_EQ(matched.size(), 3U);
   ASSERT_EQ(matched.estimate.size(), 3U);
   const double truth_x[] = {0, 2, 4};

@@ -19,7 +19,8 @@ namespace {
 
 constexpr Rgb8 kPaint{201, 13, 157};
 
-/// One color, one depth and one class in every direction; records the poses that it is asked for.
+/// Renders one color, one depth and one class in every direction, and records the poses that it is
+/// asked for.
 class Recorder : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {

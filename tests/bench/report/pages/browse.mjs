@@ -196,7 +196,7 @@ async function use(browser, report) {
   await page.reload();
   await settled(page);
   expect((await dark()) !== first, `${report}: the theme is forgotten`);
-  // With the keyboard only: the second link of the navigation.
+  // With the keyboard only, follow the second link of the navigation.
   await go("overview");
   await page.getByRole("link", { name: "Figures" }).focus();
   await page.keyboard.press("Enter");

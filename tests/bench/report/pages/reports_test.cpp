@@ -349,7 +349,7 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
 TEST_F(Reports, Figure4OfARecordingIsOverTruthAtOtherMomentsThanItsFrames) {
   PagesSource source = source_of({"den"});
   for (RunResult& run : source.results.runs) {
-    // Motion capture: three poses per frame, none at a frame's timestamp.
+    // Ground truth from motion capture has three poses per frame, none at a frame's timestamp.
     const Trajectory frames = run.truth;
     run.truth.clear();
     for (std::size_t i = 0; i + 1 < frames.size(); ++i)
