@@ -83,7 +83,7 @@ TEST(WheelBase, TwoWheelsDriveAtTheirMeanAndTurnByTheirDifferenceOverTheTrack) {
   // The axle is behind the base's origin: when the base turns left, the origin swings to the left.
   const WheelBase behind = differential({wheel_at(-0.1, 0.2), wheel_at(-0.1, -0.2)});
   EXPECT_LT((twist_of(behind, 0.3, 0.5) - Twist2d(0.3, 0.05, 0.5)).norm(), 1e-15);
-  // On a skid-steered base each side counts as a wheel at the mean place of its wheels.
+  // On a skid-steered base each side moves at the mean of its wheels' speeds.
   const WheelBase four = differential(
       {wheel_at(0.2, 0.3), wheel_at(0.2, -0.3), wheel_at(-0.2, 0.3), wheel_at(-0.2, -0.3)});
   EXPECT_LT((twist_of_rims(four, Eigen::Vector4d(0.1, 0.4, 0.3, 0.8)) -

@@ -97,7 +97,8 @@ TEST_F(SlamCommand, MapsAFolderAndSaysWhatCameOfIt) {
   EXPECT_EQ(load_settings(folder_ / "a/settings.yaml").camera,
             load_settings(folder_ / "room/camera.yaml").camera);
 
-  // tum:FOLDER names the same source: the run is repeated, with the settings file that it wrote.
+  // tum:FOLDER names the same source: the run is repeated, with the settings file that the first
+  // run wrote.
   ASSERT_EQ(run("tum:" + path("room") + " --out " + path("b") + " --save-map " + path("b.mhmap") +
                 " --settings " + path("a/settings.yaml")),
             0)

@@ -85,9 +85,8 @@ TEST_F(GradedCurves, AreOverTheSameQueriesOfAllScenes) {
   const std::vector<RunResult> all = runs();
   const std::vector<Row> rows = make_rows(suite_, all);
   const std::vector<GradedCurve> curves = graded_curves(suite_, rows);
-  ASSERT_EQ(
-      curves.size(),
-      5u);  // one each over distance, angle and share shown, then one over distance per category
+  ASSERT_EQ(curves.size(),
+            5u);  // over distance, angle and share shown; over distance in each category
   const GradedCurve& distance = curves[0];
   EXPECT_EQ(distance.by, "distance");
   ASSERT_EQ(distance.bins.size(), 2u);

@@ -158,9 +158,8 @@ TEST(Episodes, WhatCanOnlyFailIsRefusedBeforeTheWork) {
 TEST(Episodes, WithoutAMapEachFailsAndSaysSo) {
   const Place place(small_suite());
   const auto system = make_system(place.spec, place.world, {});
-  const std::vector<EpisodeScore> scores =
-      ask_episodes(place.spec, place.world, *system, {}, SE3(), RandomStream(0),
-                   {});  // this system has tracked no frame
+  const std::vector<EpisodeScore> scores = ask_episodes(
+      place.spec, place.world, *system, {}, SE3(), RandomStream(0), {});  // it has tracked no frame
   ASSERT_EQ(scores.size(), 2U);
   EXPECT_FALSE(scores[0].success);
   EXPECT_EQ(scores[0].reason, "no_map");

@@ -223,8 +223,8 @@ TEST_F(Recorded, WithoutATruthAnswersAreSuccessesAndNothingElseIsSaid) {
   EXPECT_FALSE(summarize(loaded.points.front().held_out).correct);
   EXPECT_TRUE(std::isnan(loaded.place.mapping.length_m));
 
-  // The paper's method needs no ground truth: the query's true pose is interpolated between the
-  // estimates before and after it.
+  // The paper's method needs no ground truth: the query's reference pose is interpolated between
+  // the estimates before and after it.
   spec_.protocol.truth = QueryTruth::kInterpolated;
   EXPECT_EQ(summarize(run().points.front().held_out).correct, 1.0);
 }

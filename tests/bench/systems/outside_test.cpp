@@ -350,8 +350,8 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
     EXPECT_EQ(given.find(part), std::string::npos) << part;
 }
 
-// The camera sees nothing for 15 frames, so wheel odometry that drifts by 1 % has to give its pose:
-// as a library, in conversation and on a data set.
+// The camera sees nothing for 15 frames, so wheel odometry that drifts by 1 % has to give its pose.
+// The odometry runs as a library, in conversation and on a data set.
 TEST_F(OutsideOdometry, FallsBackOnTheWheels) {
   const auto wheeled = [](std::size_t i, RandomStream noise) {
     RgbdFrame shown = frame(i, noise);

@@ -244,7 +244,7 @@ TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
     EXPECT_EQ(result.camera_from_world[i].translation(),
               problem.camera_from_world[i].translation());
   }
-  // The pose is free, but only its rotation is orthonormalized again.
+  // Although the pose is free, nothing moves it: its rotation is only orthonormalized again.
   EXPECT_LT(testing::distance_m(result.camera_from_world[4], problem.camera_from_world[4]), 1e-12);
   EXPECT_EQ(result.points_in_world[40], problem.points_in_world[40]);
   EXPECT_EQ(result.points_in_world[41], problem.points_in_world[41]);

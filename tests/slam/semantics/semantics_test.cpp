@@ -109,8 +109,8 @@ TEST(SemanticDistance, IsEquationTwo) {
 // Six keyframes worked out by hand. n: 0, 10, 8, 9, 10, 2. With alpha 0.8, n must exceed 8, so
 // keyframes 1, 3 and 4 remain (keyframe 2 has exactly 8, which is not enough). Neighborhoods {1,
 // 3}, {3, 1}, {4, 5}; similarities 1: 0.5, 3: 0.2, 4: 0.35, 5: 0.4. Keyframes 1 and 3 both choose 1
-// with a = 0.7; keyframe 4 chooses 5 with a = 0.75. beta 0.75: a must exceed 0.5625: both stay, 5
-// first.
+// with a = 0.7; keyframe 4 chooses 5 with a = 0.75. With beta 0.75, a must exceed 0.5625, so both
+// choices remain, 5 first.
 TEST(SelectCandidates, IsAlgorithmOne) {
   const std::vector<int> keyframes{0, 1, 2, 3, 4, 5};
   const int n[] = {0, 10, 8, 9, 10, 2};
