@@ -281,7 +281,8 @@ TEST(WheelOdometry, OfTwoWheelsItIsTheTruthWithoutErrorsAndBendsIfOneWheelIsLarg
     const SE3 error = truth[i].world_from_camera.inverse() * odometry[i].world_from_camera;
     EXPECT_LT(error.log().norm(), 1e-9);
   }
-  // Straight ahead, with wheels that read with scales l and r: an arc of (r - l) / track per meter.
+  // A straight drive whose wheels read with scales l and r is measured as an arc of (r - l) / track
+  // per meter.
   const SE3 end =
       wheel_odometry(drive(0), base, {.scale_spread = 0.01}, 5).back().world_from_camera;
   const double turned = Eigen::Rotation2Dd(end.rotation().topLeftCorner<2, 2>()).angle();

@@ -223,7 +223,7 @@ TEST_F(Gltf, ATextureIsScaledTurnedAndMovedAndTakesItsSet) {
             (std::vector<Vector2f>{{0.5F, -0.25F}, {4.5F, -0.25F}, {0.5F, 1.75F}}));
   EXPECT_EQ(uvs(transform({{"scale", {2, 4}}, {"texCoord", 1}})),
             (std::vector<Vector2f>{{1, 1}, {0, 0}, {0.5F, 4}}));
-  // The example of the extension itself: the lower left quarter of the image.
+  // The example from the extension's specification: the lower left quarter of the image.
   const std::vector<Vector2f> quarter = uvs(
       transform({{"offset", {0, 1}}, {"rotation", std::numbers::pi / 2}, {"scale", {0.5, 0.5}}}));
   const std::vector<Vector2f> wanted = {{0, 1}, {0, 0.5F}, {0.5F, 1}};

@@ -204,8 +204,8 @@ TEST(BenchProcess, AFinishedRunIsNotRepeated) {
   EXPECT_EQ(tables("plain_run"), undisturbed());
 }
 
-// No part of a run's time is negative; together they make up most of the run's time, but not more
-// than it.
+// No part of a run's time is negative; together, the parts make up most of the run's time, but not
+// more than it.
 TEST(BenchProcess, ThePartsOfARunsTimeAddUp) {
   undisturbed();
   const SQLite::Database db((test_folder() / "plain_run" / "results.sqlite").string());

@@ -259,8 +259,8 @@ TEST_F(Figures, OfTheComparisonAreSemanticMinusPlain) {
 }
 
 // Two rooms with the same figures, except that the plain system in the second room is as good as
-// the semantic one: the plain system's means are halfway between the systems' figures in the first
-// room.
+// the semantic one. So the plain system's means are halfway between the systems' figures in the
+// first room.
 TEST_F(Figures, OfTableOneAreMeansOverScenes) {
   const Suite two = made_up_suite(folder_, {"den", "nook"});
   std::vector<RunResult> runs = runs_of(two);

@@ -584,7 +584,7 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
       });
   // The key is made from exactly the inputs that a run is built from.
   EXPECT_EQ(run_key(spec_, world().inputs), key());
-  // The location is not part of it.
+  // The recording's location is not part of the key.
   const std::string before = key();
   fs::create_directories(folder_ / "elsewhere");
   fs::rename(room(), folder_ / "elsewhere" / "room");

@@ -300,7 +300,8 @@ TEST_F(OutsideFaults, AProgramThatStopsItsWatcherIsEndedInTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
-// The next image cannot be written there, which must not be reported as a full disk.
+// If the program removes the folder of its images, the next image cannot be written, which must not
+// be reported as a full disk.
 TEST_F(OutsideFaults, AProgramThatRemovesTheFolderOfItsImagesFailsUnlessItCannot) {
   const OutsideProgram p = says(
       R"sh(rm -rf "$(dirname "$(echo "$line" | sed 's/.*"color":"//; s/".*//')")"; )sh"
