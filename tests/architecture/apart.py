@@ -3,7 +3,7 @@
 """apart.py TARGETS ROOT: code that drives a robot cannot reach the truth.
 
 Links: `robots` links, directly or through others, nothing but the core: no scene, no simulator, no
-bench. Files: none of its files includes a header of those.
+bench. Files: no file of `robots` includes a header of scenes, simulator or bench.
 """
 import os
 import re

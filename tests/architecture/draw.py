@@ -17,7 +17,7 @@ BOX_W, BOX_H, STEP_X, STEP_Y, MARGIN = 104, 30, 122, 58, 24
 
 
 def needed_links(targets):
-    """{target: links without those that follow from other links}"""
+    """{target: its links, without links that follow from other links}"""
     links = {name: set(public + private) for name, (_, public, private) in targets.items()}
 
     def below(name):

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """keys.py DECIDES ROOT: checks the rules for keys of results (cmake/code_version.cmake).
 
-Files included by a deciding file decide, too. A changed byte in a deciding file changes the key; one in
-a test, a page, a report, the command line or CMake's own files changes no key.
+DECIDES lists, for each key, the files that decide it. Files included by a deciding file decide, too. A changed byte
+in a deciding file changes the key; a changed byte in a test, a page, a report, the command line or CMake's
+own files changes no key.
 """
 import fnmatch
 import os

@@ -40,7 +40,7 @@ int main() {
   // Equation 2, here with float distances.
   require(mh::semantic_distance(4.0F, mh::labels_disagree(3, 5), 1.5F) == 6.0F, "equation 2");
 
-  // Equations 3 to 6: the equal one of three places is found.
+  // Equations 3 to 6 find the one of three places that equals the query.
   const std::array<Place, 3> places{Place{"kitchen", f}, Place{"hall", describe({5, 5}, {1, 2, 3})},
                                     Place{"bath", describe({3, 5}, {7, 1, 2})}};
   const std::vector<int> keys{0, 1, 2};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The least system that a suite can name as a library: it believes to stand still. */
+/* The least system that a suite can name as a library: it reports that it stands still. */
 #include <stddef.h>
 
 #include <modelhouse/system.h>

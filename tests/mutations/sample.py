@@ -71,8 +71,8 @@ def mutants_of(tree, name):
 
 
 def draw(tree, seed, folders):
-    """All mutants in the order in which the seed tries them: the kinds in turn, the lines of a kind
-    in an order given by the seed, first one mutant per line; the other mutants after all lines."""
+    """{kind: its mutants in the order in which the seed tries them}. The seed orders the lines of a kind. One
+    mutant of each line comes first; the other mutants follow after all lines."""
     names = subprocess.run(['git', '-C', tree, 'ls-files', *folders], check=True, text=True,
                            capture_output=True).stdout.split()
     by_kind = {kind: [] for kind in KINDS}
@@ -201,7 +201,7 @@ class Copy:
         return found
 
     def tests_of(self, name, objects):
-        """The executables that contain one of the objects; all executables if none is known to."""
+        """The executables that contain one of the objects; all executables if none is known to contain one."""
         sources = {s for s, os_ in self.objects.items() if set(os_) & set(objects)} | {name}
         return [t for t, inputs in self.tests.items() if inputs & sources] or list(self.tests)
 
@@ -223,8 +223,8 @@ class Experience:
         return min(LONGEST_TEST_S, max(LEAST_LIMIT_S, TIMES_SLOWER * self.passed_s[test]))
 
     def likeliest_first(self, copy, tests, name):
-        """Tests in the same folder, tests that include the file's header or one next to it, and tests that
-        caught something there; the quicker ones first."""
+        """Sorts tests: first those in the same folder, those that include the file's header or one next to
+        it, and those that caught something there; among equals, quicker tests come first."""
         folder, header = os.path.dirname(name), str(Path(name).with_suffix('.hpp'))
 
         def nearness(source):
@@ -250,8 +250,8 @@ def bound(limit_s):
 
 
 def outcome(copy, test, limit_s):
-    """'' if the test passes, otherwise what failed; and the processor seconds that it took, which do not
-    depend on other load. A wall-clock limit ends tests that wait forever."""
+    """'' if the test passes, otherwise what failed; and the processor seconds that the test took, which do
+    not depend on other load. A wall-clock limit ends tests that wait forever."""
     with copy.log.open('wb') as out:
         process = subprocess.Popen(
             [copy.build / test, '--gtest_brief=1', '--gtest_fail_fast'], cwd=copy.tree, stdout=out,

@@ -3,8 +3,8 @@
 neighboring arguments, whole statements.
 
 It reads tokens, not grammar. Comments, strings, preprocessor lines and assertions are skipped.
-The formatting by clang-format shows the rest: binary operators have spaces around them, template
-brackets and references do not."""
+Spaces distinguish what tokens alone do not: clang-format puts them around binary operators, but not
+around template brackets and references."""
 import re
 from typing import NamedTuple
 

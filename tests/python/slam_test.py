@@ -131,7 +131,8 @@ class RecordingTest(unittest.TestCase):
 
 class SemanticsTest(unittest.TestCase):
     def test_equation_1(self):
-        # Labels 5, 5, 7 and words 1, 2, 2: with labels of double weight, 4, 2 and 1, 2 of 9.
+        # Labels 5, 5, 7 and words 1, 2, 2. With labels of double weight, labels 5 and 7 weigh 4 and 2 of 9,
+        # words 1 and 2 weigh 1 and 2 of 9.
         v = mh.semantics.augmented_vector([5, 5, 7, 0], [1, 2, 2], gamma=2)
         self.assertEqual(v.labels, {5: 4 / 9, 7: 2 / 9})
         self.assertEqual(v.words, {1: 1 / 9, 2: 2 / 9})

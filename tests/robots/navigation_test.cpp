@@ -24,7 +24,7 @@ double length_m(const std::vector<Vector2d>& way) {
   return sum;
 }
 
-/// A wall across the room with a door in it.
+/// A room divided by a wall that has a door.
 Scene two_rooms(float door_m) {
   Scene scene = empty_room();
   add_box(scene, "wall south of the door", {4.9F, 0, 0}, {5.1F, 7, 2.5F});
@@ -75,7 +75,7 @@ TEST(FloorGrid, ClearanceIsTheDistanceToTheNearestObstacleOrLess) {
       const Vector2d outside = (Vector2d(4, 4) - p).cwiseMax(p - Vector2d(4.5, 4.5)).cwiseMax(0.0);
       const double truth_m = std::min(wall_m, outside.norm());
       // A cell is blocked as soon as anything touches it, and a place gets the clearance of its
-      // cell's center: the clearance is at most two cells too small, and never too large by more
+      // cell's center. So the clearance is at most two cells too small, and never too large by more
       // than half a diagonal.
       EXPECT_LE(grid.clearance_at(p), truth_m + 0.72 * grid.resolution_m) << p.transpose();
       EXPECT_GE(grid.clearance_at(p), truth_m - 2.2 * grid.resolution_m) << p.transpose();
@@ -112,7 +112,7 @@ TEST(PlanWay, GoesThroughTheDoorAndKeepsItsDistance) {
   EXPECT_EQ(way->back(), Vector2d(8, 2));
   for (std::size_t i = 1; i < way->size(); ++i)
     EXPECT_TRUE(grid.clear_line((*way)[i - 1], (*way)[i], 0.29)) << i;
-  // The straight path through the middle of the door, and a little more.
+  // The path is about as long as the straight path through the middle of the door.
   const double straight_m = 2 * std::hypot(3, 5.45);
   EXPECT_GT(length_m(*way), straight_m - 0.5);
   EXPECT_LT(length_m(*way), straight_m * 1.1);

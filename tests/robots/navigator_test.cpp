@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A floor of 6 x 4 m with a wall across it that has a gap, both as the world and as its map.
+/// A 6 x 4 m floor divided by a wall with a gap; serves as the world and as its map.
 struct Flat {
   double resolution_m = 0.05;
   Grid2d<std::uint8_t> solid{120, 80};

@@ -118,7 +118,7 @@ TEST(LoadRobot, TurtleBotIsADifferentialDriveAsPublished) {
   ASSERT_NE(wheels, nullptr);
   EXPECT_NEAR(wheels->wheels[0].place_m.y() - wheels->wheels[1].place_m.y(), 0.288, 1e-12);
   EXPECT_EQ(wheels->radius_m, 0.033);
-  // The maximum speeds in the data sheet are those that its wheels can reach: 0.26 m/s, and 1.82
+  // The maximum speeds in the data sheet are those that the wheels can reach: 0.26 m/s, and 1.82
   // rad/s times half the track.
   EXPECT_NEAR(wheels->max_rim_m_per_s, robot.limits.max_velocity_m_per_s, 1e-3);
   EXPECT_NEAR(wheels->max_rim_m_per_s, robot.limits.max_turn_rad_per_s * 0.144, 3e-3);

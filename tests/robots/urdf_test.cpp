@@ -135,7 +135,8 @@ TEST(LoadUrdf, AnInertiaThatNoBodyHasIsAWarningSinceNothingUsesIt) {
     EXPECT_EQ(load_urdf(file, &warnings).mass_kg(), 2);
     return warnings;
   };
-  // As released for TIAGo: 0.00191 + 0.00846 < 0.01059, so no body can have these moments.
+  // Moments of inertia as in TIAGo's published file: 0.00191 + 0.00846 < 0.01059, so no body can
+  // have such moments.
   const auto warned = warnings_on("ixx=\"0.00191\" iyy=\"0.00846\" izz=\"0.01059\"");
   ASSERT_EQ(warned.size(), 1U);
   expect_in(
@@ -155,7 +156,7 @@ TEST(LoadUrdf, TakesXacrosArgumentsAndPropertiesAndRefusesTheRest) {
            "link=\"${ns}b\"/><!-- ${unknown} --></joint>\n" +
            more + "</robot>";
   };
-  // As in the TurtleBot3's files.
+  // Names are built as in the TurtleBot3's files.
   const std::string names =
       "<xacro:arg name=\"namespace\" default=\"a_\"/><xacro:property name=\"ns\" value=\"$(arg "
       "namespace)\"/>\n";

@@ -83,7 +83,7 @@ TEST(WheelBase, TwoWheelsDriveAtTheirMeanAndTurnByTheirDifferenceOverTheTrack) {
   // The axle is behind the base's origin: when the base turns left, the origin swings to the left.
   const WheelBase behind = differential({wheel_at(-0.1, 0.2), wheel_at(-0.1, -0.2)});
   EXPECT_LT((twist_of(behind, 0.3, 0.5) - Twist2d(0.3, 0.05, 0.5)).norm(), 1e-15);
-  // On a skid-steered base each side counts as the mean of its wheels.
+  // On a skid-steered base each side moves at the mean of its wheels' speeds.
   const WheelBase four = differential(
       {wheel_at(0.2, 0.3), wheel_at(0.2, -0.3), wheel_at(-0.2, 0.3), wheel_at(-0.2, -0.3)});
   EXPECT_LT((twist_of_rims(four, Eigen::Vector4d(0.1, 0.4, 0.3, 0.8)) -
@@ -281,7 +281,8 @@ TEST(WheelOdometry, OfTwoWheelsItIsTheTruthWithoutErrorsAndBendsIfOneWheelIsLarg
     const SE3 error = truth[i].world_from_camera.inverse() * odometry[i].world_from_camera;
     EXPECT_LT(error.log().norm(), 1e-9);
   }
-  // Straight ahead, with wheels that read with scales l and r: an arc of (r - l) / track per meter.
+  // A straight drive whose wheels read with scales l and r is measured as an arc of (r - l) / track
+  // per meter.
   const SE3 end =
       wheel_odometry(drive(0), base, {.scale_spread = 0.01}, 5).back().world_from_camera;
   const double turned = Eigen::Rotation2Dd(end.rotation().topLeftCorner<2, 2>()).angle();
@@ -299,9 +300,9 @@ TEST(WheelOdometry, DriftsAsConfigured) {
   EXPECT_NEAR(end(10, {.scale = 0.01}, 0).x(), 10.1, 1e-9);
   EXPECT_NEAR(end(20, {.scale = 0.01}, 0).x(), 20.2, 1e-9);
   // Slip only: the two front wheels share the motion along the path. A straight path of length L
-  // needs L sin(61.6 deg) from each rim, so each reading has an error variance of slip^2 L sin, and
-  // the measured path is half the difference of the readings divided by the sine: sigma = slip
-  // sqrt(L / (2 sin)).
+  // needs L sin(61.6 deg) from each rim, so each reading has an error variance of slip^2 L sin(61.6
+  // deg), and the measured path is half the difference of the readings divided by the sine: sigma =
+  // slip sqrt(L / (2 sin)).
   const OdometryErrors slip{.slip_per_sqrt_m = 0.001};
   for (const double length_m : {5.0, 20.0}) {
     double sum = 0, square = 0;

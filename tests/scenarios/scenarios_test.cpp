@@ -136,7 +136,7 @@ TEST(Scenario, LabelNoiseCatchesScrambledLabels) {
   EXPECT_TRUE(worse(result, "penalized"));
 }
 
-// Too small to show up in a room; over a loop of 14 m it adds up to some centimeters.
+// The error is too small to show up in a room; over a loop of 14 m, it adds up to some centimeters.
 TEST(Scenario, LongLoopCatchesADepthThatReadsThreePercentTooLong) {
   Fault fault;
   fault.frame = [](std::size_t, RgbdFrame& frame) {

@@ -81,7 +81,7 @@ TEST(FindFloor, LargeTableIsNoFloorThoughNothingIsLabeled) {
   const ScannedRoom room{.labeled = false};
   Scene scene = room.build();
   room.add_table(scene, 4.5,
-                 3.5);  // covers more than half of the floor, so that less of the floor is found
+                 3.5);  // covers more than half of the floor: only the rest of the floor is found
   const auto found = find_floor(scene);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->floor.middle_m.z(), 0.055, 0.002);

@@ -149,7 +149,8 @@ TEST_F(GazeboWorld, SunAndGroundPlaneAreBuiltInWhereTheyAreNotThere) {
   EXPECT_NEAR(instance(scene, "ground_plane").max_m.x(), 50, 1e-3);
   ASSERT_EQ(std::ranges::count(scene.lights, Light::Kind::kSun, &Light::kind), 2);
   EXPECT_NEAR(scene.lights[0].direction.z(), -0.87, 0.01);
-  // Models of these names that exist in the world's folder take precedence.
+  // If the world's folder has a model with one of these names, it takes precedence over the
+  // built-in one.
   write_model("models/ground_plane", model("ground_plane", link(box(2))));
   EXPECT_NEAR(instance(load(world), "ground_plane").max_m.x(), 1, 1e-6);
 }

@@ -389,7 +389,7 @@ TEST(GenerateFloor, EveryRoomHasTheSameFurnitureAndThingsOfItsOwn) {
       EXPECT_EQ(rooms[k].walls, first.walls);
       EXPECT_NEAR(rooms[k].rect.x1 - rooms[k].rect.x0, first.rect.x1 - first.rect.x0, 1e-9);
       const bool turned = rooms[k].rect.y0 < rooms.front().rect.y0;
-      bool same = true;  // rooms have the same pieces up to the first one that is a room's own
+      bool same = true;  // rooms have the same pieces up to the first piece that only one room has
       for (std::size_t i = 0; i < std::min(rooms[k].items.size(), first.items.size()); ++i) {
         const ItemEntry &a = first.items[i], &b = rooms[k].items[i];
         same = same && a.name == b.name && a.size_m == b.size_m && a.materials == b.materials;

@@ -223,7 +223,7 @@ TEST_F(Gltf, ATextureIsScaledTurnedAndMovedAndTakesItsSet) {
             (std::vector<Vector2f>{{0.5F, -0.25F}, {4.5F, -0.25F}, {0.5F, 1.75F}}));
   EXPECT_EQ(uvs(transform({{"scale", {2, 4}}, {"texCoord", 1}})),
             (std::vector<Vector2f>{{1, 1}, {0, 0}, {0.5F, 4}}));
-  // The example of the extension itself: the lower left quarter of the image.
+  // The example from the extension's specification: the lower left quarter of the image.
   const std::vector<Vector2f> quarter = uvs(
       transform({{"offset", {0, 1}}, {"rotation", std::numbers::pi / 2}, {"scale", {0.5, 0.5}}}));
   const std::vector<Vector2f> wanted = {{0, 1}, {0, 0.5F}, {0.5F, 1}};
@@ -412,7 +412,7 @@ TEST_F(Gltf, ImagesOfExtensionsAreShownOrNamedAndMagenta) {
     ASSERT_EQ(warnings_.size(), 1U);
     EXPECT_TRUE(names(warnings_[0], {"a.gltf: material look", ktx_or_dds, kind, "not read"}));
     file.json.erase("extensionsRequired");
-    file.show("t.png");  // the fallback for readers that cannot read the other one
+    file.show("t.png");  // the fallback for readers that cannot read the other image
     EXPECT_EQ(material_of(load(file)).texture(0, 0), (Rgb8{255, 0, 0}));
     EXPECT_TRUE(warnings_.empty());
   }
@@ -433,7 +433,7 @@ TEST_F(Gltf, NamesMayBeOfPercentCodesAndAnyLetters) {
       write("room.yaml", "objects:\n  - {file: \"r\xc3\xa4um%20/m \xc3\xb6.gltf\"}\n"), &warnings_);
   EXPECT_EQ(material_of(scene).texture(0, 0), (Rgb8{0, 0, 255}));
   EXPECT_TRUE(warnings_.empty());
-  // The same in a binary file; and a file whose actual name contains the escape codes takes
+  // A binary file finds the same image. A file whose actual name contains the escape codes takes
   // precedence.
   const auto binary = write("a.glb", file.glb());
   EXPECT_EQ(material_of(load_mesh(binary)).texture(0, 0), (Rgb8{0, 255, 0}));

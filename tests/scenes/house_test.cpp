@@ -179,7 +179,7 @@ TEST(House, ObjectsAreNamedOnceAndMeasured) {
 TEST(House, FurnitureStaysInsideTheHouse) {
   for (const Instance& object : house().instances) {
     if (object.name.starts_with("house/")) continue;
-    // Doorways and windows extend through the walls by 0.1 m and their casing.
+    // Doorways and windows extend outward through the walls by 0.1 m, plus their casing.
     EXPECT_GT(object.min_m.minCoeff(), -0.125F) << object.name;
     EXPECT_LT(object.max_m.x(), 9.425F) << object.name;
     EXPECT_LT(object.max_m.y(), 6.825F) << object.name;

@@ -208,8 +208,8 @@ TEST_F(MeshRepair, FilesOfOneSceneShareOneImageInMemory) {
 }
 
 TEST_F(MeshRepair, ImagesFinerThanAnybodySeesAreShrunk) {
-  // 1024 texels: on 1 m they are kept; on 4 cm (0.04 mm each) they are halved until a texel has 0.6
-  // mm.
+  // 1024 texels: on a width of 1 m they are kept; on 4 cm (0.04 mm each), their number is halved
+  // until a texel measures 0.6 mm.
   std::string texels;
   for (int i = 0; i < 1024 * 4; ++i) texels += std::string(3, i % 2 == 0 ? '\0' : '\xff');
   write("fine.ppm", ppm(1024, 4, texels));
@@ -243,7 +243,8 @@ TEST_F(MeshRepair, EmissionIsMultipliedByItsTexture) {
   };
   EXPECT_TRUE(emission(0).isZero()) << emission(0).transpose();
   EXPECT_LT((emission(1) - Eigen::Vector3f(1, 1, 0.5F)).norm(), 0.06F) << emission(1).transpose();
-  // Without a texture all of it glows; with a missing texture nothing does, and a warning says so.
+  // Without a texture, the whole square glows; with a missing texture, nothing does, and there is a
+  // warning.
   const Scene plain = load_mesh(write_square("plain", "Ke 2 2 1\n"));
   for (const std::uint16_t material : plain.material_of)
     EXPECT_EQ(plain.materials[material].emission, Eigen::Vector3f(2, 2, 1));

@@ -290,7 +290,7 @@ TEST_F(LabeledPly, LabelsAloneAreNyu40) {
 
 using PlyFile = TemporaryFolder;
 
-// As MeshLab writes it: with spaces around the name.
+// MeshLab writes spaces around the texture's name.
 TEST_F(PlyFile, BlanksAroundATexturesNameAreNotOfIt) {
   write("my tex.ppm", std::string("P6\n1 1\n255\n\xff") + '\0' + '\0');
   std::vector<std::string> warnings;
@@ -305,7 +305,7 @@ TEST_F(PlyFile, BlanksAroundATexturesNameAreNotOfIt) {
   EXPECT_EQ(scene.materials[0].texture(0, 0), (Rgb8{255, 0, 0}));
 }
 
-// As MeshLab writes it: two faces at a seam that use different places of the image. assimp would
+// MeshLab's format, with two faces at a seam that use different places of the image. assimp would
 // give each vertex the coordinates of its last face.
 TEST_F(PlyFile, CornersKeepTheTextureCoordinatesOfTheirFaces) {
   write("t.ppm", std::string("P6\n2 1\n255\n\xff") + std::string(4, '\0') + "\xff");

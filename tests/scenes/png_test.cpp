@@ -18,7 +18,7 @@
 namespace mh {
 namespace {
 
-/// Half noise, half a constant: literals and runs for the compression.
+/// Half noise, half a constant, so that compression uses both literals and runs.
 cv::Mat some_image(int width, int height, int type) {
   cv::Mat image(height, width, type);
   const RandomStream stream(5);

@@ -98,7 +98,7 @@ TEST_F(SensFile, ReadsBackWhatItWrote) {
   const auto recording = open_recording(folder_ / "a.sens");
   expect_recorded(*recording, true);
   EXPECT_EQ(recording->info().sensor, "StructureSensor");
-  expect_recorded(*open_recording(folder_), true);  // the only one in its folder
+  expect_recorded(*open_recording(folder_), true);  // the only .sens file in its folder
   save_sens(folder_ / "b.sens", info(), 1, moment);
   EXPECT_TRUE(names(error_of([&] { open_recording(folder_); }), {"2 .sens files"}));
 }

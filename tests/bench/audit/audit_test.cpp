@@ -19,7 +19,7 @@
 namespace mh::testing_support {
 namespace {
 
-/// Digests of everything that a run showed and answered.
+/// Digests of the map, of all images that a run showed to the system, and of its matches and poses.
 std::vector<std::uint64_t> bits_of(const RunResult& run) {
   std::vector<std::uint64_t> bits{run.map_digest};
   for (const MappedFrame& call : run.mapping.calls)
@@ -64,7 +64,7 @@ TEST(AuditRun, FindsEachQuerySolvableThatIsAnsweredRightly) {
       EXPECT_LT(*q.nearest_m, 0.3);
       EXPECT_GE(q.relevant, 1);
       EXPECT_GT(*q.average_precision, 0.5);
-      // Precision and recall count the same hits among the first k.
+      // Precision and recall at k count the same hits: those among the first k.
       for (const auto& [k, precision, recall] :
            {std::tuple(1, q.precision_1, q.recall_1), std::tuple(5, q.precision_5, q.recall_5),
             std::tuple(10, q.precision_10, q.recall_10)})
@@ -97,7 +97,7 @@ TEST(AuditRun, WithoutAnythingInCommonNothingIsInSight) {
   }
 }
 
-// The same walls in sight, but gray: no feature can be matched to them.
+// The same walls are in sight, but gray: no feature can be matched to them.
 TEST(AuditRun, WithoutTextureThereAreFewMatches) {
   const World in = world(tour(10, 70), std::make_shared<BoxRoomRenderer>(0, true));
   const Audited a = audited(spec(), in);
@@ -122,7 +122,7 @@ TEST(AuditRun, XiOneChangesNoMatch) {
 TEST(AuditRun, OfManyPointsIsThatOfEachAlone) {
   const SemanticConfig paper{}, heavy{.gamma = 5, .xi = 3};
   const World in = world();
-  // One map, made with the first settings.
+  // All settings share one map, which is made with the first of them.
   const Audited both = audited(spec({paper, heavy, paper}), in);
   const Audited alone = audited(spec({paper}), in);
   EXPECT_EQ(json_of(both.audit.points[0]), json_of(alone.audit.points[0]));
@@ -130,7 +130,7 @@ TEST(AuditRun, OfManyPointsIsThatOfEachAlone) {
   EXPECT_NE(json_of(both.audit.points[1]), json_of(alone.audit.points[0]));
 }
 
-// With released scores, answers depend on the order of the queries and on each attempt.
+// With neighbor scores as released, answers depend on the order of the queries and on each attempt.
 TEST(AuditRun, FollowsTheRunUnderReleasedScores) {
   RunSpec of = spec({SemanticConfig{}, SemanticConfig::neutral()});
   SlamConfig settings = *of.slam;
@@ -208,8 +208,8 @@ TEST(AuditSummary, CausesAndSuccessAddUpToAllQueries) {
   EXPECT_FALSE(s.average_precision.has_value());
 }
 
-/// Six queries: the first, second, third and last are solved by some keyframe; the fifth has
-/// nothing in sight.
+/// Six queries: some keyframe solves the first, second, third and last; the fifth has nothing in
+/// sight.
 std::vector<QueryAudit> six_queries() {
   std::vector<QueryAudit> all(6);
   all[0] = {.candidates = 3,
@@ -286,12 +286,12 @@ TEST(AuditSummary, OfRetrievalIsOverTheQueriesThatHaveTheValue) {
   const AuditSummary s = summarize(pointers_to(all));
   EXPECT_DOUBLE_EQ(s.candidates, 2.0);
   EXPECT_DOUBLE_EQ(*s.relevant_candidates, 5.0 / 12);
-  // Over the four queries that some keyframe solves.
+  // Means over the four queries that some keyframe solves.
   EXPECT_DOUBLE_EQ(*s.first_correct_of_solvable, 0.25);
   EXPECT_DOUBLE_EQ(*s.candidate_solves, 0.75);
   EXPECT_DOUBLE_EQ(*s.first_candidate_solves, 0.5);
   EXPECT_DOUBLE_EQ(*s.most_similar_solves, 0.25);
-  // Over the five queries that have these figures.
+  // Means over the five queries that have these figures.
   EXPECT_DOUBLE_EQ(*s.average_precision, 0.5);
   EXPECT_DOUBLE_EQ(*s.precision_1, 0.4);
   EXPECT_DOUBLE_EQ(*s.precision_5, 0.44);

@@ -6,7 +6,7 @@
 
 namespace mh::testing_support {
 
-/// The box room as a scene: exact images in closed form, only for BoxRoom::camera().
+/// The box room as a scene: exact images in closed form. It supports only BoxRoom::camera().
 class BoxRoomRenderer : public Renderer {
  public:
   /// @param shift_m  shift of the whole room along x

@@ -18,8 +18,9 @@ MatchDecision decision(bool with_xi, std::uint32_t asked, std::uint32_t feature,
           .other_feature = asked};
 }
 
-/// Feature i shows the same as map point i; odd map points are tables, everything else is a chair.
-/// Points from 100 on are at a border, those from 200 on show nothing.
+/// Feature i shows the same point of the scene as map point i. Map points with an odd number are
+/// tables; other map points and all features are chairs. Points from number 100 on are at a border,
+/// and those from 200 on are unknown: they show nothing.
 std::pair<MatchEnd, MatchEnd> ends_of(const MatchDecision& d) {
   const auto end = [](std::uint32_t i, ClassId label) {
     MatchEnd made{TruePoint{{static_cast<double>(i), 0, 2}, 2.0, i >= 100}, label};
@@ -51,7 +52,7 @@ TEST(AuditMatches, WhatXiCostIsNamedByGateAndByLabel) {
   const DecisionTrace decisions{decision(true, 1, 1, kThreshold), decision(true, 3, 3, kRatio),
                                 decision(true, 101, 101, kThreshold), decision(true, 6, 6, kTaken),
                                 decision(true, 9, 2, kThreshold), decision(true, 8, 8, kKept),
-                                // at xi = 1 all but one are kept
+                                // at xi = 1, all but one of these matches are kept
                                 decision(false, 1, 1, kKept), decision(false, 3, 3, kKept),
                                 decision(false, 101, 101, kKept), decision(false, 6, 6, kKept),
                                 decision(false, 9, 2, kKept), decision(false, 8, 8, kRatio)};
@@ -71,7 +72,7 @@ TEST(AuditMatches, WhatXiCostIsNamedByGateAndByLabel) {
 
 TEST(AuditMatches, AnotherNearestFeatureIsAnotherPair) {
   using enum MatchGate;
-  // With xi, the nearest feature of point 1 is a wrong one, and is kept.
+  // With xi, a wrong feature is nearest to point 1, and its match is kept.
   const StageMatches m = of_words({decision(true, 1, 4, kKept), decision(false, 1, 1, kKept)});
   EXPECT_EQ(m.xi.lost_to_another, 1);
   EXPECT_EQ(m.xi.wrong_gained, 1);

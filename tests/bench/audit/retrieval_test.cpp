@@ -10,7 +10,7 @@ TEST(AveragePrecision, IsOneIfTheRelevantComeFirst) {
   EXPECT_DOUBLE_EQ(*average_precision({1, 1, 1, 0, 0}, 3), 1.0);
 }
 
-// With the only relevant item at rank r, average precision is 1 / r.
+// If the only relevant item is at rank r, average precision is 1 / r.
 TEST(AveragePrecision, OfOneAtRankRIsItsInverse) {
   for (std::size_t rank = 1; rank <= 20; ++rank) {
     Relevance ranked(20, 0);

@@ -40,12 +40,14 @@ TEST(CoVisibleShare, OfATurnIsThatOfTheColumnsLeft) {
   const Camera camera = BoxRoom::camera();
   const double turn = 0.25, half = std::atan(159.5 / camera.fx_px);
   const double seen = (std::tan(half) + std::tan(half - turn)) / (2 * std::tan(half));
-  // Rows near the sides leave the image, too, up to 1 / cos of the turn.
+  // Near the sides, pixels at the top and bottom leave the image, too: they move up or down by a
+  // factor of up to 1 / cos(turn).
   EXPECT_NEAR(shared(0, turn), seen, 0.06);
   EXPECT_NEAR(shared(0, -turn), seen, 0.06);
 }
 
-// The other view is from beyond a wall, which hides everything behind it: nothing agrees.
+// The other view is from the far side of a wall, which hides everything behind it: no point is seen
+// in both.
 TEST(CoVisibleShare, OfAnotherRoomIsZero) {
   const SE3 pose = BoxRoom::pose(3, 2.5, 0);
   const SE3 beyond(pose.rotation(), pose.translation() + Eigen::Vector3d(100, 0, 0));

@@ -89,7 +89,7 @@ class Command {
     ended_ = true;
     return mh::test::code_of(status_);
   }
-  /// Its child processes.
+  /// Ids of the command's child processes.
   std::vector<pid_t> children() const {
     std::vector<pid_t> found;
     for (const auto& entry : fs::directory_iterator("/proc")) {
@@ -118,7 +118,8 @@ std::string bench_with_kept_maps(const fs::path& suite, const std::string& out,
          " --out " + (test_folder() / out).string() + " " + more;
 }
 
-/// The same, but every run has to map.
+/// Like bench_with_kept_maps(), but deletes the maps in the cache first, so that every run has to
+/// map.
 std::string bench(const fs::path& suite, const std::string& out, const std::string& more = "") {
   fs::remove_all(test_folder() / "cache" / "modelhouse-cache" / "map");
   return bench_with_kept_maps(suite, out, more);
@@ -143,7 +144,7 @@ std::string errors() {
   return content(test_folder() / "stderr");
 }
 
-/// Everything that must not depend on how the work was done.
+/// Everything that is exported and must not depend on how the work was split or interrupted.
 std::string tables(const std::string& out) {
   const fs::path folder = test_folder() / out;
   EXPECT_EQ(run("export " + folder.string() + " --format json"), 0) << errors();
@@ -203,8 +204,8 @@ TEST(BenchProcess, AFinishedRunIsNotRepeated) {
   EXPECT_EQ(tables("plain_run"), undisturbed());
 }
 
-// No part of a run's time is negative; together they make up most of the run's time, but not more
-// than it.
+// No part of a run's time is negative; together, the parts make up most of the run's time, but not
+// more than it.
 TEST(BenchProcess, ThePartsOfARunsTimeAddUp) {
   undisturbed();
   const SQLite::Database db((test_folder() / "plain_run" / "results.sqlite").string());
@@ -370,7 +371,7 @@ TEST(BenchProcess, ACheckThatIsInterruptedGoesOn) {
   EXPECT_TRUE(fs::is_empty(place)) << "it is removed once the check is done";
   const std::string baseline = content(fs::path(suite).replace_extension(".baseline.json"));
 
-  // The next check begins anew; after SIGKILL it resumes, too.
+  // The next check starts over, and it resumes after SIGKILL, too.
   EXPECT_EQ(interrupted(SIGKILL), -SIGKILL);
   EXPECT_EQ(run(check), 0) << errors();
   EXPECT_EQ(errors().find("3 runs, 3 of them to do"), std::string::npos) << errors();
@@ -411,8 +412,9 @@ TEST(BenchProcess, AnOutsideProgramThatIsRunAgainMeetsNeitherTruthNorLeavings) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".work.")) << entry.path();
 }
 
-// The program searches the folders that it was given and its own, upward and downward: while it
-// runs, the results of other systems, which have the same truth, must be hidden from it.
+// The program searches its own folder and the folders that it was given, and everything above and
+// below them. Results of other systems contain the same ground truth, so they must be hidden from
+// it while it runs.
 TEST(BenchProcess, AnOutsideProgramFindsNoTruth) {
   const std::string finds =
       "find . $(dirname $(dirname $(dirname {dataset}))) -name truth.tum -o -name estimate.tum -o "
@@ -627,7 +629,8 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
       "sweep", "[semantic]",
       "parameters: {map: fixed, semantics.alpha: [0.8, 0.5], semantics.beta: [0.75, 0.9]}\n");
   EXPECT_EQ(run(bench(sweep, "sweep")), 0) << errors();
-  // One of them makes its own map, the other takes the sweep's map from the cache.
+  // Two runs of a single point each: the first makes its own map, the second takes the sweep's map
+  // from the cache.
   for (const auto& [alpha, beta, point, cache] :
        {std::tuple("0.8", "0.75", 0, "--no-cache"), std::tuple("0.5", "0.9", 3, "")}) {
     const std::string name = std::string("alone") + alpha;
@@ -643,7 +646,7 @@ TEST(BenchProcess, ASweepOverAFixedMapAnswersAsSeparateQueriesWould) {
       std::string line, all;
       while (std::getline(lines, line))
         if (line.find("," + std::to_string(at) + ",1,0,1.5," + alpha + "," + beta) !=
-            std::string::npos)  // the 0 is the label mass: none is requested
+            std::string::npos)  // the 0 is the requested label mass: none
           all += line.substr(line.find("," + std::string(alpha) + ",")) + "\n";
       return all;
     };
@@ -734,7 +737,8 @@ TEST(BenchProcess, AScannetFolderIsASceneAndItsWarningsAreToldOnce) {
     EXPECT_EQ(run(command), 0) << command << errors();
     EXPECT_EQ(times_told(), 1U) << command << errors();
   }
-  // Boxes are drawn around objects, and it is unknown which face belongs to which object.
+  // Labels as boxes need to know which faces belong to which object, and this scan does not store
+  // that.
   suite.replace(suite.find("[exact]"), 7, "[boxes]");
   std::ofstream(test_folder() / "scan.yaml") << suite;
   EXPECT_EQ(run(bench(test_folder() / "scan.yaml", "boxes")), 2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Results are stored under the digest of the inputs that were read, no matter what else works in
-// the same folder or which files change meanwhile: each command is started as a user starts it, and
-// disturbed.
+// the same folder or which files change meanwhile: each command is started as a user would start
+// it, and then disturbed.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -136,13 +136,13 @@ TEST_F(ChangedInputs, AnotherSuiteWaitsForTheOneInItsFolder) {
         << said_;
     EXPECT_EQ(run("scene convert " + kRoom + " --format scannet --out " + path("out")), 2) << said_;
     EXPECT_NE(said_.find("another command is at work"), std::string::npos) << said_;
-    change("first.yaml");  // after an edit, the suite counts as another one, too
+    change("first.yaml");  // an edited suite counts as a different suite, too
     EXPECT_EQ(run("bench " + path("first.yaml") + to), 2) << said_;
     std::ofstream(path("go"));
   });
   EXPECT_EQ(code_, 3) << said;  // its program failed, as intended
   EXPECT_EQ(content(path("out/table.txt")).find("published"), std::string::npos);
-  // The suite that it recorded is the one that it ran.
+  // The suite stored with the results is the one that was run, not the changed one.
   EXPECT_EQ(SQLite::Database(path("out/results.sqlite"))
                 .execAndGet("SELECT content FROM suite")
                 .getString()
@@ -171,7 +171,8 @@ TEST_F(ChangedInputs, AProgramThatIsReplacedDuringItsRunHasNoResult) {
                          path("then.sh") + "'}]",
                      .labels = "[exact]"}
         .write(path("suite.yaml"));
-    // Replaced and put back with its old times: only the file system can tell.
+    // The program's file is replaced and put back with its old times: only the file system can
+    // tell.
     write_atomically(path("then.sh"), "cd " + work_.path().string() + " && cp -p " + changes +
                                           " was && echo : >>" + changes + " && cp -p was " +
                                           changes + "\n");

@@ -527,7 +527,7 @@ TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
   expect_refused("render " + mesh.string() + " --poses-of robot --motion auto --out x", "--poses");
   expect_refused("render " + mesh.string() + " --poses none.tum --out " + (folder_ / "x").string(),
                  "none.tum");
-  // A replay changes the poses, and says so.
+  // A replay changes the poses and reports that it does.
   const fs::path walk =
       write("walk.tum", "0 40 0 1 0.5 -0.5 0.5 -0.5\n1 40.5 0 1 0.5 -0.5 0.5 -0.5\n");
   ASSERT_EQ(run("render " + mesh.string() + " --robot " + robot_ + " --motion replay:" +
@@ -631,12 +631,13 @@ TEST_F(CommandLine, NobodysFilesAreOverwritten) {
   write("scene0000_00/scene0000_00_vh_clean_2.ply", "mine");
   expect_refused("scene convert " + m + " --out " + f + "scene0000_00", "already exists");
   EXPECT_EQ(content(folder_ / "scene0000_00/scene0000_00_vh_clean_2.ply"), "mine");
-  // The command's own input.
+  // The command must not overwrite its own input.
   ASSERT_EQ(run("scene convert " + m + " --out " + f + "m.glb"), 0) << err_;
   const std::string glb = content(folder_ / "m.glb");
   expect_refused("scene convert " + f + "m.glb --out " + f + "./m.glb", "is read by this command");
   EXPECT_EQ(content(folder_ / "m.glb"), glb);
-  // So are the files that a scene names: a placed mesh, a texture, the folder of a scan.
+  // Nor may it overwrite the files that a scene names: a placed mesh, a texture, the folder of a
+  // scan.
   const std::string placed = write("placed.yaml", "objects: [{file: m.glb, name: m}]").string();
   expect_refused("scene convert " + placed + " --out " + f + "m.glb", "is read by this command");
   EXPECT_EQ(content(folder_ / "m.glb"), glb);
@@ -940,7 +941,7 @@ TEST_F(CommandLine, EvaluatesKittiFilesByLine) {
     return "1 0 0 " + x + " 0 1 0 " + y + " 0 0 1 0\n";
   };
   const fs::path truth = write("t.kitti", line("0", "0") + line("1", "0") + line("1", "2"));
-  // By hand: aligned at the origin, the errors are 0, 0.3 and 0.4 m; rmse sqrt(0.25 / 3).
+  // Computed by hand: aligned at the origin, the errors are 0, 0.3 and 0.4 m; rmse sqrt(0.25 / 3).
   const fs::path estimate = write("e.kitti", line("5", "5") + line("6.3", "5") + line("6.4", "7"));
   const std::string files = truth.string() + " " + estimate.string();
   ASSERT_EQ(run("evaluate --format kitti --align origin --rate 2 --delta 1s --json " + files), 0)

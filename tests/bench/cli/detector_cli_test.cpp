@@ -29,7 +29,7 @@ class DetectorCommands : public testing::Test {
     for (int i = 0; i < kFrames; ++i) writer.add(testing_support::box_room_frame(i));
     writer.finish();
     testing_support::box_room_vocabulary()->save(path("words.mhvoc"));
-    // Its boxes are chairs wherever the center of a cell is red enough.
+    // A network that finds a chair in every cell whose center is red enough.
     write_atomically(
         path("chairs.onnx"),
         test::onnx_detection(320, 256, {.box = {0.5F, 0.5F, 1, 1}, .classes = {1, 0.1F}}));
@@ -92,7 +92,7 @@ TEST_F(DetectorCommands, FoundBoxesServeAsAFile) {
   EXPECT_FALSE(fs::is_empty(path("cache")));
   EXPECT_EQ(slam("from_cache", cached), by_network);
   // The file holds only the best class of each box, so the network that it is compared with must
-  // output only that, too.
+  // output only the best class, too.
   write_atomically(path("sure.onnx"), test::onnx_detection(320, 256, {.box = {0.5F, 0.5F, 1, 1}}));
   const std::string sure =
       "--detector " + path("sure.onnx") + " --detector-settings " + path("two.yaml");
@@ -202,7 +202,7 @@ TEST_F(DetectorCommands, AShorterRunLeavesNothingOfALongerOne) {
   write_atomically(path("shorter/000002.png"), "mine");
   expect_refused(command + " --frames 3", "000002.png: already exists");
   EXPECT_EQ(read_file(path("shorter/000002.png")), "mine");
-  // Its own result is not accepted as input.
+  // The command does not accept its own result as input.
   expect_refused("detector run " + path("room") + " --detector " + path("shorter/detections.json") +
                      " --out " + path("shorter"),
                  "detections.json: is in the output folder");
@@ -213,7 +213,8 @@ TEST_F(DetectorCommands, AnInterruptedRunLeavesTheResultBeforeIt) {
       "detector run " + path("room") + " " + network() + " --frames 2 --out " + path("kept");
   ASSERT_EQ(run(command), 0) << err_;
   const std::string before = read_file(path("kept/detections.json"));
-  // One frame has fewer bytes than this limit, the images of a run have more: writing fails midway.
+  // One frame has fewer bytes than this limit, but the images of a run have more, so writing fails
+  // midway.
   const std::string limited = "sh -c 'ulimit -f 1; " MH_EXECUTABLE " " + command + "'";
   EXPECT_EQ(std::system((limited + " >/dev/null 2>&1").c_str()) / 256, 3);
   EXPECT_EQ(read_file(path("kept/detections.json")), before);

@@ -19,12 +19,12 @@ struct HostileCase {
   bool passes = false;    ///< the file is accepted: exit code 0
 };
 
-/// Cases of scenes, robots, plans, recordings, vocabularies, maps and results.
+/// Cases for scenes, robots, plans, recordings, vocabularies, maps and results.
 std::vector<HostileCase> hostile_scenes();
 std::vector<HostileCase> hostile_worlds();
 std::vector<HostileCase> hostile_recordings();
 std::vector<HostileCase> hostile_settings();
-/// Valid files of every kind with randomly changed bytes; the same for the same seed.
+/// Valid files of every kind with randomly changed bytes; the same seed gives the same files.
 std::vector<HostileCase> damaged_files(std::uint64_t seed);
 
 // Shared by the functions that make cases.

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// For the build that users have; sanitizers take several times as much.
+// Limits for the build that users have; with sanitizers, a command takes several times as much.
 constexpr double kMostProcessor_s = 10.0, kMostMemory_gb = 5.0;
 constexpr int kMostWall_s = 120;  // other work may be running
 
@@ -36,7 +36,7 @@ struct Outcome {
          memory_gb = 0;  ///< time of the process and its children; memory of the largest one
 };
 
-/// One case, with its own folder.
+/// Runs one case in its own folder.
 class Trial {
  public:
   explicit Trial(const HostileCase& c)
@@ -115,7 +115,8 @@ void expect_one_line_or_a_warning(const HostileCase& c, const Outcome& outcome) 
 
 void expect_it_of(const std::vector<HostileCase>& cases) {
   ASSERT_FALSE(cases.empty());
-  // Run in parallel: the most demanding ones end at their limits of time and memory (4 GB each).
+  // Cases run in parallel, but only a few: the most demanding ones reach their limits of time and
+  // memory (4 GB each).
   constexpr std::size_t kAtOnce = 3;
   std::vector<Outcome> outcomes(cases.size());
   std::atomic<std::size_t> next = 0;

@@ -97,7 +97,8 @@ TEST_F(SlamCommand, MapsAFolderAndSaysWhatCameOfIt) {
   EXPECT_EQ(load_settings(folder_ / "a/settings.yaml").camera,
             load_settings(folder_ / "room/camera.yaml").camera);
 
-  // tum:FOLDER is the same source: the same run again, now with its own settings file.
+  // tum:FOLDER names the same source: the run is repeated, with the settings file that the first
+  // run wrote.
   ASSERT_EQ(run("tum:" + path("room") + " --out " + path("b") + " --save-map " + path("b.mhmap") +
                 " --settings " + path("a/settings.yaml")),
             0)
@@ -137,7 +138,7 @@ TEST_F(SlamCommand, PicksUpAMapToGoOnOrToLocalize) {
   EXPECT_NE(err_.find("whole.mhmap"), std::string::npos) << err_;
   EXPECT_NE(run(again + path("whole.mhmap") + " --resume --localize"), 0);
 
-  // The map's settings apply: requested ones that differ are reported.
+  // The map's settings apply: requested settings that differ are reported.
   std::string other = format_settings(load_settings(folder_ / "room/camera.yaml"));
   other.replace(other.find("count: 1000"), 11, "count: 1500");
   write_atomically(folder_ / "other.yaml", other);
@@ -155,7 +156,7 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
                 path("mapped.mhmap")),
             0)
       << err_;
-  // No frame has a thousand inliers: nothing is localized.
+  // No frame has a thousand inliers, so no frame is localized.
   const std::string camera = format_settings(load_settings(folder_ / "room/camera.yaml"));
   write_atomically(folder_ / "strict.yaml", camera.substr(0, camera.find("features:")) +
                                                 "relocalize:\n  min_inliers: 1000\n");
@@ -181,8 +182,8 @@ TEST_F(SlamCommand, AMapIsSearchedByTheSettingsOfRelocalizationThatAreGiven) {
 }
 
 TEST_F(SlamCommand, AMapAnswersByTheFactorsThatAreGiven) {
-  // Candidates are chosen only by labels, and a map made with gamma 0 has none: the labels are
-  // weighted anew.
+  // Candidates are chosen by labels alone. In a map made with gamma 0, labels have no weight, so
+  // they must be weighted anew.
   std::string settings = format_settings(load_settings(folder_ / "room/camera.yaml"));
   settings.replace(settings.find("overlap: augmented"), 18, "overlap: labels");
   write_atomically(folder_ / "labels.yaml", settings);
@@ -261,7 +262,8 @@ TEST_F(SlamCommand, WithoutDepthNothingIsMappedAndThatIsReported) {
   EXPECT_FALSE(fs::exists(folder_ / "no/summary.json"));
 }
 
-// Both commands use one runner: on a recording, `slam` gives the same as `bench`, to the bit.
+// Both commands use one runner: on a recording, `slam` gives the same results as `bench`, to the
+// bit.
 TEST_F(SlamCommand, RunsTheProtocolOfTheBench) {
   const auto by_bench = [&](const std::string& name, const std::string& protocol) {
     const fs::path suite = folder_ / (name + ".yaml"), out = folder_ / (name + "_suite");

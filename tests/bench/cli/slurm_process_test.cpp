@@ -80,7 +80,7 @@ std::string bench(const std::string& out, const std::string& more) {
          quoted(folder_of(out)) + " " + more;
 }
 
-/// Everything that must not depend on how the work was done.
+/// Everything that is exported and must not depend on how the work was split or interrupted.
 std::string tables(const std::string& out) {
   EXPECT_EQ(run("export '" + folder_of(out).string() + "' --format json"), 0) << errors();
   return content(folder_of(out) / "results.json") + content(folder_of(out) / "table.txt") +
@@ -163,8 +163,8 @@ class Cluster {
     fs::permissions(key, fs::perms(0400));
     for (const fs::path& path : {folder_ / "munge", key})
       EXPECT_EQ(chown(path.c_str(), munge->pw_uid, munge->pw_gid), 0);
-    // As by default, nothing is requeued for its exit code alone; cred_expire: a requeued task
-    // starts at once instead of after two minutes.
+    // As in Slurm's default configuration, no job is requeued for its exit code alone. With
+    // cred_expire, a requeued task starts at once instead of after two minutes.
     std::ofstream(folder_ / "slurm.conf")
         << "ClusterName=modelhouse\nSlurmctldHost=localhost\nSlurmUser=root\nSlurmdUser=root\n"
         << "SlurmctldPort=" << free_port() << "\nSlurmdPort=" << free_port()
@@ -249,7 +249,8 @@ int finished_in(const fs::path& folder) {
   }
 }
 
-/// Runs `arguments` and calls `kill_it` once `share` has finished a run. @returns the exit code
+/// Runs `arguments` and calls `kill_it` as soon as `share` has finished a run. @returns the exit
+/// code
 template <class Kill>
 int run_and_kill(const std::string& arguments, const fs::path& share, Kill&& kill_it) {
   int code = -1;
@@ -292,7 +293,7 @@ TEST(SlurmProcess, AWorkerThatIsKilledGoesOnAndNoByteChanges) {
   EXPECT_EQ(count_of(log, ", restart 1"), 1) << log;
   EXPECT_EQ(count_of(log, "24 runs, 6 of them to do"), 1) << log << "the second time it had fewer";
 
-  // Everything is finished: nothing is submitted.
+  // Everything is finished, so no job is submitted.
   EXPECT_EQ(run(bench("four shares", suite + "--slurm 4")), 0) << errors();
   EXPECT_NE(errors().find(", 0 unfinished"), std::string::npos) << errors();
   EXPECT_EQ(errors().find("is submitted"), std::string::npos) << errors();

@@ -53,7 +53,8 @@ TEST(MeasureImage, CountsCornersOfSquaresAndBlankCells) {
   EXPECT_LT(s[kBlank], 1.0);
 }
 
-/// Noise whose power falls with frequency^-3: amplitudes with its power of 1.5, random phases.
+/// Noise whose power falls with frequency^-3: amplitudes that fall with frequency^-1.5, and random
+/// phases.
 cv::Mat power_law_noise() {
   const RandomStream random(3);
   cv::Mat spectrum(480, 640, CV_32FC2);

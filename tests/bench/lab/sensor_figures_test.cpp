@@ -52,8 +52,8 @@ double largest_departure(const Plot& plot) {
   return largest;
 }
 
-// Relative to the range: sampling error of the random numbers, and rounding to whole pixels and
-// steps.
+// Largest accepted departures, relative to the line's range: for sampling errors of the random
+// numbers, and for rounding to whole pixels and steps.
 const std::map<std::string, double> kTolerance = {{"Depth noise along the axis", 0.02},
                                                   {"Depth noise on leaning walls, 2 m", 0.03},
                                                   {"Ragged edges", 0.015},
@@ -74,8 +74,8 @@ TEST(SensorFigures, WhatWasMeasuredLiesOnWhatWasPublished) {
   for (const Plot& plot : all_plots()) {
     seen.insert(plot.title);
     if (plot.title == "Detector: how well boxes lie") {
-      // One figure is published: the share of the boxes with an IoU above 0.5 whose IoU is above
-      // 0.75.
+      // Only one figure is published: the share of boxes with an IoU above 0.75 among those with an
+      // IoU above 0.5.
       const auto& dots = plot.series[1].points;
       EXPECT_EQ(dots[0].x, 0.5);
       EXPECT_EQ(dots[0].y, 1.0);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Rgb8 kBelow = {90, 150, 210}, kAbove = {10, 20, 30};
 
-/// One color for views that look down, another one for views that look up.
+/// One color for views that look down, and a different one for views that look up.
 class DownOrUp : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {

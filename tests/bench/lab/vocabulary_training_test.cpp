@@ -125,7 +125,7 @@ TEST(Overlap, IsTheShareThatTheOtherImageShows) {
   a.depth_m = Grid2d<float>(80, 60, 2.0F);
   PlacedView b = a;
   EXPECT_DOUBLE_EQ(overlap(a, b, camera), 1.0);
-  // Half an image to the side: 320 px at 2 m.
+  // The second view is half an image to the side: 320 px at 2 m.
   b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {320 * 2.0 / camera.fx_px, 0, 0});
   EXPECT_NEAR(overlap(a, b, camera), 0.5, 0.02);
   b.world_from_camera = SE3(Eigen::Matrix3d::Identity(), {0, 0, 5});  // behind the plane

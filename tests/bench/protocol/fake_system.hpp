@@ -115,14 +115,14 @@ inline RgbdFrame fake_frame(std::size_t index, RandomStream noise) {
   return frame;
 }
 
-/// A camera for these frames.
+/// The camera of fake_frame()'s frames.
 inline Camera fake_camera() {
   Camera camera;
   camera.width_px = camera.height_px = 2;
   return camera;
 }
 
-/// `count` of these frames, in order.
+/// The first `count` frames of fake_frame(), in order.
 inline MadeSequence fake_frames(std::size_t count) {
   return {count, fake_frame, fake_camera()};
 }

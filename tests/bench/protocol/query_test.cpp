@@ -39,7 +39,8 @@ TEST(Query, StopsAtTheFirstPoseThatComesBack) {
   EXPECT_EQ(answer.candidates.c2, 4);
 }
 
-/// Noise and random streams of two queries with five attempts each, all unanswered.
+/// The noise and the random draws that a system sees in two queries of five attempts each, if it
+/// answers none.
 struct Streams {
   std::set<std::uint64_t> noise, draws;
 };
@@ -64,7 +65,7 @@ Streams streams_of(Attempts attempts) {
 TEST(Query, AttemptsRepeatTheSameFrameAndOnlyTheDrawsDiffer) {
   const Streams seen = streams_of(ProtocolConfig{}.attempts);
   EXPECT_EQ(seen.noise.size(), 2u);        // one for each query
-  EXPECT_EQ(seen.draws.size(), 10u + 2u);  // and one for each query's blank frame
+  EXPECT_EQ(seen.draws.size(), 10u + 2u);  // for each attempt and each query's blank frame
 }
 
 TEST(Query, WithNewNoiseEachAttemptAtEachFrameHasItsOwnNoiseAndDraws) {
@@ -104,7 +105,7 @@ TEST(Query, CandidatesAreThoseOfTheFirstAttemptAndPairsAreSummed) {
   EXPECT_EQ(answer.candidates.final, 11);
   ASSERT_TRUE(answer.matches);
   EXPECT_EQ((*answer.matches)[2].compared, 1 + 2 + 3);
-  // If the first attempt reports none, none are known.
+  // If the first attempt reports no candidates, the query has none.
   system.on_report = [](int attempt, SystemReport& report) {
     if (attempt == 1) report.candidates = {};
   };
@@ -178,7 +179,7 @@ TEST(Query, PermutingTheQueriesChangesNothing) {
   EXPECT_EQ(forwards, ask(order));
   std::rotate(order.begin(), order.begin() + 3, order.end());
   EXPECT_EQ(forwards, ask(order));
-  // The test means something: different queries do get different answers.
+  // The comparison could fail: different queries do get different answers.
   EXPECT_NE(forwards.at(29), forwards.at(59));
 }
 
@@ -245,7 +246,7 @@ TEST(NearestMapped, OfEquallyNearFramesTheEarlierIsTakenAndBeforeIsAsNearAsAfter
                                                               {400, 400},
                                                               {9000, 400}})
     EXPECT_EQ(in_time(asked), expected) << asked;
-  // Three of the frames are 1 m away.
+  // Three of the frames are equally near, 1 m away: the first of them is taken.
   EXPECT_EQ(nearest_mapped(truth, truth, {250, at(0, 0, 0)}, NearestBy::kPlace)->stamp_ns, 100);
 }
 
@@ -266,7 +267,7 @@ TEST(InterpolatedPose, LiesBetweenItsNeighborsInTime) {
 
 TEST(FindAnchor, ComparesWithWhatTheProtocolAsksFor) {
   constexpr Stamp kMs = 1'000'000;
-  // The robot speeds up: halfway in time it had moved only 0.2 m. The map as a whole is 10 m off.
+  // The robot speeds up: halfway in time, it has moved only 0.2 m. The map as a whole is 10 m off.
   const Trajectory truth = {{0, at(0, 0, 0)}, {50 * kMs, at(0.2, 0, 0)}, {100 * kMs, at(1, 0, 0)}};
   const Trajectory estimate = {{0, at(10, 0, 0)}, {100 * kMs, at(11, 0, 0)}};
   const auto expected = [&](NearestBy by, QueryTruth what) {
@@ -406,7 +407,7 @@ TEST(Score, WithoutATruthAnAnswerIsASuccessAndNothingElse) {
   const QueryScore s = score(answer, unknown, std::nullopt, SE3(), config);
   EXPECT_TRUE(s.success && !s.correct && !s.false_positive && !is_judged(s));
   EXPECT_FALSE(s.distance_m || s.angle_deg || s.aligned_distance_m);
-  // The paper's own method needs no truth.
+  // The paper's own method needs no ground truth.
   config.truth = QueryTruth::kInterpolated;
   const auto anchor = find_anchor(estimate, {}, unknown, NearestBy::kTime, config);
   const QueryScore judged = score(answer, unknown, anchor, SE3(), config);
@@ -445,7 +446,7 @@ TEST(QueryScore, APlaceIsInTheMapWhereAFrameWasMapped) {
 TEST(QueryScore, SuccessInTheMapIsAmongThoseWhosePlaceIsThere) {
   std::vector<QueryScore> queries(5);
   queries[0].in_map = queries[1].in_map = queries[2].in_map = true;
-  queries[3].in_map = false;  // the fifth stays unknown
+  queries[3].in_map = false;  // it stays unknown for the fifth query
   queries[0].success = queries[3].success = queries[4].success = true;
   const QuerySummary s = summarize(queries);
   EXPECT_DOUBLE_EQ(s.in_map.value(), 0.75);

@@ -103,14 +103,14 @@ TEST(EpisodesTable, EachCellStandsUnderItsHeading) {
       (std::vector<std::string>{
           "", "made up: 3 kidnappings in 2 environments, the same for each system", "",
           "variant system success 95 % located median s SPL collided worst m/s wrong arrivals",
-          // SPL: 1.3 over six episodes, not over two successes; the worst contact is the second
-          // one.
+          // SPL: the sum of 1.3 is divided by all six episodes, not by the two successes; the worst
+          // contact is the second one.
           "as_mapped semantic 2/6 10-70 % 5 30.0 0.22 2 0.30 1 "
           "1 never_relocalized, 2 stuck, 1 wrong_arrival",
           "as_mapped plain 3/5 23-88 % 4 21.0 0.35 0 0.00 0 1 no_path, 1 time_out",
           "dim semantic 0/1 0-79 % 1 - 0.00 0 0.00 0 1 time_out",
           "dim plain 0/0 0-100 % 0 - 0.00 0 0.00 0", "",
-          // (0 - 1 + 1 - 1 + 0) / 5; too few places for an interval.
+          // (0 - 1 + 1 - 1 + 0) / 5; there are too few places for an interval.
           "success, as_mapped: semantic - plain: -0.200 (-inf to +inf), 5 pairs, p 1.000, Holm "
           "1.000",
           // (0.3 - 1 + 0.5 - 0.25 + 0) / 5.
@@ -154,8 +154,8 @@ TEST(EpisodesJson, HoldsWhatTheTableHolds) {
 }
 
 // Six blocks of two starts: success differs in the same direction in all of them (p 2/64), SPL in
-// one direction in five blocks and in the other direction in one (14/64). The smaller p of the two
-// comparisons counts twice.
+// one direction in five blocks and in the other direction in one (14/64). Holm's correction doubles
+// the smaller p of the two comparisons.
 TEST(EpisodesTable, StartsOfOnePlaceAreComparedInBlocksAndCorrectedByHolm) {
   const Suite suite = suite_of({"kitchen"}, 12, {{}});
   std::vector<EpisodeScore> first, second;

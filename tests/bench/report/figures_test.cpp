@@ -237,7 +237,8 @@ TEST_F(Figures, OfOthersStandBesideTheMeasuredAte) {
 }
 
 // On the queries that both answer, the semantic system is closer by 0.05, 0.12, 0.42, 0.81 and 0.9:
-// 2.3 / 5 = 0.46. It answers one more of eight, and three more of eight correctly.
+// 2.3 / 5 = 0.46. Of eight queries, it answers one more than the plain system, and three more
+// correctly.
 TEST_F(Figures, OfTheComparisonAreSemanticMinusPlain) {
   const std::string table = results_table(suite_, runs_);
   for (const char* figure :
@@ -258,7 +259,8 @@ TEST_F(Figures, OfTheComparisonAreSemanticMinusPlain) {
 }
 
 // Two rooms with the same figures, except that the plain system in the second room is as good as
-// the semantic one: its means are halfway between the two systems.
+// the semantic one. So the plain system's means are halfway between the systems' figures in the
+// first room.
 TEST_F(Figures, OfTableOneAreMeansOverScenes) {
   const Suite two = made_up_suite(folder_, {"den", "nook"});
   std::vector<RunResult> runs = runs_of(two);
@@ -278,8 +280,8 @@ TEST_F(Figures, OfTableOneAreMeansOverScenes) {
             (Cells{"rooms", "plain", "2", "0.0333", "0.00555", "75.00%", "68.75%", "43.75%",
                    "25.00%", "0.3500", "70.00%", "30.00%", "40.00%", "0.4700"}))
       << table;
-  // The -0.2 is for the second tour; each figure is a mean over scenes: half of the difference in
-  // the first room.
+  // Each figure is a mean over two scenes, so it is half of the difference in the first room. The
+  // -0.2 is for the second tour.
   for (const char* figure : {"success, held_out, exact labels +\\+0\\.0625 ",
                              "pooled success, held_out, exact labels +\\+0\\.0625 ",
                              "pooled correct, second_tour, exact labels .*10 queries of 2 scenes",

@@ -47,8 +47,8 @@ class GradedCurves : public testing::Test {
   }
   ~GradedCurves() override { fs::remove_all(folder_); }
 
-  /// Eight queries, the first four of them near: `near` of the near ones and `far` of the far ones
-  /// are answered.
+  /// Eight queries, the first four of them near. Answers `near` of the near ones and `far` of the
+  /// others.
   RunResult run(const RunSpec& spec, int near, int far, double speed = 0) const {
     RunResult made = made_up_run(spec, {});
     made.points = {{}};

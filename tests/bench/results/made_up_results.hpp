@@ -16,7 +16,7 @@ namespace mh {
 struct MadeUpAnswers {
   int correct = 0;
   std::vector<double> distances_m;   ///< of the answered queries
-  double aligned_more_m = 0;         ///< how much larger they are after alignment
+  double aligned_more_m = 0;         ///< how much larger the distances are after alignment
   std::vector<int> attempts, final;  ///< of all queries
   int keyframes = 0, c1 = 0, c2 = 0, c3 = 0;
   double label_mass = 0, gamma = 0;
@@ -31,7 +31,7 @@ struct MadeUpFigures {
   int restarts = 0;
   std::size_t dropped = 0;
   MadeUpAnswers held_out, second_tour;
-  MatcherCounts pairs;  ///< of matching with the motion model while mapping
+  MatcherCounts pairs;  ///< pairs matched with the motion model while mapping
   std::vector<double> track_ms, relocalize_ms;
 };
 

@@ -46,7 +46,7 @@ TEST(ComparePaired, AConstantDifferenceIsFoundAndHasNoSpread) {
 }
 
 TEST(ComparePaired, AnswersOfOneNeighborhoodCountLessThanTheirNumber) {
-  // Blocks of ten equal values carry hardly more information than a tenth as many queries.
+  // Blocks of ten queries with equal values carry hardly more information than one query per block.
   std::vector<PairedDifference> runs, mixed;
   for (int i = 0; i < 200; ++i) {
     runs.push_back({(i / 10) % 2 == 0 ? 1.0 : -0.9, true});
@@ -66,8 +66,8 @@ TEST(ComparePaired, TooFewPairsDecideNothing) {
 }
 
 TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
-  // With blocks of two queries, p is at least 2 of 32 sign patterns for five blocks and 2 of 64 for
-  // six.
+  // With five blocks of two queries, p is at least 2 / 32, since at least two of the 32 sign
+  // patterns are as extreme; with six blocks it is at least 2 / 64.
   const Comparison five = compare_paired(all_equal_to(1, 10), true, 1);
   EXPECT_DOUBLE_EQ(five.p, 2.0 / 32);
   EXPECT_TRUE(std::isinf(five.detectable)) << "too few to detect anything";
@@ -78,7 +78,8 @@ TEST(ComparePaired, FewBlocksCannotBeSignificantHoweverClear) {
 }
 
 TEST(ComparePaired, AnIntervalThatEndsAtZeroBesideALargePIsRecognized) {
-  // Two of 40 queries differ, in the same direction: two of four patterns are this far from 0.
+  // Two of 40 queries differ, in the same direction: two of the four sign patterns are as far from
+  // 0.
   std::vector<PairedDifference> two = all_equal_to(0, 40);
   two[3].difference = two[30].difference = 1;
   const Comparison c = compare_paired(two, true, 1);
@@ -106,7 +107,7 @@ TEST(SignFlip, DrawsAgreeWithTheNormalDistributionWherePatternsAreTooMany) {
   std::vector<double> sums(100, 1.0);
   for (std::size_t i = 0; i < 40; ++i) sums[2 * i] = -1.0;  // 60 against 40: two sigmas
   EXPECT_NEAR(sign_flip(sums, 1), std::erfc(1.9 / std::sqrt(2.0)),
-              0.005);  // continuity correction: half a step closer
+              0.005);  // half a step closer, as continuity correction
   EXPECT_EQ(sign_flip(sums, 1), sign_flip(sums, 1));
   EXPECT_DOUBLE_EQ(sign_flip(std::vector<double>(100, 1.0), 1), 1.0 / 20001);
 }
@@ -146,7 +147,7 @@ TEST(Wilcoxon, AgreesWithCountingAllSigns) {
   EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{1, 2, 3, 4, 5}), 2.0 / 32);
   // The positive ranks sum to 4 + 5 = 9 of 15: 13 subsets of {1 .. 5} have a sum of at most 6.
   EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{-1, -2, -3, 4, 5}), 2 * 13.0 / 32);
-  // Ties get mean ranks, zeros get none: ranks 1.5, 1.5, 3, all positive.
+  // Ties get the mean of their ranks, and zeros get no rank: ranks 1.5, 1.5, 3, all positive.
   EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(std::vector<double>{1, 1, 2, 0}), 2.0 / 8);
   EXPECT_EQ(wilcoxon_signed_rank(std::vector<double>{0, 0}), 1.0);
   EXPECT_EQ(wilcoxon_signed_rank({}), 1.0);
@@ -167,7 +168,7 @@ TEST(Wilcoxon, NearsTheNormalDistributionForManyScenes) {
   std::vector<double> d;
   for (int i = 1; i <= 200; ++i) d.push_back(i % 2 == 0 && i % 14 != 0 ? -i : i);
   double positive = 0;
-  for (const double x : d) positive += x > 0 ? x : 0;  // the ranks are |d|
+  for (const double x : d) positive += x > 0 ? x : 0;  // here, the ranks are |d|
   const double mean = 200 * 201 / 4.0, sd = std::sqrt(200 * 201 * 401 / 24.0);
   const double p = std::erfc((positive - 0.5 - mean) / sd / std::sqrt(2.0));
   EXPECT_NEAR(wilcoxon_signed_rank(d) / p, 1.0, 0.01);  // p = 0.083
@@ -186,16 +187,17 @@ TEST(CompareScenes, ScenesAreIndependentAndThoseWithoutAValueAreLeftOut) {
   EXPECT_EQ(same.low, full.low);
 }
 
-// Six scenes with thirty queries each: as none of 180 answers differs, the share of answers that
-// differ is bounded by 3 / 180. If each scene counted as one answer, 3 / 6 would bound nothing.
+// Six scenes with thirty queries each: since none of the 180 answers differs, the share of answers
+// that differ is bounded by 3 / 180. If each scene counted as one answer, 3 / 6 would bound
+// nothing.
 TEST(CompareScenes, TheFloorOfWhatCanBeDetectedIsOfAnswersNotOfScenes) {
   const Comparison same = compare_scenes(all_equal_to(0, 6), 6 * 30, 1);
   EXPECT_DOUBLE_EQ(same.detectable, 3.0 / 180);
   std::vector<PairedDifference> scenes = all_equal_to(0, 6);
   for (std::size_t i = 0; i < 6; ++i) scenes[i].difference = i % 2 == 0 ? 0.1 : -0.1;
   const Comparison spread = compare_scenes(scenes, 6 * 30, 1);
-  // A scene's difference has a standard deviation of 0.1 (as resampled), the mean of six 0.1 /
-  // 6^0.5.
+  // One scene's difference has a standard deviation of 0.1 (as resampled), so the mean of six has
+  // one of 0.1 / 6^0.5.
   EXPECT_NEAR(spread.detectable, 2.8 * 0.1 / std::sqrt(6.0), 0.005);
   EXPECT_EQ(compare_scenes(all_equal_to(0, 6), 0, 1).detectable, 0) << "no shares, no floor";
 }
@@ -209,8 +211,8 @@ std::vector<std::vector<PairedDifference>> scenes_of(const std::vector<double>& 
 }
 
 TEST(CompareClusters, EachQueryCountsTheSameAndScenesAreDrawnAsWholes) {
-  // One large scene without a difference and nine small ones with one query each that differs: 9 of
-  // 90 + 9 queries.
+  // One large scene without a difference and nine small ones whose only query differs: 9 of 90 + 9
+  // queries differ.
   std::vector<std::vector<PairedDifference>> scenes = scenes_of(std::vector<double>(9, 1.0), 1);
   scenes.push_back(all_equal_to(0, 90));
   scenes.back().resize(120);  // the added ones have no value and do not count
@@ -218,7 +220,7 @@ TEST(CompareClusters, EachQueryCountsTheSameAndScenesAreDrawnAsWholes) {
   EXPECT_DOUBLE_EQ(c.difference, 9.0 / 99);
   EXPECT_EQ(c.pairs, 99u);
   EXPECT_EQ(c.clusters, 10u);
-  EXPECT_DOUBLE_EQ(c.p, 2.0 / 512);  // nine scenes of one sign, one of zero
+  EXPECT_DOUBLE_EQ(c.p, 2.0 / 512);  // nine scenes have the same sign, one has zero
   // Without the large scene, which 35 % of the resamplings leave out, all queries differ.
   EXPECT_DOUBLE_EQ(c.high, 1.0);
 }
@@ -244,7 +246,8 @@ TEST(CompareClusters, ScenesWithoutAnyPairDoNotCount) {
   EXPECT_EQ(three.p, 1);
   EXPECT_TRUE(std::isinf(three.high) && std::isinf(three.detectable));
 
-  // If there are enough scenes, those without a pair change neither p nor what is detectable.
+  // If there are enough scenes, those without a pair change neither p nor the smallest detectable
+  // difference.
   scenes = scenes_of({1, 1, 0, 1, 1, 1}, 3);
   const Comparison six = compare_clusters(scenes, true, 1);
   scenes.insert(scenes.begin() + 2, 4, std::vector<PairedDifference>(2));

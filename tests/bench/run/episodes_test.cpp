@@ -115,7 +115,7 @@ TEST(Episodes, AProgramThatEndsEarlyOrBadlyIsReported) {
   const std::string ended =
       outside_error("[{name: broken, protocol: conversation, command: 'exit 7'}]");
   EXPECT_NE(ended.find("exited with code 7"), std::string::npos) << ended;
-  // Lost in every frame, and ends with an error code.
+  // A program that is lost in every frame and ends with an error code.
   const std::string sulked = outside_error(R"y([{name: sulking, protocol: conversation, command: "
     sed -u -E 's/^.\"id\":([0-9]+),\"do\":\"hello.*/{\"id\":\\1,\"protocol\":1}/; t;
     s/^.\"id\":([0-9]+),\"do\":\"(freeze|rewind|reset).*/{\"id\":\\1}/; t;

@@ -40,7 +40,7 @@ TEST(Forecast, SumsWhatIsLeftOverTheJobsButNoShorterThanTheLongestRun) {
   Forecast forecast;
   forecast.note(plain, 100);
   forecast.note(theirs, 10);
-  // 90 s are left of the running one; 100 and 10 s are needed for the waiting ones.
+  // The run in progress has 90 s left; the waiting runs need 100 and 10 s.
   const double both_s = forecast.of_all({&plain, &theirs}).value();
   EXPECT_EQ(forecast.to_go_s(both_s, {{plain, 10, 0, 0}}, 1), 200);
   EXPECT_EQ(forecast.to_go_s(both_s, {{plain, 10, 0, 0}}, 2), 100);

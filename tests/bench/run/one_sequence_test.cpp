@@ -172,7 +172,7 @@ TEST_F(Folder, AFrameThatCannotBeReadOrIsOfAnotherSizeIsSkippedAndCounted) {
   const auto images = load_tum_folder(folder_);
   std::ofstream(images[10].color) << "no image";
   fs::remove(images[12].depth);
-  // One image is replaced by one of a quarter of its size.
+  // One image is replaced by an image with a quarter of its pixels.
   Camera small = BoxRoom::camera();
   small.width_px /= 2;
   small.height_px /= 2;
@@ -277,7 +277,7 @@ TEST(OneSequence, ASmallMapIsGivenUpWhenTrackingIsLost) {
   EXPECT_NE(starts.csv.find("\n0.033333333,lost,"), std::string::npos)
       << "frames.csv says the same: " << starts.csv.substr(0, 300);
 
-  // If the lost frame itself cannot begin a map, a later one does.
+  // If the frame that is lost cannot begin a map itself, a later frame does.
   offered[3] = plain(0, 0.0F, 120);
   offered[4] = plain(0, 0.0F, 121);
   SlamState later = start();
@@ -402,8 +402,8 @@ class TumFr1Rpy : public testing::Test {
   SlamState state;
 };
 
-// The original ORB-SLAM2 tracks all of them with an ATE of 0.0257 m; without the readout time ours
-// is 0.0164 m.
+// The original ORB-SLAM2 tracks all 200 frames with an ATE of 0.0257 m; ours is 0.0164 m if the
+// readout time is ignored.
 TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
   const SlamRun result = run_slam(state, *sequence);
   EXPECT_EQ(result.log.tracked, 200);
@@ -413,8 +413,8 @@ TEST_F(TumFr1Rpy, IsTrackedWholeAndMoreAccuratelyThanByOrbSlam2) {
   EXPECT_EQ(score.pairs, 200U);
 }
 
-// Each query starts lost and is independent of the others. The expected pose comes from SLAM that
-// continues from the map.
+// Each query starts lost and is independent of the others. The expected poses come from SLAM that
+// goes on from the map with the same frames.
 TEST_F(TumFr1Rpy, LostFramesAreFoundInAMapOfEarlierOnes) {
   const RandomStream stream(0);
   state.camera.disparity_sigma_px = 0.1;

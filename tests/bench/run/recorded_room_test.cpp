@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For a run, a simulated tour and a recording of it are the same.
+// A run gives the same results on a simulated tour and on a recording of that tour.
 #include <unistd.h>
 
 #include <algorithm>

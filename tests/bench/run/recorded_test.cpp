@@ -223,8 +223,8 @@ TEST_F(Recorded, WithoutATruthAnswersAreSuccessesAndNothingElseIsSaid) {
   EXPECT_FALSE(summarize(loaded.points.front().held_out).correct);
   EXPECT_TRUE(std::isnan(loaded.place.mapping.length_m));
 
-  // The paper's method needs no ground truth: the query is interpolated between the estimates
-  // before and after it.
+  // The paper's method needs no ground truth: the query's reference pose is interpolated between
+  // the estimates before and after it.
   spec_.protocol.truth = QueryTruth::kInterpolated;
   EXPECT_EQ(summarize(run().points.front().held_out).correct, 1.0);
 }
@@ -308,12 +308,12 @@ TEST_F(Recorded, AFrameShownTwiceIsNotAskedAboutAsIfItWereNew) {
   int frame = 0;
   for (std::string line; std::getline(lines, line);) {
     doubled += line + "\n";
-    if (line[0] != '#' && ++frame == 29) doubled += line + "\n";  // index 28 also becomes index 29
+    if (line[0] != '#' && ++frame == 29) doubled += line + "\n";  // index 29 is a copy of 28
   }
   write(room() / "rgb.txt", doubled);
   const RunResult result = run();
   EXPECT_EQ(result.mapping.skipped.count, 1U);
-  ASSERT_EQ(result.points.front().held_out.size(), 1U);  // one of 29 and 59
+  ASSERT_EQ(result.points.front().held_out.size(), 1U);  // 29 was skipped, 59 is left
   EXPECT_EQ(result.points.front().held_out[0].answer.index, 59U);
 }
 
@@ -584,7 +584,7 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
       });
   // The key is made from exactly the inputs that a run is built from.
   EXPECT_EQ(run_key(spec_, world().inputs), key());
-  // The location is not part of it.
+  // The recording's location is not part of the key.
   const std::string before = key();
   fs::create_directories(folder_ / "elsewhere");
   fs::rename(room(), folder_ / "elsewhere" / "room");
@@ -690,8 +690,8 @@ TEST_F(Recorded, AFolderThatIsAnotherForAMomentLeavesNoResult) {
   }
 }
 
-// The key of a run covers everything that exists before anything runs, including all that the run
-// reads.
+// The key of a run covers everything that exists in the recording beforehand, not only what the run
+// reads: it is the same without labels.
 TEST_F(Recorded, TheKeyIsTheSameWhetherLabelsAreLeftOutOrNot) {
   write(folder_ / "classes.yaml", "1: chair\n");
   spec_.environment.classes = folder_ / "classes.yaml";

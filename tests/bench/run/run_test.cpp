@@ -221,7 +221,8 @@ TEST(RunOne, PutsTheQueriesUnderEachPoint) {
   for (const PointResult& point : runs[0].points) EXPECT_EQ(point.held_out.size(), 5u);
 }
 
-// A unit of work is one frame or one query under one point: 150 + 3 (5 + 3).
+// A unit of work is one frame or one query under one point: 150 frames + 3 points x (5 + 3)
+// queries.
 TEST(RunOne, ReportsTheShareOfItsWorkThatIsDone) {
   Place place;
   vary_alpha(place.suite);
@@ -256,8 +257,8 @@ TEST(RunOne, CountsWhatHappened) {
   EXPECT_GT(run.volume->voxel_count(), 0u);
 }
 
-// It answers for the first 29 frames, with twice the distance from the start: a fifth of the 145
-// frames that are not test frames. No queries are asked.
+// The program answers for the first 29 frames, with twice their true distance from the start. That
+// is a fifth of the 145 frames that are not test frames. It is asked no queries.
 TEST(RunOne, AnOutsideProgramsTrajectoryIsScoredByWhatItWasOffered) {
   const TemporaryFolder folder(std::filesystem::temp_directory_path());
   Trajectory answer = straight_path(29);
@@ -461,7 +462,7 @@ TEST(Sweep, TheBestPointIsComparedWithTheSuitesOwnSettings) {
     for (std::size_t q = 0; q < 5; ++q) runs[0].points[p].held_out[q].correct = q < correct[p];
   const std::vector<Row> rows = make_rows(place.suite, runs);
   const std::vector<SweepResult> results = sweep_results(place.suite, rows);
-  ASSERT_EQ(results.size(), 2u);  // for the plain system, only points that differ in alpha
+  ASSERT_EQ(results.size(), 2u);  // for the plain system, only the points with different alphas
   const auto best = best_point(place.suite, rows, results[0], QuerySet::kHeldOut);
   ASSERT_TRUE(best);
   EXPECT_EQ(best->point, 2u);
@@ -526,7 +527,7 @@ TEST(Results, WhatWasNotAskedIsADashNotZeroPercent) {
   place.suite.labels = {LabelMode::kExact};
   std::vector<RunResult> runs = place.run();
   ASSERT_EQ(runs[0].spec.system.name, "semantic");
-  runs[0].points[0] = {};  // as if a program had answered with only a trajectory
+  runs[0].points[0] = {};  // as if from a program that answered with only a trajectory
   place.suite.environments.push_back(place.suite.environments[0]);
   place.suite.environments[1].name = "other";
   for (const std::size_t places : {1u, 2u}) {
@@ -615,7 +616,7 @@ TEST(Topdown, KeepsItsTextWithinTheMarginsAndItsAnswersOnThePlan) {
   RunResult run = place.run()[0];
   const auto drawn = [&] { return draw_topdown(place.world, run, QuerySet::kSecondTour); };
   const auto ink = [](const cv::Mat& part) {
-    return cv::countNonZero(part.reshape(1) != 255);  // on a white background
+    return cv::countNonZero(part.reshape(1) != 255);  // the background is white
   };
   QueryScore& q = run.points[0].second_tour[0];
   q.correct = false;
@@ -695,7 +696,7 @@ TEST(Topdown, FurnitureIsCutAt40CmAndWallsAt120CmAboveTheFloor) {
     const double line = cv::norm(none, furniture);
     EXPECT_GT(line, 300);
     EXPECT_GT(cv::norm(furniture, wall), line);
-    // The last two may differ where the fence's two triangles meet.
+    // The images of the last two comparisons may differ where the fence's two triangles meet.
     EXPECT_EQ(cv::norm(none, drawn(0.39)), 0);
     EXPECT_LT(cv::norm(furniture, drawn(1.19)), 0.1 * line);
     EXPECT_LT(cv::norm(wall, drawn(2.5)), 0.1 * line);
@@ -775,7 +776,7 @@ TEST(Sweep, APointThatFailedInSomeScenesIsNeverBest) {
     place.suite.sweep.points.push_back(point);
   }
   std::vector<RunResult> all = place.run();
-  for (RunResult& run : all)  // the second point answers half as often
+  for (RunResult& run : all)  // half of the second point's answers are made wrong
     if (run.spec.points[0].alpha == 0.8)
       for (std::size_t q = 0; q < run.points[0].held_out.size(); q += 2)
         run.points[0].held_out[q].correct = false;

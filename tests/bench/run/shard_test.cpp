@@ -182,8 +182,8 @@ TEST(PredictedCost, ImagesAreThoseOfThePlaceWhateverTheLabels) {
   dose.level = "another.yaml";
   EXPECT_NE(images_of(dose), images_of(exact));
 }
-// Only for numbers that the runs allow: images cost as much as four runs, and a share consists of
-// whole runs.
+// Tests only numbers of shares into which the runs can be split evenly: images cost as much as four
+// runs, and a share consists of whole runs.
 
 TEST(Shares, OfTwentyFourRunsDifferByLessThanATenth) {
   for (const std::size_t parts : {2, 3, 4, 6, 8, 12})

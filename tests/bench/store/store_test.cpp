@@ -131,7 +131,7 @@ class StoreFile : public testing::Test {
     return s;
   }
 
-  /// A suite of one system that can be read back from a store's text of it.
+  /// A suite with one system, which can be read back from the text that a store keeps of it.
   Suite whole_suite() const {
     const fs::path file = folder_ / "suite.yaml";
     std::ofstream(file) << "environments: [{category: room, scene: r.yaml, mapping_tour: t.yaml}]\n"
@@ -179,8 +179,8 @@ class StoreFile : public testing::Test {
   fs::path folder_;
 };
 
-// What patterns matched and what --set gave is part of the results: they can be read on machines
-// without the scans.
+// The results include what the patterns matched and what --set gave, so they can be read on
+// machines without the scans.
 TEST_F(StoreFile, ASuiteOfRecordingsIsReadBackWhereTheRecordingsAreNot) {
   for (const char* name : {"scene0000_00", "scene0001_00"}) {
     fs::create_directories(folder_ / "scans" / name / "color");
@@ -313,7 +313,8 @@ TEST_F(StoreFile, AFileThatMayOnlyBeReadIsExportedAndMerged) {
   EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), {}), 1) << "nothing beside";
   EXPECT_EQ(read_file(file), bytes);
 
-  // The same file left by a process that was killed: part of it is in the write-ahead log.
+  // The same file as left by a process that was killed: part of its content is in the write-ahead
+  // log.
   for (const char* name : {"all.sqlite", "all.sqlite-wal", "all.sqlite-shm"})
     fs::remove(folder_ / name);
   fs::permissions(file.parent_path(), fs::perms::all);
@@ -390,8 +391,8 @@ TEST_F(StoreFile, ARunThatMetAFullDiskIsNoFailure) {
   EXPECT_TRUE(store.claim("k")) << "its claim was kept";
 }
 
-// These exit codes have our meaning only with an error that we reported: a library in the process
-// may exit with them, too.
+// These exit codes have our meaning only together with an error that we reported: a library in the
+// process may exit with them, too.
 TEST_F(StoreFile, AnExitCodeWithoutAnErrorOfOursIsAFailureOfTheRunAlone) {
   for (const int code : {kBadInputCode, kDiskFullCode, kInputChangedCode}) {
     Store store(folder_ / fmt::format("{}.sqlite", code));
@@ -424,7 +425,8 @@ TEST_F(StoreFile, BadInputFoundLateIsToldAsSuchAndStagesAreSaid) {
 }
 
 // Four runs: one that another process has finished meanwhile, one that failed there, one that
-// succeeds and one that does not. Each is counted once, and the share is that of the settled ones.
+// succeeds and one that does not. Each is counted once, and the reported share of work is that of
+// the runs that are settled.
 TEST_F(StoreFile, TheWorkDoneIsTheRunsThatAreSettled) {
   Store store(folder_ / "r.sqlite");
   store.put("done", some_run("a"), {});
@@ -491,7 +493,7 @@ TEST_F(StoreFile, TwoAtATimeAreAtImagesOfTheirOwnAsLongAsThereAreTwo) {
     const fs::path gate = folder_ / "gate";
     if (job.key == "b2") std::ofstream(gate) << "open";
     return std::vector<std::string>{job.key == "a1" ? gate
-                                                    : options.executable};  // waits for that file
+                                                    : options.executable};  // a1 waits for the gate
   };
   std::vector<Job> jobs;
   for (const char* key : {"a1", "a2", "b1", "b2"})

@@ -120,8 +120,8 @@ TEST_F(GateDigest, SeesEachFileAndSettingThatMakesTheRuns) {
   EXPECT_NE(digest("graded: {distance_m: [0, 2], angle_deg: [0, 30]}"), graded);
 }
 
-// The digest and the keys of the runs come from one reading: if a file changes after it, the runs
-// detect that.
+// The digest and the keys of the runs come from a single read of the files: if a file changes
+// afterwards, the runs detect that.
 TEST_F(GateDigest, IsOfTheFilesAsTheyWereRead) {
   const std::string before = digest();
   const Suite suite = load_suite(folder_ / "suite.yaml");

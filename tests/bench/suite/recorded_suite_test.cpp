@@ -89,7 +89,7 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
   EXPECT_EQ(names, (std::vector<std::string>{"semantic-recorded-recorded-0", "semantic-recorded-0",
                                              "plain-recorded-0", "semantic-recorded-recorded-1",
                                              "semantic-recorded-1", "plain-recorded-1"}));
-  // A separate process gets the same.
+  // Each run's description reaches a separate process unchanged.
   for (const RunSpec& spec : expand(suite)) {
     const RunSpec back = run_spec_from_json(to_json(spec));
     EXPECT_EQ(back.environment.sequence, e.sequence);
@@ -151,7 +151,7 @@ TEST_F(RecordedSuite, ASecondRecordingThatIsNeverQueriedIsNoted) {
   expect_in(unasked.notes[0], "no frame is queried, not even from the second tour of 'desk'");
 }
 
-// Statistics over scenes would otherwise count it twice.
+// Otherwise, statistics over scenes would count the place twice.
 TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
   fs::create_directory_symlink(folder_ / "desk", folder_ / "link");
   for (const char* other : {"tum:desk", "desk", "tum:desk/", "tum:scans/../desk", "tum:link"})
@@ -166,7 +166,7 @@ TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
             "suite.yaml:2: environments[0].queries: is the recording that is mapped");
   expect_in(error("- {category: desk, sequence: 'tum:desk', queries: 'tum:link/'}"),
             "is the recording that is mapped");
-  // With queries from a different recording it is a different environment.
+  // The same sequence with queries from a different recording is a different environment.
   EXPECT_EQ(load(std::string(kDesk) +
                  "\n- {category: table, sequence: 'tum:desk', queries: 'tum:desk_again'}")
                 .environments.size(),

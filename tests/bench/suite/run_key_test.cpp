@@ -147,7 +147,7 @@ class RunKey : public testing::Test {
     return folder_ / name;
   }
 
-  /// The description with a different, readable value at one place.
+  /// The description with a different value at one place, one that the field accepts.
   RunSpec with_another(const RunSpec& spec, const Pointer& place) const {
     const Json json = to_json(spec);
     const Json& old = json[place];
@@ -357,7 +357,8 @@ TEST_F(RunKey, ChangesWithAPointOrAnInputMoreAndWithWhatIsNotThere) {
   EXPECT_NE(run_key_of(changed), run_key_of(theirs_));
 }
 
-// Two files trade places: both are read, so each counts under its own name.
+// If two files trade places, the same files are read, but each under a different name, so the key
+// changes.
 TEST_F(RunKey, TellsWhichFileIsWhich) {
   RunSpec changed = ours_;
   std::swap(changed.environment.query_tour, changed.environment.kidnapped_tour);

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with the suite and files for it to name.
+/// A folder with the suite and the files that it names.
 class SuiteFile : public testing::Test {
  protected:
   SuiteFile() : folder_(fs::temp_directory_path() / ("mh_suite_" + std::to_string(getpid()))) {
@@ -87,7 +87,7 @@ TEST_F(SuiteFile, IsJudgedByCorrectAnswersUnlessItNamesSuccess) {
   EXPECT_EQ(load("measure: success\n").measure, Measure::kSuccess);
   EXPECT_NE(error("measure: sucess\n").find("'sucess' is not one of correct, success"),
             std::string::npos);
-  // Suites whose designs were fixed before measuring use success.
+  // Suites whose designs were fixed before any measurement use success as their measure.
   for (const char* name : {"arms", "rules_verdict", "table1", "like_rooms"})
     EXPECT_EQ(load_suite(shipped_file(name, Shipped::kSuite)).measure, Measure::kSuccess) << name;
   EXPECT_EQ(load_suite(shipped_file("model_house", Shipped::kSuite)).measure, Measure::kCorrect);
@@ -168,7 +168,7 @@ TEST_F(SuiteFile, ExpandsToOneRunPerSystemLabelsLevelTrialAndThePlainOnce) {
 TEST_F(SuiteFile, EveryKindOfLabelsReachesARunOfItsOwn) {
   const std::vector<RunSpec> runs =
       expand(load("", "[pepper.yaml]", "[exact, annotated, boxes, detector]"));
-  ASSERT_EQ(runs.size(), 5u);  // and one for the plain system
+  ASSERT_EQ(runs.size(), 5u);  // four for the semantic system, one for the plain system
   for (const RunSpec& run : runs) EXPECT_EQ(run_spec_from_json(to_json(run)).labels, run.labels);
   EXPECT_EQ(runs[1].name, "semantic-annotated-pepper-0");
   EXPECT_EQ(runs[1].labels, LabelMode::kAnnotated);
@@ -501,8 +501,8 @@ TEST_F(SuiteFile, ASweepTakesAnySetting) {
 }
 
 // Sobol's sequence by the recurrence of Joe and Kuo ("Constructing Sobol sequences with better
-// two-dimensional projections", 2008), in integers and from the first rows of their table; each
-// axis is shifted by its own bits, which are those of point 0.
+// two-dimensional projections", 2008), computed in integers from the first rows of their table.
+// Each axis is shifted by its own bits, which are those of point 0.
 TEST(Sobol, IsTheSequenceOfJoeAndKuoShifted) {
   struct Row {
     unsigned s, a;

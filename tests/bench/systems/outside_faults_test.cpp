@@ -227,7 +227,7 @@ TEST_F(OutsideFaults, TimeAndMemoryAreLimited) {
   EXPECT_HOLDS(trajectory_error(sleeper), "was still running after 0.3 s");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 
-  // tail stores the only line of its input, which never ends.
+  // tail keeps its input's last line in memory, and this line never ends.
   OutsideProgram glutton = program(OutsideMode::kTrajectory, "tail /dev/zero; : {trajectory}");
   glutton.memory_limit_mb = 50;
   EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
@@ -300,7 +300,8 @@ TEST_F(OutsideFaults, AProgramThatStopsItsWatcherIsEndedInTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
-// The next image cannot be written there, which must not be reported as a full disk.
+// If the program removes the folder of its images, the next image cannot be written, which must not
+// be reported as a full disk.
 TEST_F(OutsideFaults, AProgramThatRemovesTheFolderOfItsImagesFailsUnlessItCannot) {
   const OutsideProgram p = says(
       R"sh(rm -rf "$(dirname "$(echo "$line" | sed 's/.*"color":"//; s/".*//')")"; )sh"
@@ -432,7 +433,8 @@ TEST_F(OutsideFaults, NothingIsWrittenThroughALinkOfAProgram) {
   EXPECT_EQ(read_file(mine), "mine");
   EXPECT_EQ(read_file(folder_ / "out" / "outside.log"), "said\n");
   EXPECT_HOLDS(read_file(folder_ / "out" / "outside" / ProgramFolder::kList), "trajectory.txt\n");
-  // A folder of that name, and folders without write permission, are replaced by the next run, too.
+  // A folder with the name of the list of files, and folders without write permission, are also
+  // replaced by the next run.
   const std::string locks =
       "cd $(dirname {trajectory}); echo 1 0 0 0 0 0 0 1 > {trajectory}; mkdir -p "
       ".modelhouse-files/a b; touch b/c; chmod 500 b; chmod 500 .";
@@ -555,7 +557,7 @@ TEST_F(OutsideFaults, WhatAProgramIsToldLiesBelowNoResults) {
 
 TEST_F(OutsideFaults, WhatIsSaidIsBounded) {
   const auto start = std::chrono::steady_clock::now();
-  // It would write 3 GB if it could.
+  // The program would write 3 GB if it could.
   EXPECT_HOLDS(trajectory_error(program(OutsideMode::kTrajectory,
                                         "yes 'all is well' | head -c 3000000000; : {trajectory}")),
                "wrote more than 64 MB to its log, the limit");
@@ -602,7 +604,7 @@ TEST_F(OutsideFaults, ARunMeetsNothingOfAnEarlierOne) {
   const std::set<std::string> all = {"dataset", "edited", "map.bin", "trajectory.txt",
                                      ProgramFolder::kList};
   EXPECT_EQ(names_in(kept), all);
-  // The next run's files replace those of the first run, which it has not seen.
+  // The second run does not see the first run's files, and its own files replace them.
   std::ofstream(kept / "trajectory.txt", std::ios::app) << "# read by hand\n";
   fs::remove(kept / "trajectory.txt");
   const std::string second = look_about();

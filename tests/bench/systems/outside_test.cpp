@@ -248,7 +248,7 @@ TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
   EXPECT_EQ(score.completeness, 1.0);
   ASSERT_TRUE(score.ate_rmse_m);
   EXPECT_LT(*score.ate_rmse_m,
-            0.05);  // odometry drifts, it adjusts nothing; the camera sways by 0.4 m
+            0.05);  // odometry drifts, since it adjusts no earlier poses; the camera sways by 0.4 m
   EXPECT_GT(*score.ate_rmse_m, 1e-6);  // there is noise: no system can be this accurate
 
   for (const std::size_t index : test_frames(kCount, {})) {
@@ -328,7 +328,8 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
       write_dataset(folder_ / "given" / "dataset", camera(), offered.size(),
                     [&](std::size_t k) { return frame(offered[k], noise); });
   OutsideProgram program{.name = "vo"};
-  // `find` prints the names of all files that the program gets to standard output, its log.
+  // `find` prints the names of all files that the program gets; its standard output becomes the
+  // log.
   program.command =
       "find {dataset} && " VO_RUN_DATASET " {dataset} {associations} {settings} {trajectory}";
   std::size_t read = 0;
@@ -349,8 +350,8 @@ TEST_F(OutsideOdometry, BothModesGiveOneTrajectoryAndTheTruthStaysOutside) {
     EXPECT_EQ(given.find(part), std::string::npos) << part;
 }
 
-// The camera sees nothing for 15 frames: wheel odometry that drifts by 1 % gives its pose, in all
-// three forms.
+// The camera sees nothing for 15 frames, so wheel odometry that drifts by 1 % has to give its pose.
+// The odometry runs as a library, in conversation and on a data set.
 TEST_F(OutsideOdometry, FallsBackOnTheWheels) {
   const auto wheeled = [](std::size_t i, RandomStream noise) {
     RgbdFrame shown = frame(i, noise);

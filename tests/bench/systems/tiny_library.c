@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A system in C99 that stands still: the least that a library must do. Its settings file holds the
- * words of what it is to do wrong; a word that is not known does nothing. */
+ * words for what it is to do wrong; unknown words have no effect. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

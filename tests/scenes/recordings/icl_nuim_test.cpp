@@ -84,8 +84,8 @@ TEST_F(IclNuim, AnotherCameraKeepsTheScaleOfItsDepth) {
   EXPECT_EQ(opened.sequence->frame(0, RandomStream()).depth_m(7, 5), 1.5F);
 }
 
-// In the renderer's world y points up and rotations are mirrored: a camera that moves up by 1 m and
-// yaws moves by -1 m along y and yaws about the axis that points down.
+// In the renderer's world, y points up and rotations are mirrored: if the renderer's camera moves
+// up by 1 m and yaws, ours moves by -1 m along y and yaws about the axis that points down.
 TEST_F(IclNuim, PosesAreReflectedIntoTheCamerasFrame) {
   write_truth("0 1 2 3 0.1 0.2 0.3 0.9273618495495704\n");
   const Trajectory truth = *open_sequence("icl_nuim:" + folder_.string(), {}).sequence->truth();

@@ -107,7 +107,7 @@ class RosRecording : public TemporaryFolder, public testing::WithParamInterface<
   }
 };
 
-/// What a different robot may send; its topics are chosen by each test.
+/// What a robot other than ours may publish; each test chooses the topics.
 class Foreign {
  public:
   explicit Foreign(ros::Wire wire) : log_(wire) {}
@@ -229,7 +229,7 @@ TEST_P(RosRecording, WithoutLabelsWhereNoneAreWanted) {
   EXPECT_TRUE(opened.sequence->frame(0, RandomStream(0)).semantics.index.empty());
 }
 
-// Otherwise the key of a run that uses no labels would differ from the key in its plan.
+// If it were not read, the key of a run that uses no labels would differ from the key in its plan.
 TEST_P(RosRecording, AClassMapIsReadEvenWhereLabelsAreLeftOut) {
   record();
   std::ofstream(folder_ / "classes.yaml") << "1: chair\n2: table\n";
@@ -861,7 +861,8 @@ TEST_P(Unregistered, DepthIsRegisteredByWhatRealSensesRecorderStates) {
   add_cameras(
       robot, "/device_0/sensor_1/Color_0/image/data", "/device_0/sensor_1/Color_0/info/camera_info",
       "/device_0/sensor_0/Depth_0/image/data", "/device_0/sensor_0/Depth_0/info/camera_info");
-  // From the reference to the stream: the reference is 1 m to the right of the depth camera.
+  // Each transform leads from a common reference, 1 m to the right of the depth camera, to the
+  // stream.
   robot.add("/device_0/sensor_0/Depth_0/tf/0", 0, ros::Transform{{1, 0, 0}, {}});
   robot.add("/device_0/sensor_1/Color_0/tf/0", 0, ros::Transform{{1.5, 0, 0}, {}});
   robot.write(writer());

@@ -53,7 +53,7 @@ TEST(ScanByHand, MovesAsRealCamerasDo) {
   EXPECT_NEAR(percentile(speeds.angular_deg_per_s, 0.25), 8.1, 4);
   EXPECT_NEAR(percentile(speeds.angular_deg_per_s, 0.5), 13.4, 5);
   EXPECT_NEAR(percentile(speeds.angular_deg_per_s, 0.75), 18.7, 8);
-  // Turns as fast as in TUM's fr1/rpy.
+  // The camera turns as fast as in TUM's fr1/rpy.
   const double top = percentile(speeds.angular_deg_per_s, 1.0);
   EXPECT_GT(top, 60);
   EXPECT_LT(top, 150);

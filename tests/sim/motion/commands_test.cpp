@@ -110,9 +110,9 @@ TEST(Commands, TheReflexKeepsItsDistanceAtAnySpeedAndSlant) {
       script.start_heading_rad = heading_deg * M_PI / 180;
       const double x =
           drive(empty_room(), robot, script).path.base.back().world_from_camera.translation().x();
-      // The distance left along the path: until the shell's foremost point would touch the wall, or
-      // until wall that is less than aside_m to the side of the shell would be level with the
-      // center.
+      // The distance left along the path is the smaller of two: to where the shell's foremost point
+      // would touch the wall, and to where a part of the wall that is less than aside_m to the side
+      // of the shell would be level with the center.
       const double slant = std::tan(script.start_heading_rad), half_m = 0.26 + 0.10;
       const double touch_m = (10 - x - 0.26) / std::cos(script.start_heading_rad);
       const double level_m = (10 - x) / std::cos(script.start_heading_rad) - half_m * slant;

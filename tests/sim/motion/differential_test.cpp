@@ -206,8 +206,8 @@ TEST(Drive, AnAutomaticTourOfATwoWheeledRobotTouchesNothing) {
 TEST(Drive, ATwoWheeledRobotThatIsPushedAsideSteersBack) {
   const Robot robot = turtlebot();
   MovingObstacle pedestrian{.instance = 90, .path = [](double t) {
-                              // Comes from the side as the robot passes, pushes it by a few cm, and
-                              // leaves.
+                              // The pedestrian comes from the side as the robot passes, pushes it
+                              // by a few cm, and leaves.
                               const double y = 4.2 + std::clamp(0.3 * (t - 6.7), 0.0, 0.4) -
                                                std::max(0.0, 0.3 * (t - 8.2));
                               return Vector2d(3.9, y);
@@ -255,7 +255,7 @@ TEST(Commands, WhatTheRobotLacksIsToldWithFileAndLine) {
   EXPECT_EQ(refusal(robot, script),
             "test.yaml: robot 'turtlebot3' has no reflex to enable (its file: "
             "equipment.collision_reflex)");
-  // Without wheels, or without equipment, any direction is possible.
+  // A robot without wheels, or without equipment, can move in any direction.
   auto equipment = std::make_shared<Equipment>(*robot.equipment);
   equipment->wheels.reset();
   robot.equipment = equipment;
@@ -281,7 +281,7 @@ TEST(Commands, ATwoWheeledRobotObeysWithoutMovingSideways) {
     EXPECT_LT(sideways(path.base, wheels).middle_m_per_s, kNotSideways_m_per_s);
     EXPECT_LE(path.peaks.rim_m_per_s, wheels.max_rim_m_per_s);
     EXPECT_GT(path.peaks.rim_m_per_s, 0.9 * wheels.max_rim_m_per_s);
-    // After the first command it has driven straight ahead by v t - v^2 / (2 a).
+    // After the first command, the robot has driven straight ahead by v t - v^2 / (2 a).
     EXPECT_NEAR(path.base[90].world_from_camera.translation().x(), 5.6 - 0.008, 2e-3);
     // The odometry from its encoders gives its true position.
     const Trajectory odometry = read_sensors(empty_room(), robot, path.base, 0).odometry;

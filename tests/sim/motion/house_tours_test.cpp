@@ -64,7 +64,7 @@ TEST(HouseTours, MappingLeadsThroughAllRoomsAndBack) {
   EXPECT_LE(path.length_m, 70.0);
   EXPECT_LE(path.camera.size(), 4500U);
   EXPECT_GE(path.turned_in_place_rad, 4 * M_PI);
-  // It ends where it began, facing the same direction.
+  // The tour ends where it began, facing the same direction.
   const SE3& first = path.base.front().world_from_camera;
   const SE3& last = path.base.back().world_from_camera;
   EXPECT_LT((last.translation() - first.translation()).norm(), 0.02);

@@ -45,7 +45,7 @@ double off_corner_m(const Tour& tour, std::size_t i) {
 
 class TourLimits : public testing::TestWithParam<Case> {};
 
-// For the base as moved by Bullet, not as planned.
+// Checks the base as moved by Bullet, not as planned.
 TEST_P(TourLimits, AreKeptPastEveryWaypointAndClearOfEverything) {
   const Robot robot = load_robot(kRoot + GetParam().robot);
   const Tour tour = load_tour(kRoot + GetParam().tour);
@@ -59,8 +59,8 @@ TEST_P(TourLimits, AreKeptPastEveryWaypointAndClearOfEverything) {
       return (path.base[k].world_from_camera.translation().head<2>() - tour.waypoints[i].position_m)
           .norm();
     };
-    // In addition to the rounding of the corner: the smoothing, and half the distance between two
-    // frames.
+    // The distance allows for the rounding of the corner, for the smoothing, and for half the
+    // distance between two frames.
     const double enough_m = off_corner_m(tour, i) + 0.025;
     while (from < path.base.size() && distance_m(from) > enough_m) ++from;
     ASSERT_LT(from, path.base.size()) << "waypoint " << i + 1;

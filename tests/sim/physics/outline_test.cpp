@@ -44,7 +44,7 @@ TEST(Outline, LeavesOutWhatIsBetweenTwoFaces) {
                   6);  // the outline of both boxes together
 }
 
-/// Distance on the floor to the nearest face in the range of heights, by testing each face.
+/// Horizontal distance to the nearest face in the range of heights, found by testing each face.
 double distance_m(const Scene& scene, float top_m, const Vector2d& p) {
   double least = 1e9;
   for_each_face_in_band(

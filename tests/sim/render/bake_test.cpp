@@ -42,7 +42,8 @@ TEST(BakeLight, FloorUnderALampFollowsInverseSquareAndCosine) {
   for (std::size_t v = 0; v < scene.light.size(); ++v) {
     const float distance = (scene.positions_m[v] - Vector3f(0, 0, 1.5F)).norm();
     const float expected = 2.0F * (1.5F / distance) / (distance * distance) / kPi;
-    // Averages over cells of 10 cm at 1.5 m and a lamp of 5 cm: 2 %; at the border, half a cell.
+    // Tolerance: 2 % for averages over cells of 10 cm at a distance of 1.5 m and for a lamp of 5
+    // cm; more at the border, where samples are up to half a cell to one side of the vertex.
     const bool border = scene.positions_m[v].head<2>().cwiseAbs().maxCoeff() > 1.95F;
     ASSERT_NEAR(scene.light[v].x(), expected, (border ? 0.06F : 0.02F) * expected);
     ASSERT_NEAR(scene.light[v].y(), 0.5F * scene.light[v].x(), 1e-6);
@@ -138,7 +139,7 @@ TEST(BakeLight, RoomsAreDarkWithoutLightEvenUnderABrightSky) {
   scene.lights.push_back({.kind = Light::Kind::kSky, .color = {9, 9, 9}});
   scene.lights.push_back(sphere_lamp({1.5F, 1.5F, 2.0F}, 1.0F));
   bake_light(scene);
-  // Only the lamp lights the room: values are far below the sky's radiance.
+  // The room is lit only by the lamp, so values are far below the sky's radiance.
   for (const Vector3f& light : scene.light) {
     ASSERT_GT(light.x(), 0.01F);
     ASSERT_LT(light.x(), 3.0F);

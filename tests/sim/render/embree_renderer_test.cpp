@@ -44,7 +44,7 @@ TEST(Encode, IsTheTableForEveryEntry) {
   };
   for (int i = 0; i <= kSrgbTableMax; ++i) {
     const auto place = static_cast<float>(i), last = static_cast<float>(kSrgbTableMax);
-    // The entry itself, and both ends of the interval that belongs to it.
+    // The value of the entry itself, and both ends of the interval for which the entry is used.
     expect(place / last, (place - 0.49F) / last, (place + 0.49F) / last);
   }
   expect(-1.0F, 1.5F, 1e30F);
@@ -65,7 +65,7 @@ TEST(EmbreeRenderer, SmoothEdgesMixLightAndLeaveTheRestAlone) {
   EXPECT_EQ(sharp.depth_m, smooth.depth_m);
   EXPECT_EQ(sharp.classes, smooth.classes);
   EXPECT_EQ(sharp.instances, smooth.instances);
-  // One of three samples is white.
+  // One of the pixel's three samples is white.
   EXPECT_NEAR(smooth.color(320, 240).g, linear_to_srgb(1.0F / 3.0F), 1);
   EXPECT_EQ(sharp.color(320, 240).g, 0);
   for (int x = 0; x < camera.width_px; ++x)
@@ -171,7 +171,8 @@ TEST(EmbreeRenderer, SupersamplingIsTheMeanOfFourFinerPixels) {
       Vector3f sum = Vector3f::Zero();
       for (const int i : {0, 1})
         for (const int j : {0, 1}) sum += srgb_to_linear(fine.color(2 * x + i, 2 * y + j));
-      // Two roundings: to the levels of the fine pixels and to those of the mean.
+      // The tolerance allows for two roundings: to the levels of the fine pixels and to those of
+      // the mean.
       ASSERT_NEAR(mean.color(x, y).g, linear_to_srgb(sum.y() / 4.0F), 2) << x << " " << y;
     }
   EXPECT_NE(mean.color, centers.color);
@@ -198,7 +199,7 @@ TEST(EmbreeRenderer, ThreadsAndImagesNotMultiplesOfATileChangeNoBit) {
   EXPECT_EQ(one.instances, two.instances);
   EXPECT_NE(one.instances(166, 125), 0);
 
-  // The same rays in a wider image: the left part is equal to the bit.
+  // A wider image has the same rays in its left part, which must be equal to the bit.
   Camera wider = camera;
   wider.width_px = 400;
   const RenderedFrame wide = make_embree_renderer(scene)->render(wider, kIdentity);

@@ -304,8 +304,8 @@ TEST_P(BothRenderers, MagnifiedTextureIsBilinearInLinearLight) {
       const double v = ((y - 239.5) * 0.002 + 0.48) / 0.96 + 3.0;
       const Vector3f truth = bilinear_truth(scene.materials[0].texture, u, v)
                                  .cwiseProduct(srgb_to_linear(scene.materials[0].base_color));
-      // One gray level: the gain is stored in half precision (one part in 2048), and the output is
-      // rounded.
+      // The tolerance is one gray level: the gain is stored in half precision (one part in 2048),
+      // and the output is rounded.
       ASSERT_NEAR(frame.color(x, y).r, linear_to_srgb(truth.x()), 1) << x << " " << y;
       ASSERT_NEAR(frame.color(x, y).g, linear_to_srgb(truth.y()), 1) << x << " " << y;
       ASSERT_NEAR(frame.color(x, y).b, linear_to_srgb(truth.z()), 1) << x << " " << y;
@@ -397,7 +397,8 @@ TEST_P(BothRenderers, TexelsPerPixelChooseTheMipLevel) {
   };
   EXPECT_GT(contrast(0.97), 0.97);  // level 0; the logarithm is accurate to 0.05
   EXPECT_LT(contrast(2.1), 0.03);   // level 1
-  // Halfway between them (sqrt 2 texels), half of level 0 is left at the centers of the columns.
+  // Halfway between them (sqrt 2 texels), half of level 0's contrast is left at the centers of the
+  // columns.
   EXPECT_NEAR(contrast(std::numbers::sqrt2), 0.5, 0.06);
 }
 

@@ -161,7 +161,8 @@ TEST(Lens, WithoutDistortionNothingChanges) {
 TEST(LensBlur, SpreadsAPointByItsSigmaAndLosesNoLight) {
   for (const double sigma : {0.7, 2.0}) {
     Grid2d<Rgb8> color(61, 41);
-    // A block of 9 x 9 pixels, so that 8 bits suffice: its own variance is (81 - 1) / 12.
+    // A block of 9 x 9 pixels instead of a single one, so that 8 bits suffice: its own variance is
+    // (81 - 1) / 12.
     for (int y = 16; y <= 24; ++y)
       for (int x = 26; x <= 34; ++x) color(x, y) = {255, 255, 255};
     blur_by_lens(color, sigma);
@@ -207,8 +208,8 @@ TEST(Processing, SharpensEachFrequencyAsAnUnsharpMaskDoes) {
       const double before = amplitude();
       process(color, {.sharpening = 1.5, .sharpening_px = sigma});
       const double passed = std::exp(-2.0 * std::pow(std::numbers::pi * sigma / period, 2));
-      // 1 %: half a gray level of at least 50, where all samples of a short wave are rounded
-      // identically.
+      // Rounding may cost 1 %: all samples of a short wave may be rounded by the same half gray
+      // level, and its amplitude is at least 50.
       EXPECT_NEAR(amplitude() / before, 1 + 1.5 * (1 - passed), 0.02) << sigma << " " << period;
     }
 }
@@ -218,7 +219,8 @@ TEST(Processing, AStepOvershootsAsMuchOnBothSidesAndOnlyNearIt) {
   for (int y = 20; y < 40; ++y)
     for (int x = 0; x < 40; ++x) color(x, y) = {140, 150, 160};
   process(color, {.sharpening = 0.5, .sharpening_px = 1.0});
-  // The first row after a step of 40 lacks half of the weight outside the central one.
+  // For the first row after a step of 40, half of the weight outside the central row lies on the
+  // other side of the step.
   const double middle = 1.0 / (1 + 2 * (std::exp(-0.5) + std::exp(-2.0) + std::exp(-4.5)));
   const int over = static_cast<int>(std::lround(0.5 * 40 * 0.5 * (1 - middle)));
   EXPECT_NEAR(color(20, 20).r, 140 + over, 1);
@@ -253,7 +255,8 @@ TEST(Processing, ItsToneCurveKeepsBothEndsAndSteepensTheMiddle) {
   process(grays, {.contrast = 0.5});
   EXPECT_EQ(grays(0, 1).g, 0);
   EXPECT_EQ(grays(255, 1).g, 255);
-  // At a quarter, 3/16 - 1/32 = 5/32 of full scale is added with a weight of one half.
+  // At a quarter of full scale, the S-curve is 3/16 - 1/32 = 5/32; the output is the mean of that
+  // and the input.
   EXPECT_NEAR(grays(64, 1).g, 255 * 0.5 * (0.25 + 5.0 / 32.0), 1.0);
   EXPECT_NEAR(grays(148, 1).g - grays(108, 1).g, 1.25 * 40, 1.0);
   for (int x = 0; x < 255; ++x) EXPECT_LE(grays(x, 1).g, grays(x + 1, 1).g);

@@ -29,7 +29,7 @@ TEST(DepthBias, ScaleIsAFactor) {
   for (const float z : scaled) EXPECT_FLOAT_EQ(z, 2.07F);
 }
 
-// f is linear in s, so the mean over both signs is half of the sum of the squares at s = -1 and 1.
+// The mean of f^2 is taken over the image and over the two ends of distance, s = -1 and s = 1.
 TEST(DepthBias, BendIsTheRootMeanSquareOverImageAndDistance) {
   for (const std::uint64_t camera : {0, 1, 2}) {
     double squares = 0, sum = 0;

@@ -189,7 +189,7 @@ class PlainDepthSensor {
     const float squares = (nx * nx + ny * ny + nz * nz) * (a * a + b * b + 1.0F);
     return {inverse(x, y), sx, sy, inverse(x, y) / std::sqrt(squares + 1e-30F)};
   }
-  /// In steps of 1/1024 of the cosine, as tabulated by the sensor.
+  /// The angle of incidence, with its cosine rounded to 1/1024 as in the sensor's table.
   static double incidence(const Surface& surface) {
     return std::acos(
         static_cast<double>(static_cast<int>(std::min(surface.cosine, 1.0F) * 1024 + 0.5F)) / 1024);

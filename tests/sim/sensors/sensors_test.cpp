@@ -136,7 +136,7 @@ TEST(DepthNoise, LateralNoiseMovesEdgesAndNothingElse) {
         ASSERT_NEAR(frame.depth_m(x, y), truth.depth_m(x, y), 1e-5);
       }
 
-  // It changes nothing on a smooth slope: inverse depth is affine there.
+  // Lateral noise changes nothing on a smooth slope, where inverse depth is affine.
   const RenderedFrame slope = leaning_plane(2.0, 0.9);
   const RgbdFrame slid = sensed(slope, config);
   for (int y = 0; y < kCamera.height_px; ++y)

@@ -45,7 +45,8 @@ TEST(RecognizeHead, GoesByTheOutputsShape) {
   EXPECT_EQ(of(Made({1, 41, 8})), Head::kAuto);
 }
 
-// Yolo-FastestV2's 22 x 22 x 95 must not be read as 22 classes, nor YOLOv4's raw scales as 255.
+// Outputs of detectors must not be taken for segmentation: Yolo-FastestV2's 22 x 22 x 95 is not 22
+// classes, and YOLOv4's raw scales are not 255.
 TEST(RecognizeHead, TakesNoDetectorsScalesForSegmentation) {
   const auto of = [](const std::vector<Made>& made) {
     std::vector<Tensor> tensors;
@@ -90,7 +91,7 @@ TEST(RecognizeHead, TellsBoxesInColumnsOfASquareByTheirPlaces) {
   EXPECT_EQ(recognize_head({&by_row, 1}, kSquare, false), Head::kYoloxDecoded);
   EXPECT_EQ(recognize_head({&by_column, 1}, kSquare, false), Head::kYolov8);
   EXPECT_EQ(class_count(Head::kYolov8, {&by_column, 1}, kSquare), 80);
-  // More classes than cells.
+  // There may be more classes than cells.
   const Tensor tall{{1, 84, 21}, {columns.values.data(), 84 * 21}};
   EXPECT_EQ(class_count(Head::kYolov8, {&tall, 1}, {32, 32}), 80);
 }

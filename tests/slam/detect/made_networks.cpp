@@ -183,7 +183,7 @@ std::string onnx_yolov8_export(int width, int height, const MadeExport& as) {
            node("Softmax", {"turned"}, {"shares"}, integer("axis", 1)) +
            node("Conv", {"shares", "bins"}, {"mean"}, list("kernel_shape", {1, 1})) +
            node("Reshape", {"mean", "by_side"}, {"sides"});
-  // As PyTorch writes chunk(2, 1): half of the size is computed from the shape.
+  // PyTorch exports chunk(2, 1) like this: half of the size is computed from the shape.
   nodes += node("Shape", {"sides"}, {"shape"}) + constant_node("one", {}, {1}) +
            constant_node("halves", {}, {2}) + constant_node("axis", {1}, {1}) +
            constant_node("zero", {1}, {0}) + constant_node("times_one", {1}, {1}) +

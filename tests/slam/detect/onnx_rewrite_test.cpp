@@ -96,7 +96,7 @@ TEST(RewriteOnnx, TakesSizesOfSplitFromItsInput) {
   expect_near(result(integers("s", {1, 2}) +
                      node("Split", {"image", "s"}, {"a", "b"}, integer("axis", -3)) + joined),
               each(turned));
-  // With opset 18, the last part is smaller.
+  // From opset 18 on, the last part of a split may be smaller.
   expect_near(
       result(node("Split", {"image"}, {"b", "a"}, integer("axis", 1) + integer("num_outputs", 2)) +
                  node("Concat", {"a", "b"}, {"output"}, integer("axis", 1)),

@@ -103,8 +103,8 @@ TEST(FastCorners, EqualThoseOfOpenCv) {
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)), 4, 10);
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 90)).clone(), 4, 10);
   }
-  // Narrower than a register, so processed pixel by pixel. 38 columns have 30 to search and 32 to
-  // fill.
+  // Narrower than a register, so processed pixel by pixel. With 38 columns, 30 are searched and 32
+  // are filled.
   for (const int width : {14, 20, 31, 37, 38, 39})
     expect_equal_to_opencv(image(cv::Rect(11, 5, width, 300)), 4, 10);
 }

@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-// Compared with a scan of all keypoints: the result is those in the cells of 16 px that the square
+// The result must equal that of a scan of all keypoints: those in the 16 px cells that the square
 // touches, cell by cell from the upper left and in order within a cell; none twice, and no others.
 TEST(FeatureGrid, VisitsExactlyWhatLiesInTheCellsThatASquareTouches) {
   Camera camera;

@@ -178,7 +178,8 @@ TEST(Extract, LowThresholdServesCellsWithoutStrongCorners) {
 }
 
 TEST(Extract, MirroredImagesHaveMirroredKeypointsOnEveryLevel) {
-  // This fails by scale - 1 px if levels are not mapped center to center (as with u = x * scale).
+  // The positions are off by scale - 1 px if levels are not mapped center to center (as with u = x
+  // * scale).
   const cv::Mat image = squares(kWidth, kHeight, 12);
   cv::Mat mirrored;
   cv::flip(image, mirrored, /*both axes=*/-1);

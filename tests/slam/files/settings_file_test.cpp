@@ -261,7 +261,7 @@ TEST(Settings, OrbSlamsFilesAreCheckedToo) {
   EXPECT_EQ(parse_settings(std::string(kTum1) + "InsertKFsWhenLost: 0\n", "s.yaml").camera,
             parse_settings(kTum1, "s.yaml").camera);
 
-  // As in other files of the original: a key that occurs twice with the same value, a matrix
+  // Other files of the original have a key that occurs twice with the same value, and a matrix
   // without spaces.
   EXPECT_EQ(parse_settings(std::string(kTum1) + "Camera.width: 640\nCamera.bFishEye: 0\n" +
                                "LEFT.D: !!opencv-matrix\n   rows: 1\n   cols: 2\n   dt: d\n" +

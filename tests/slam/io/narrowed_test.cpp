@@ -15,7 +15,7 @@ namespace {
 
 template <class To, class From>
 void expect_limits_of() {
-  // A value that From cannot distinguish from a limit is also handled like the limit's neighbor.
+  // The upper limit is tested only if From can tell it from the next number.
   EXPECT_EQ(narrowed<To>(From{0}), To{0});
   EXPECT_EQ(narrowed<To>(From{100}), To{100});
   if constexpr (std::numeric_limits<From>::digits > std::numeric_limits<To>::digits) {

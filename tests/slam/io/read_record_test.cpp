@@ -172,7 +172,7 @@ TEST(RequireUnchanged, SeesEveryChangeAlsoOneThatWasTakenBack) {
       map_file(folder / "table");
       is_there(folder / "labels");
     });
-    // As passed on by another process.
+    // The record also works after it was passed on by another process.
     record = decode_read_record(encode(record));
     EXPECT_NO_THROW(require_unchanged(record));
     write_atomically(folder / "other", "was not looked for");

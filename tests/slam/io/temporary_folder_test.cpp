@@ -66,7 +66,7 @@ TEST_F(TemporaryFolders, WhatOthersNamedAlikeStays) {
   fs::create_directories(elsewhere);
   std::ofstream(elsewhere / "cat.jpg") << "mine";
   fs::copy(left / OwnedFolder::kMarker, elsewhere / OwnedFolder::kMarker);
-  // For a process that cannot exist: ids end at 2^22.
+  // A folder of a process that cannot exist: ids end at 2^22.
   const fs::path no_marker = folder_ / (host + ".99999999.0");
   fs::create_directories(no_marker);
   std::ofstream(no_marker / "notes.txt") << "mine";

@@ -15,8 +15,8 @@ namespace {
 using testing_support::BoxRoom;
 using testing_support::kTurnFrames;
 
-/// Bends the map like drift: not at the first keyframe, fully at the newest one, and evenly in
-/// between. Tracking continues from the bent end.
+/// Bends the map like drift: by nothing at the first keyframe, fully at the newest one, and
+/// proportionally in between. Tracking continues from the bent end.
 void inject_drift(SlamState& state, const Vector6d& drift) {
   const double last = static_cast<double>(state.map.keyframes().size() - 1);
   const auto bend = [&](KeyframeId k) { return SE3::exp(drift * (k.value / last)); };
@@ -98,7 +98,8 @@ TEST(Loop, IsRefusedWhereItTellsOfMoreDriftThanCanBe) {
 
 /// Cameras in a row, 0.2 m apart and all looking along z; each has 20 landmarks that the next one
 /// sees, too. The row is too long in the map: the last camera is too far by `drift_m`, which
-/// accumulates evenly. It sees and reports the first camera's landmarks: a loop.
+/// accumulates evenly. The last camera also sees the first camera's landmarks, where they really
+/// are: a loop.
 struct StretchedRow {
   static constexpr std::uint32_t kKeyframes = 6, kShared = 20, kLast = kKeyframes - 1;
   static constexpr double kStep_m = 0.2;

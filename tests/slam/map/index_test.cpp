@@ -58,7 +58,7 @@ TEST(PositionIndex, FindsAllThatIsNearAndLittleElse) {
         if (stands && distance <= radius) {
           EXPECT_TRUE(listed) << i << " at " << distance;
         }
-        // The cubes that the ball's bounding box touches reach no farther than this.
+        // The cubes that the ball's bounding box touches reach no farther than this distance.
         if (!stands || distance > 2 * (radius + 2.5) * std::sqrt(3.0)) {
           EXPECT_FALSE(listed) << i << " at " << distance;
         }

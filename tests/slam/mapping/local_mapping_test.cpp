@@ -65,8 +65,8 @@ struct TwoViews {
   }
 };
 
-// All close points, including those at the limit, and the nearest ones beyond it up to a total of
-// 100.
+// Landmarks are added for all close points, including those at the limit, and for the nearest
+// points beyond it up to a total of 100.
 TEST(AddLandmarksFromDepth, TakesWhatIsCloseAndElseTheNearestHundred) {
   SlamConfig config;
   config.keyframe.close_depth_m = 3;
@@ -119,7 +119,8 @@ TEST(AdjustNeighborhood, BringsPointsBackThatAKeyframeOutsideHolds) {
       1e-4);
 }
 
-// If no other keyframe holds it, the keyframe would move wherever its points pull it.
+// A keyframe that no other keyframe holds in place would move wherever its points pull it, so it is
+// not moved.
 TEST(AdjustNeighborhood, MovesNothingThatNoOtherKeyframeHolds) {
   TwoViews views(false);
   const std::uint64_t digest = views.map.digest();

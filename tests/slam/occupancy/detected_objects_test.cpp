@@ -83,7 +83,7 @@ TEST(DetectionAssociation, PartsThatNoViewShowsApartAreOne) {
 }
 
 TEST(DetectionAssociation, AVoxelIsOfTheObjectThatMostViewsGiveItTo) {
-  // The border moves by a third in one view of three.
+  // In one of three views, the border between the chairs is off by a third of a chair.
   EXPECT_EQ(found_after({{1, 1, 1, 2, 2, 2}, {1, 1, 1, 1, 2, 2}, {1, 1, 1, 2, 2, 2}}), kTwo);
 }
 

@@ -23,7 +23,7 @@ int count(const OccupancyGrid& grid, std::int8_t value) {
 
 TEST(ObstacleGrid, ABoxRoomIsFreeAmidItsWalls) {
   const OccupancyGrid grid = obstacle_grid(mapped_room().map(), {.floor_z_m = 0.02});
-  // 3.54 x 2.29 m, surrounded by walls of one cell.
+  // The room measures 3.54 x 2.29 m and is surrounded by walls of one cell.
   EXPECT_EQ(grid.cells.width(), 72);
   EXPECT_EQ(grid.cells.height(), 47);
   const auto at = [&](double x, double y) {
@@ -54,7 +54,8 @@ TEST(ObstacleGrid, CountsWhatIsBetweenGroundAndHead) {
   EXPECT_EQ(grid.cells(9, 0), kFreeCell);
   EXPECT_EQ(grid.cells(12, 0), kOccupiedCell);
   EXPECT_EQ(count(grid, kFreeCell), 18);
-  // With a higher floor, none of it is an obstacle.
+  // With a floor at 0.05 m, the hit at 0.10 to 0.15 m is flat on the floor: only the table top
+  // remains.
   EXPECT_EQ(count(obstacle_grid(map, {.floor_z_m = 0.05}), kOccupiedCell), 1);
   EXPECT_EQ(count(obstacle_grid(map, {.robot_height_m = 1.6}), kOccupiedCell), 3);
   EXPECT_THROW(obstacle_grid(map, {.robot_height_m = 0.05}), InputError);
@@ -184,7 +185,7 @@ TEST(CostMap, EndsAtWholeCells) {
   }
 }
 
-// With Nav2's defaults and Pepper's radius, in steps of 5 cm from the obstacle.
+// Costs with Nav2's defaults and Pepper's radius, in steps of 5 cm from the obstacle.
 TEST(CostMap, CostsAndWhatIsPublishedOfThemAtStatedDistances) {
   OccupancyGrid grid{.cells = Grid2d<std::int8_t>(14, 1, kFreeCell)};
   grid.cells(0, 0) = kOccupiedCell;

@@ -112,8 +112,8 @@ TEST(Adjust, RecoversTruthWithoutNoise) {
   double worst = 0;
   for (std::size_t i = 0; i < bundle.true_points.size(); ++i)
     worst = std::max(worst, (result.points_in_world[i] - bundle.true_points[i]).norm());
-  // A single point has only four observations, and a disparity of 13 px has a float error of 5e-7
-  // px.
+  // A single point has only four observations, and a disparity of 13 px has a rounding error
+  // (float) of 5e-7 px.
   EXPECT_LT(worst, 1e-6);
   EXPECT_GT(result.initial_cost, 1e4);
   EXPECT_LT(result.final_cost, 1e-6);
@@ -131,8 +131,8 @@ TEST(Adjust, RecoversTruthFromPixelsAloneWithTwoFixedPoses) {
                                              kBundleCamera, RandomStream(2));
   const BundleResult result =
       adjust(bundle.problem, kBundleCamera, {.iterations = 30, .refine_iterations = 10});
-  // The scale now comes from the 0.24 m between the fixed poses: ten times less accurate than with
-  // depth.
+  // The scale now comes from the 0.24 m between the fixed poses: that is ten times less accurate
+  // than with depth.
   EXPECT_LT(worst_pose_m(result.camera_from_world, bundle.true_poses), 1e-6);
 }
 
@@ -244,7 +244,7 @@ TEST(Adjust, MovesNeitherFixedPosesNorWhatNobodyDetermines) {
     EXPECT_EQ(result.camera_from_world[i].translation(),
               problem.camera_from_world[i].translation());
   }
-  // It is free, but its rotation is only orthonormalized again.
+  // Although the pose is free, nothing moves it: its rotation is only orthonormalized again.
   EXPECT_LT(testing::distance_m(result.camera_from_world[4], problem.camera_from_world[4]), 1e-12);
   EXPECT_EQ(result.points_in_world[40], problem.points_in_world[40]);
   EXPECT_EQ(result.points_in_world[41], problem.points_in_world[41]);

@@ -99,7 +99,8 @@ TEST(Step, EveryMatcherMeetsLabelsThatDisagree) {
     const StepReport report = step(r.state, half, RandomStream(7).fork(i));
     for (std::size_t m = 0; m < r.counts.size(); ++m) r.counts[m] += report.matches[m];
   }
-  // Tracking with the reference keyframe is used when the motion model fails: make it fail.
+  // Tracking with the reference keyframe is used only when the motion model fails, so make that
+  // fail.
   RgbdFrame jump = BoxRoom::render(BoxRoom::round_trip(66, kTurnFrames), 61 * kFrame_ns);
   r.state.tracker.velocity_per_s = Vector6d::Constant(40.0);
   const StepReport report = step(r.state, jump, RandomStream(7));
@@ -342,7 +343,8 @@ TEST(Localize, WithAMemoItSaysWhatItSaysFromALostTracker) {
   int verified = 0, unconfirmed = 0;
   for (const int i : {7, 40, 199}) {
     for (const bool strict : {false, true}) {
-      // So many inliers that a place is recognized but never confirmed in the local map.
+      // The strict limit requires so many inliers that a place is recognized but never confirmed in
+      // the local map.
       state.config.relocalize.min_inliers = strict ? 100'000 : confirmed;
       LocalizeMemo memo;
       for (const double gamma : {1.0, 3.0, 1.0})
@@ -489,7 +491,8 @@ TEST(Step, MotionAlonePlacesAFrameThatCannotShowWhatTheLastOneDid) {
   for (const int i : {42, 48}) {
     const SE3 error = (world_from_origin * estimate[i / 6U].world_from_camera).inverse() *
                       BoxRoom::round_trip(i, kTurnFrames);
-    // The frame before it had only a strip of 55 px, in which turning and shifting look the same.
+    // The frame before this one had only a strip of 55 px, in which turning and shifting look the
+    // same.
     EXPECT_LT(error.translation().norm(), 0.07) << i;
     EXPECT_LT(error.log().tail<3>().norm(), 0.03) << i;
   }

@@ -43,7 +43,7 @@ struct Sensor {
   }
 
   /// The keypoint of a point, with half a pixel of noise and with the depth that the sensor reads.
-  /// @param turning_rad_per_s  about the vertical axis of the image
+  /// @param turning_rad_per_s  rate about the vertical axis of the image
   Keypoint read(const SE3& world_from_camera, const Eigen::Vector3d& point,
                 double turning_rad_per_s, RandomStream s) const {
     const Eigen::Vector2d pixel = camera.project(world_from_camera.inverse() * point);

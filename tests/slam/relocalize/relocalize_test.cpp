@@ -66,8 +66,8 @@ TEST_F(SelectKeyframes, ErasedKeyframesAreNoCandidates) {
   EXPECT_EQ(selection.candidates[0].keyframe, KeyframeId{2});
 }
 
-// The scores of the two lists have different scales: nearness orders each list, but never both
-// together.
+// The scores of the two lists have different scales: nearness reorders each list by itself, and
+// never merges them.
 TEST(ChooseCandidates, NearnessKeepsTheTurnsOfTwoLists) {
   const Map map = map_of({vector_of({5, 6}, {1, 2, 3, 13, 14, 15, 16, 17}),  // first by labels
                           vector_of({7, 8}, {1, 2, 3, 4})});  // first by words, scored higher
@@ -104,7 +104,7 @@ TEST(Relocalize, AnEmptyMapHasNoCandidate) {
 // As released, ORB-SLAM2 adds the score that an earlier query left in a neighbor (mRelocScore) if
 // the neighbor shares words, but not enough of them: its answers depend on the order of the
 // queries.
-/// A keyframe with words 1 to 4 and its neighbor with 4 to 7.
+/// A keyframe with words 1 to 4 and its neighbor with words 4 to 7.
 Map map_of_neighbors() {
   constexpr std::uint32_t kShared = 20;  // landmarks
   Map map;
@@ -281,7 +281,7 @@ TEST(Relocalize, RefusesAPlaceThatHasARival) {
     EXPECT_EQ(refused.stage, RelocalizationStage::kInliers);
     EXPECT_FALSE(refused.camera_from_world);
   }
-  // The copy has 54 of 60 points.
+  // The copy has 54 of the 60 points: a share of 0.9.
   EXPECT_EQ(RoomAndCopy(6).find_place(0.9).stage, RelocalizationStage::kInliers);
   const auto clear = RoomAndCopy(6).find_place(0.91);
   EXPECT_EQ(clear.stage, RelocalizationStage::kVerified);
@@ -346,8 +346,8 @@ TEST(Relocalize, TheFirstSearchReachesAsFarAsItsRadius) {
   EXPECT_EQ(views.find(Acceptance::kOurs, 1).stage, RelocalizationStage::kInliers);
 }
 
-// The first 10 or 16 of 30 matches by words are false. Our acceptance needs ten true ones,
-// ORB-SLAM2's half of all.
+// The first 10 or 16 of 30 matches by words are false. Our acceptance needs ten true matches,
+// ORB-SLAM2's needs half of all matches.
 TEST(Relocalize, OrbSlam2AsksForHalfOfTheMatches) {
   const auto stage = [](std::uint32_t liars, Acceptance acceptance) {
     return MappedViews([=](std::uint32_t i) { return i < liars; },

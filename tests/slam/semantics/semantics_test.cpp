@@ -106,10 +106,11 @@ TEST(SemanticDistance, IsEquationTwo) {
   EXPECT_FALSE(labels_disagree(kNoLabel, kNoLabel, VoidPolicy::kIsALabel));
 }
 
-// Six keyframes worked out by hand. n: 0, 10, 8, 9, 10, 2. alpha 0.8: n must exceed 8, so keyframes
-// 1, 3, 4 stay (2 has exactly 8: strict). Neighborhoods {1, 3}, {3, 1}, {4, 5}; similarities 1:
-// 0.5, 3: 0.2, 4: 0.35, 5: 0.4. Keyframes 1 and 3 both choose 1 with a = 0.7; keyframe 4 chooses 5
-// with a = 0.75. beta 0.75: a must exceed 0.5625: both stay, 5 first.
+// Six keyframes worked out by hand. n: 0, 10, 8, 9, 10, 2. With alpha 0.8, n must exceed 8, so
+// keyframes 1, 3 and 4 remain (keyframe 2 has exactly 8, which is not enough). Neighborhoods {1,
+// 3}, {3, 1}, {4, 5}; similarities 1: 0.5, 3: 0.2, 4: 0.35, 5: 0.4. Keyframes 1 and 3 both choose 1
+// with a = 0.7; keyframe 4 chooses 5 with a = 0.75. With beta 0.75, a must exceed 0.5625, so both
+// choices remain, 5 first.
 TEST(SelectCandidates, IsAlgorithmOne) {
   const std::vector<int> keyframes{0, 1, 2, 3, 4, 5};
   const int n[] = {0, 10, 8, 9, 10, 2};
@@ -154,7 +155,7 @@ TEST(SelectCandidates, ASharedBestIsKeptOnceWithItsLargestSum) {
 }
 
 // Equation 5 chooses the smallest id among equally similar neighbors, whatever their order; the
-// keyframe itself is one of them.
+// keyframe itself counts as one of them.
 TEST(SelectCandidates, OfEquallySimilarNeighborsTheLeastIsTaken) {
   const std::vector<int> keyframes{5};
   for (std::vector<int> neighbors : {std::vector{5, 7, 3, 4}, {3, 4, 5, 7}, {7, 4, 3, 5}}) {
@@ -167,8 +168,8 @@ TEST(SelectCandidates, OfEquallySimilarNeighborsTheLeastIsTaken) {
   }
 }
 
-// A keyframe whose neighborhood has no similarity at all chooses itself or its smallest neighbor,
-// and equation 6 drops that choice if any other keyframe has some similarity.
+// A keyframe whose neighborhood has no similarity to the view chooses the smallest key among itself
+// and its neighbors; equation 6 drops that choice if any other keyframe has some similarity.
 TEST(SelectCandidates, AScoreOfNothingIsDropped) {
   const std::vector<int> keyframes{2, 3};
   const auto selection = select_candidates(

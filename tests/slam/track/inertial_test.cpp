@@ -73,7 +73,8 @@ TEST(InertialMotion, LearnsVelocityGravityAndTheGyroscopesBias) {
   EXPECT_LT((fed.motion.turn_bias_rad_per_s - bias).norm(), 0.2 * bias.norm());
 }
 
-// Without any image for one second, and for three: the error matches the filter's covariance.
+// After one second and after three seconds without any image, the error matches the filter's
+// covariance.
 TEST(InertialMotion, CarriesThePoseAcrossABlindSpell) {
   for (const std::size_t blind : {30U, 90U}) {
     Fed fed;

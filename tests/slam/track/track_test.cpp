@@ -83,7 +83,7 @@ TEST(OptimizeMatches, PassingPointsHoldAPoseThatANarrowStripOfLandmarksLetsSlip)
     ASSERT_TRUE(alone && together);
     alone_m += alone->camera_from_world.translation().norm() / kViews;
     together_m += together->camera_from_world.translation().norm() / kViews;
-    // They support the pose, but are not landmarks.
+    // Passing points support the pose, but they do not become landmarks of their features.
     for (std::size_t i = 0; i < strip.size(); ++i)
       if (!strip[i].valid()) {
         EXPECT_FALSE(together->landmarks[i].valid());
@@ -116,8 +116,8 @@ KeyframeId add_keyframe(Map& map, double x_m, double turn_rad = 0) {
   return map.add(std::move(keyframe));
 }
 
-// No keyframe shares a landmark: place and heading decide, including both limits; the nearest is
-// first, and the earliest of equals.
+// No keyframe shares a landmark with the frame, so place and heading decide, both limits included.
+// The nearest keyframe comes first; if two are equally near, the earlier one.
 TEST(LocalMap, HoldsTheKeyframesThatStandNearAndLookAlike) {
   const Camera camera;
   SlamConfig config;
@@ -139,8 +139,8 @@ TEST(LocalMap, HoldsTheKeyframesThatStandNearAndLookAlike) {
   EXPECT_TRUE(local.landmarks.empty());
 }
 
-// At most half of the local map are keyframes that share landmarks with the frame, those that share
-// the most first; up to three quarters include keyframes nearby; the rest are neighbors.
+// Keyframes that share landmarks with the frame fill at most half of the local map, those that
+// share the most first. Keyframes nearby fill it up to three quarters, and neighbors fill the rest.
 TEST(LocalMap, HasAQuarterForEachThatDoesNotShareWithTheFrame) {
   const Camera camera;
   SlamConfig config;

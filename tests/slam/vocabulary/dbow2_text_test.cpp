@@ -36,7 +36,7 @@ class TextWriter {
   Descriptor center(int id) const { return drawn_descriptor(RandomStream(1).fork(id)); }
   float weight(int id) const { return static_cast<float>(id) / 7; }
 
-  // The leaf where a walk through the tree as written ends.
+  // The leaf at which a walk through the written tree ends.
   int walk(const Descriptor& d) const {
     int node = 0;
     while (!children_.at(node).empty()) {

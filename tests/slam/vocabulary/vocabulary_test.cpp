@@ -114,7 +114,7 @@ TEST(Train, ManyCopiesOfOneDescriptorAreOneWord) {
   const std::vector<std::vector<Descriptor>> images(3, std::vector<Descriptor>(50, d));
   const Vocabulary v = Vocabulary::train(images, {});
   EXPECT_EQ(v.size(), 1U);
-  EXPECT_EQ(v.idf(0), 0.0F);  // in every image: carries no information
+  EXPECT_EQ(v.idf(0), 0.0F);  // the word is in every image and carries no information
 }
 
 TEST(Train, EveryWordOccursAndWeighsItsInverseDocumentFrequency) {
@@ -185,7 +185,7 @@ class VocabularyFile : public testing::Test {
   void rewrite(const std::string& bytes) {
     std::ofstream(file_, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));
   }
-  // With a corrected checksum, so that the checks after it are reached.
+  // The bytes with a corrected checksum, so that the checks after that of the checksum are reached.
   static std::string signed_again(std::string bytes) {
     const std::uint64_t sum = XXH3_64bits(bytes.data(), bytes.size() - 8);
     std::memcpy(bytes.data() + bytes.size() - 8, &sum, 8);
@@ -288,7 +288,7 @@ TEST_F(VocabularyFile, SignedNonsenseIsRefusedToo) {
   EXPECT_THAT(message_of_loading(), HasSubstr("weight"));
 }
 
-// What is mapped remains readable when the name refers to a different file.
+// A mapped file remains readable when its name refers to a different file.
 TEST_F(VocabularyFile, StaysWholeWhenTheFileIsReplacedOrRemoved) {
   const Vocabulary loaded = Vocabulary::load(file_);
   Vocabulary::train(scattered(10, 100, 50, 99), {.branching = 4, .depth = 3}).save(file_);

@@ -34,9 +34,9 @@ TEST(AveragePrecision, IsOneForPerfectBoxesAndUnknownWithoutTruth) {
   EXPECT_EQ(average_precision(truths, {}).ap, 0);
 }
 
-// Three true boxes; in order of score, the found ones are right, wrong, right. Precision is 1 up to
-// a recall of 1/3 (34 of the 101 recalls: 0 to 0.33), 2/3 up to a recall of 2/3 (33 of them: 0.34
-// to 0.66), then 0.
+// Three true boxes; in order of score, the detected boxes are right, wrong, right. Precision is 1
+// up to a recall of 1/3 (34 of the 101 recalls: 0 to 0.33), 2/3 up to a recall of 2/3 (33 of them:
+// 0.34 to 0.66), then 0.
 TEST(AveragePrecision, InterpolatesAt101Recalls) {
   const std::vector<TruthBox> truths = {truth(0, 0, 50), truth(0, 100, 50), truth(1, 0, 50)};
   const std::vector<ScoredBox> boxes = {found(1, 0, 50, 0.9), found(1, 300, 50, 0.8),

@@ -63,8 +63,8 @@ TEST(MatchByStamp, TakesTheNearestWithinTheLimit) {
   const Trajectory estimate = {at(4 * kMillisecond, 10), at(35 * kMillisecond, 11),
                                at(110 * kMillisecond, 12), at(111 * kMillisecond, 13)};
   const MatchedTrajectories matched = match_by_stamp(truth, estimate);
-  // 4 matches 0; 35 lies between 30 and 40 and matches the earlier; 110 is just near enough to 100,
-  // 111 is not.
+  // 4 matches 0; 35 lies between 30 and 40 and matches the earlier of them; 110 is just near enough
+  // to 100, 111 is not.
   ASSERT_EQ(matched.size(), 3U);
   ASSERT_EQ(matched.estimate.size(), 3U);
   const double truth_x[] = {0, 2, 4};
@@ -226,15 +226,15 @@ TEST(DeltaPairs, WorkedByHand) {
   EXPECT_EQ(delta_pairs(t, {.value = 2, .all_pairs = true}), (Pairs{{0, 2}, {1, 3}, {2, 4}}));
   EXPECT_EQ(delta_pairs(t, {.value = 3}), (Pairs{{0, 3}}));
   EXPECT_EQ(delta_pairs(t, {.value = 5}), Pairs{});
-  // 3 m: 0 -> 2 (3 m); 1 -> 2 (2 m is off by 1, 5 m by 2: out of tolerance); 2 -> 3; 3 has only 1 m
-  // left.
+  // 3 m apart: 0 and 2. From 1, no pose is within the tolerance: 2 m is off by 1 m, 5 m by 2 m.
+  // Then 2 and 3; from 3, only 1 m is left.
   EXPECT_EQ(delta_pairs(t, {.value = 3, .unit = DeltaUnit::kMeters}), (Pairs{{0, 2}, {2, 3}}));
-  // 1.5 m within a third: 0 -> 1 (1 m is nearest); 1 -> 2 (2 m); 3 -> 4 (1 m).
+  // 1.5 m apart, to within a third: 0 and 1 (1 m is nearest), 1 and 2 (2 m), 3 and 4 (1 m).
   EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kMeters, .tolerance = 0.34}),
             (Pairs{{0, 1}, {1, 2}, {3, 4}}));
   EXPECT_EQ(delta_pairs(t, {.value = 2, .unit = DeltaUnit::kSeconds}),
             (Pairs{{0, 2}, {1, 3}, {2, 4}}));
-  // 1.5 s lies between 1 s and 2 s: the earlier of two equals is taken, and only if the tolerance
+  // 1.5 s is equally far from 1 s and 2 s: the earlier pose is taken, provided that the tolerance
   // allows it.
   EXPECT_EQ(delta_pairs(t, {.value = 1.5, .unit = DeltaUnit::kSeconds, .tolerance = 0.4}),
             (Pairs{{0, 1}, {1, 2}, {2, 3}, {3, 4}}));
@@ -288,7 +288,7 @@ TEST(Evaluate, ReportsAPerfectEstimate) {
   ASSERT_EQ(report.rpe.size(), 2U);
   EXPECT_EQ(report.rpe[0].translation_m.count, 99U);
   EXPECT_GE(report.rpe[1].translation_m.count,
-            90U);  // the 91st pair has 0.9 s left, exactly at the limit
+            90U);  // the 91st pair is 0.9 s apart, exactly at the tolerance
   EXPECT_LT(report.rpe[1].translation_m.max, 1e-12);
 }
 

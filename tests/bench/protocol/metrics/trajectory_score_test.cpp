@@ -50,7 +50,8 @@ TEST(ScoreTrajectory, OrientationsHaveAnErrorOfTheirOwn) {
   EXPECT_NEAR(score.ate_rmse_m.value(), 0.0, 1e-9);
 }
 
-// In a straight corridor the alignment is free to turn about the path: an angle would be arbitrary.
+// In a straight corridor the alignment is free to turn about the path, so any error of the angle
+// would be arbitrary.
 TEST(ScoreTrajectory, APathThatIsNearlyALineHasNoAngle) {
   const auto corridor = [](double width_m, double error_m) {
     Trajectory truth, estimate;

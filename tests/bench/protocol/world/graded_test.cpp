@@ -92,7 +92,7 @@ TEST(Graded, OfScansByHandAreTheSamePosesAtEachSpeed) {
     EXPECT_EQ(fast.grade.speed, 3);
     EXPECT_EQ(slow.clip[slow.at].world_from_camera.translation(),
               fast.clip[fast.at].world_from_camera.translation());
-    if (slow.at == 0 || fast.at == 0) continue;  // the first frame of a scan
+    if (slow.at == 0 || fast.at == 0) continue;  // the first frame of a scan: no frame is before it
     const auto before_s = [](const GradedQuery& q) {
       return 1e-9 * static_cast<double>(q.clip[q.at].stamp_ns - q.clip[q.at - 1].stamp_ns);
     };

@@ -19,7 +19,8 @@ namespace {
 
 constexpr Rgb8 kPaint{201, 13, 157};
 
-/// One color, one depth and one class in every direction; records the poses that it is asked for.
+/// Renders one color, one depth and one class in every direction, and records the poses that it is
+/// asked for.
 class Recorder : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {
@@ -43,7 +44,7 @@ TEST(LookAt, PutsTheTargetInTheMiddleAndStandsUpright) {
   }
 }
 
-// A path of 100 frames is cut into parts of equal length: the middle frame of each is taken.
+// A path of 100 frames is cut into parts of equal length: the middle frame of each part is taken.
 TEST(ViewsAlong, AreTheMiddlesOfEqualParts) {
   Trajectory path;
   for (int i = 0; i < 100; ++i)
@@ -85,7 +86,7 @@ TEST(ViewsOf, LooksFromTheCornersOverThePlaceThatAllOfThemSee) {
     ASSERT_EQ(renderer.poses.size(), 5u) << "outer corners";
     std::size_t k = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      if (i == 3) continue;  // points inward
+      if (i == 3) continue;  // this corner of the L points inward
       const Eigen::Vector3d eye = renderer.poses[k].translation();
       const Eigen::Vector2d expected = turn * (shared + 0.8 * (outline[i] - shared));
       EXPECT_LT((eye.head<2>() - expected).norm(), 1e-9) << quarter << " " << i;

@@ -11,7 +11,7 @@ const [, , root, screenshots, ...asked] = process.argv;
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const program = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
 const pages = ["overview", "figures", "sweeps", "failures", "audit", "speed", "runs", "reproduction"];
-// The steps to run; STEPS=use node browse.mjs ... runs only some.
+// The steps to run; `STEPS=use node browse.mjs ...` runs only the step `use`.
 const steps = (process.env.STEPS ?? "walk,axe,use").split(",");
 const sizes = { laptop: { width: 1440, height: 900 }, phone: { width: 390, height: 844 } };
 const findings = [];
@@ -164,7 +164,7 @@ const cells = (page, column) =>
 async function use(browser, report) {
   const { context, page, go } = await open(browser, report, { acceptDownloads: true });
   await go("runs");
-  const table = page.locator("section.table").last();  // of the last folder, which cells() reads, too
+  const table = page.locator("section.table").last();  // the last folder's table, which cells() reads, too
   const before = await cells(page, "run");
   await table.getByRole("button", { name: /^ATE m/ }).click();
   const falling = (await cells(page, "ATE m")).filter(Boolean).map(Number);
@@ -196,7 +196,7 @@ async function use(browser, report) {
   await page.reload();
   await settled(page);
   expect((await dark()) !== first, `${report}: the theme is forgotten`);
-  // With the keyboard only: the second link of the navigation.
+  // With the keyboard only, follow the second link of the navigation.
   await go("overview");
   await page.getByRole("link", { name: "Figures" }).focus();
   await page.keyboard.press("Enter");

@@ -45,7 +45,7 @@ inline void put_paths(RunResult& run, std::size_t frames, double drift_m) {
   run.place.mapping.length_m = 11.05;
 }
 
-/// Answers; the larger `skill` (0 to 1), the more of them are right.
+/// Answers to some queries; the larger `skill` (0 to 1) is, the more answers are right.
 inline MadeUpAnswers answers_of(double skill, std::size_t queries, std::size_t variant) {
   MadeUpAnswers answers;
   answers.keyframes = 40;

@@ -190,7 +190,7 @@ TEST_F(Reports, StateTheVerdictInAPlainSentenceWithItsFigures) {
   write_pages(out(), std::array{source});
   const Json lines = piece(out(), "0/overview").at("verdicts").at("headlines");
   ASSERT_EQ(lines.size(), 1U);
-  // In each environment, semantic has one more correct answer: 6 pairs of the same sign.
+  // In each environment, semantic has one more correct answer than plain: 6 pairs of the same sign.
   const auto text = lines[0].at("text").get<std::string>();
   EXPECT_TRUE(text.starts_with("Labels: no difference shown between semantic and plain.")) << text;
   const auto detail = lines[0].at("detail").get<std::string>();
@@ -230,7 +230,7 @@ TEST_F(Reports, AProgramWhosePosesAreWrongWinsNothingByReturningThem) {
   EXPECT_EQ(tiles.text("system", 0), "semantic");
   EXPECT_EQ(tiles.number("held_out.correct", 0), 0);
   EXPECT_EQ(tiles.number("held_out.success", 0), 1);
-  // If a design specifies success, success decides.
+  // If a suite specifies success as its measure, the verdict is about success.
   source.suite->measure = Measure::kSuccess;
   const auto by_success = verdict_of().first.at("text").get<std::string>();
   EXPECT_TRUE(by_success.starts_with("semantic ")) << by_success;
@@ -293,7 +293,7 @@ TEST_F(Reports, ShowThePlanThatBenchDrewOrElseThePaths) {
   write_atomically(source.folder / first / "topdown_second_tour.png", "no image");
   write_pages(out(), std::array{source});
   EXPECT_EQ(piece(out(), "0/place").at("plans").at(0).at("png"), base64("\x89PNG of held out"));
-  // A map that is not from this run: the files of another run.
+  // Files of a map that a different run wrote.
   write_atomically(source.folder / first / "map.yaml", "image: map.pgm\n");
   write_pages(out(), std::array{source});
   EXPECT_EQ(piece(out(), "0/place").at("plans").size(), 1U);
@@ -349,7 +349,7 @@ TEST_F(Reports, OfARecordingShowSomeOfItsFramesOrSayWhyNot) {
 TEST_F(Reports, Figure4OfARecordingIsOverTruthAtOtherMomentsThanItsFrames) {
   PagesSource source = source_of({"den"});
   for (RunResult& run : source.results.runs) {
-    // Motion capture: three poses per frame, none at a frame's timestamp.
+    // Ground truth from motion capture has three poses per frame, none at a frame's timestamp.
     const Trajectory frames = run.truth;
     run.truth.clear();
     for (std::size_t i = 0; i + 1 < frames.size(); ++i)
@@ -495,7 +495,8 @@ TEST_F(Reports, ShowNamesAsText) {
 }
 
 TEST_F(Reports, SayWhatIsMissing) {
-  // A run with only a trajectory; a recording without ground truth; a failed run.
+  // Something is missing in each run: one has only a trajectory, one has no ground truth, one
+  // failed.
   PagesSource source = source_of({"den"});
   RunResult& outside = source.results.runs[0];
   outside.points = {PointResult()};

@@ -75,8 +75,9 @@ TEST(Gate, ASystemThatIsNotRepeatableIsWorseWhereChanceCannotSayWhy) {
   const auto verdict = [&](double after) {
     return change_of(judged(after), "completeness").verdict;
   };
-  // Both have a standard deviation of 0.01581, so that of the median of five differences is 1.2533
-  // * 0.01581 * sqrt(2 / 5) = 0.01253. The tolerance of 0.05 plus 1.86 of these is 0.0733.
+  // The runs before and after both have a standard deviation of 0.01581, so the median of the five
+  // differences has one of 1.2533 * 0.01581 * sqrt(2 / 5) = 0.01253. The tolerance of 0.05 plus
+  // 1.86 times that is 0.0733.
   EXPECT_EQ(verdict(0.84), ChangeVerdict::kWithin);
   EXPECT_EQ(verdict(0.828), ChangeVerdict::kWithin);
   EXPECT_EQ(verdict(0.826), ChangeVerdict::kWorse);
@@ -105,8 +106,8 @@ TEST(Gate, TakesTheMedianOfPairedChanges) {
   EXPECT_TRUE(compare(five_runs(), after, kConfig, false).passed());
   after[4].values["completeness"] = 0.0;
   EXPECT_FALSE(compare(five_runs(), after, kConfig, false).passed());
-  // Runs are paired by seed, not by order: each seed loses 0.06, and the seeds are listed in a
-  // different order.
+  // Runs are paired by seed, not by order: each seed loses 0.06, although the two lists have
+  // different orders.
   auto shuffled = five_runs(0.84);
   std::swap(shuffled[0], shuffled[4]);
   EXPECT_NEAR(change_of(compare(five_runs(), shuffled, kConfig, false), "completeness").change,
@@ -114,7 +115,8 @@ TEST(Gate, TakesTheMedianOfPairedChanges) {
 }
 
 TEST(Gate, PairsByTheSeedAndNotByTheSortedValues) {
-  // Seeds trade places: sorted, nothing changed; paired, the median change is 0.03.
+  // Seeds trade places: the sorted values are unchanged, but the median of the paired changes is
+  // 0.03.
   auto before = five_runs(), after = five_runs();
   const double shift[5] = {0.03, 0.03, 0.03, -0.045, -0.045};
   for (std::size_t i = 0; i < 5; ++i)
@@ -135,8 +137,8 @@ TEST(Gate, AFigureThatIsLostIsTheWorst) {
 
 TEST(Gate, SaysTheSmallestChangeThatItCouldHaveSeen) {
   const GateResult r = compare(five_runs(), five_runs(), kConfig, false);
-  // The standard deviation of 0.88 .. 0.92 is 0.0158; that of the median paired change is 1.2533
-  // sqrt(2/5) times as large.
+  // The standard deviation of 0.88 .. 0.92 is 0.0158; the median paired change has a standard
+  // deviation that is 1.2533 sqrt(2/5) times as large.
   const double error = 1.2533 * std::sqrt(2.0 / 5) * std::sqrt(0.001 / 4);
   EXPECT_NEAR(change_of(r, "completeness").detectable, 0.05 + 0.84 * error, 1e-9);
   // Shares come in steps: with 20 queries, the first step beyond a tolerance of 0.12 is 3 of 20.

@@ -48,7 +48,7 @@ TEST(SceneLasers, WhatTheyReadStandsWhereThePoseSays) {
   const ScanGrid moved = lasers.scans({{20, camera_at(robot, {5, 6, 0})}}, truth, 0.05);
   EXPECT_EQ(cell_at(moved, 6.52, 6.02), kOccupiedCell);
   EXPECT_EQ(cell_at(moved, 6.02, 6.02), kFreeCell);
-  // There are no laser readings at a different time.
+  // At any other time, there are no laser readings.
   EXPECT_EQ(cell_at(lasers.scans({{15, camera_at(robot, {5, 5, 0})}}, truth, 0.05), 6.02, 5.02),
             kUnknownCell);
 }

@@ -35,8 +35,8 @@ std::set<std::array<int, 3>> surface_of(const TrueSpace& space) {
   return found;
 }
 
-// A triangle flat in each of the three planes: it is in the voxels below its longest side, and in
-// no others of its bounding box.
+// A triangle that lies in a coordinate plane, for each of the three: it occupies the voxels below
+// its longest side, and no other voxels of its bounding box.
 TEST(TrueSpace, ATriangleIsInTheVoxelsThatItTouches) {
   for (int flat = 0; flat < 3; ++flat) {
     const auto turned = [&](auto a, auto b, auto c) {
@@ -57,7 +57,7 @@ TEST(TrueSpace, ATriangleIsInTheVoxelsThatItTouches) {
   }
 }
 
-// A plane through the diagonal corners of a cube does not touch the two voxels at the sides.
+// A slanted triangle occupies only four of the eight voxels of its bounding box.
 TEST(TrueSpace, ASlantedTriangleMissesVoxelsOfItsBox) {
   const Scene scene =
       scene_of({{1.9F, 0.05F, 0.05F}, {0.05F, 1.9F, 0.05F}, {0.05F, 0.05F, 1.9F}}, {{0, 1, 2}});

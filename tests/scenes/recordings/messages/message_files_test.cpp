@@ -145,7 +145,7 @@ TEST_P(MessageFiles, TheFirstChunksDamageDoesNotTakeTheOthersTopics) {
     bytes[bytes.size() / 10] ^= 0x55;
   } else {
     for (std::size_t i = 0; i < 5; ++i)
-      bytes[name - 1 - i] ^= 0x55;  // the bytes that say where the name begins
+      bytes[name - 1 - i] ^= 0x55;  // the bytes that store where the name begins
   }
   const Read read = read_all(bytes);
   ASSERT_GE(read.messages.size(), 20u);

@@ -171,7 +171,7 @@ TEST_P(Readers, OfNpmDecodeEveryMessageOfOurMcap) {
   fs::create_directories(home);
   for (const char* file : {"package.json", "package-lock.json", "read_mcap.mjs"})
     fs::copy_file(kReaders / file, home / file, fs::copy_options::overwrite_existing);
-  // One process at a time installs them; an installation that is up to date is kept.
+  // Only one process at a time installs the readers; an installation that is up to date is kept.
   const Ran installed = run(
       fmt::format("cd '{}' && flock lock sh -c 'cmp -s package-lock.json installed || (npm ci "
                   "--ignore-scripts --no-audit --no-fund && cp package-lock.json installed)' 2>&1",
