@@ -50,7 +50,8 @@ void require_places(const Json& gltf, const std::filesystem::path& file) {
   }
 }
 
-/// Whether a file is glTF 2, which has these extensions; a file that states no version counts as 2.
+/// Whether a file is glTF 2, the version whose extensions are handled here; a file that states no
+/// version counts as glTF 2.
 bool is_version_2(const Json& gltf) {
   const Json::json_pointer place("/asset/version");
   return !gltf.contains(place) || !gltf[place].is_string() ||

@@ -43,7 +43,7 @@ T number(const Fields& fields, std::string_view name) {
   return ByteReader(bytes).number<T>();
 }
 
-/// Seconds, then nanoseconds.
+/// The time of receipt, which is stored as seconds, then nanoseconds.
 std::int64_t received_ns(const Fields& fields) {
   if (!fields.contains("time")) return 0;
   const auto time = number<std::uint64_t>(fields, "time");
@@ -147,8 +147,8 @@ class BagFile : public MessageFile {
     }
   }
 
-  /// Reads the connections that are stored outside of chunks from this position on (bags repeat
-  /// them after the last chunk), in case the only chunk that holds them is damaged.
+  /// From this position on, reads the connections that are stored outside of chunks, in case the
+  /// only chunk that holds them is damaged: bags repeat connections after the last chunk.
   void read_connections_from(std::uint64_t at) {
     if (std::exchange(connections_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {

@@ -96,8 +96,8 @@ class McapFile : public MessageFile {
     return at;
   }
 
-  /// Reads the channels that are stored outside of chunks from this position on (a summary repeats
-  /// them), in case the only chunk that holds them is damaged.
+  /// From this position on, reads the channels that are stored outside of chunks, in case the only
+  /// chunk that holds them is damaged: a summary repeats channels.
   void read_channels_from(std::uint64_t at) {
     if (std::exchange(channels_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {
@@ -199,7 +199,7 @@ class McapFile : public MessageFile {
   std::map<std::uint16_t, std::size_t> channels_by_id_;
   bool channels_are_read_ = false;  ///< by read_channels_from()
   bool ended_ = false;              ///< the data section has ended
-  bool footer_ = false;             ///< found without a DataEnd record before it
+  bool footer_ = false;             ///< a footer was found without a DataEnd record before it
 };
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace mh {
 namespace {
 
-/// ROS 1's tf wrote "/map" where tf2 writes "map".
+/// A frame's name without a leading slash: ROS 1's tf wrote "/map" where tf2 writes "map".
 std::string frame_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
