@@ -18,8 +18,8 @@ namespace mh {
 ///
 /// URIs are resolved relative to the file that contains them (gazebo::Finder), never to the current
 /// folder.
-/// @param warnings  where to append what was omitted or repaired, once per item: missing models and
-///                  meshes, unsupported shapes, missing textures; may be null
+/// @param warnings  where to append what was omitted or repaired, each item once: missing models
+///                  and meshes, unsupported shapes, missing textures; may be null
 /// @throws InputError naming file and place: malformed SDF, invalid poses, recursive includes,
 /// nothing visible.
 Scene load_gazebo_world(const std::filesystem::path& file,

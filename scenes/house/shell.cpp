@@ -302,7 +302,7 @@ void build_hull_layer(const HousePlan& house, MaterialId material, float inset, 
                 .inwards = !outwards,
                 .step_m = kHullStep});
   }
-  if (!outwards) return;  // nothing stands on the far side of floors and ceilings
+  if (!outwards) return;  // only walls: nothing stands beyond floors and ceilings
   mesh.begin_instance("house/roof", class_id("ceiling"));
   mesh.panel(material, {{0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY()}, xs, ys);
   mesh.begin_instance("house/slab", class_id("otherstructure"));

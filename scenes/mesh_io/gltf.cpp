@@ -58,7 +58,7 @@ bool is_version_2(const Json& gltf) {
          gltf[place].get_ref<const std::string&>().starts_with("2");
 }
 
-/// @returns the content of an additional buffer
+/// @returns the content of the additional buffer; empty if there is none
 std::string mend(Json& gltf, const std::filesystem::path& file, std::string_view body,
                  std::vector<std::string>& warnings) {
   gltf::drop_movement(gltf);

@@ -31,7 +31,8 @@ class LabelImages {
 
 /// Opens the label images next to a recording: a folder `kind` ("label-filt", "instance-filt"), or
 /// a zip *_2d-KIND.zip. Null if neither exists.
-/// @throws InputError if the zip is damaged, or has names that point outside of it.
+/// @throws InputError if the zip is damaged, or if an entry would be extracted outside of the
+/// target folder.
 std::unique_ptr<LabelImages> find_label_images(const std::filesystem::path& folder,
                                                const std::string& kind);
 /// Opens a zip of label images; `name` names the file in messages.

@@ -38,7 +38,7 @@ struct RecordingInfo {
 struct RecordedMoment {
   Stamp stamp_ns = 0;  ///< of the color image
   Grid2d<Rgb8> color;
-  Grid2d<std::uint16_t> depth;           ///< in RecordingInfo::depth_per_meter; 0 = no return
+  Grid2d<std::uint16_t> depth;  ///< RecordingInfo::depth_per_meter units per m; 0 = no return
   std::optional<SE3> world_from_device;  ///< nullopt if the scan's tracking was lost
 };
 

@@ -245,7 +245,7 @@ void Data::replace_sparse(std::size_t accessor, bool normalized, Values& values)
   const Place from = place_of(index_in(replaced, "bufferView", kNone),
                               index_in(replaced, "byteOffset", 0), kind.bytes(), count);
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t item = 0;  // from little-endian bytes
+    std::uint32_t item = 0;  // its bytes in the file are little-endian
     std::memcpy(&item, at.bytes.data() + i * size_of(index_type), size_of(index_type));
     if (item >= values.count())
       fail(fmt::format("accessors[{}]: sparse index {} of {}", accessor, item, values.count()));

@@ -85,12 +85,12 @@ class BagFile : public MessageFile {
     std::string_view bytes;
     std::size_t begin = 0;
     std::uint32_t chunk = MessagePlace::kFile;
-    std::uint64_t chunk_at = 0;  ///< in the file
+    std::uint64_t chunk_at = 0;  ///< position in the file
   };
 
   struct Record {
     std::string_view header, data;
-    std::size_t end = 0;  ///< in the bytes that hold it
+    std::size_t end = 0;  ///< position in the bytes that hold it
   };
 
   /// nullopt if there is no whole record at this position.

@@ -46,12 +46,12 @@ class McapFile : public MessageFile {
     std::string_view bytes;
     std::size_t begin = 0;
     std::uint32_t chunk = MessagePlace::kFile;
-    std::uint64_t chunk_at = 0;  ///< in the file
+    std::uint64_t chunk_at = 0;  ///< position in the file
   };
 
   struct Record {
     Opcode opcode{};
-    std::size_t content_at = 0;  ///< in the bytes that hold it
+    std::size_t content_at = 0;  ///< position in the bytes that hold it
     std::string_view content;
     std::size_t end() const { return content_at + content.size(); }
   };

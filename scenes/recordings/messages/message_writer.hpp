@@ -19,7 +19,7 @@ struct TopicSpec {
   std::string name;
   std::string type;        ///< as in ROS 1: "sensor_msgs/Image"
   std::string definition;  ///< in the language of .msg files
-  std::string md5;         ///< of ROS 1
+  std::string md5;         ///< checksum of the definition in ROS 1
   bool latched = false;    ///< kept for later subscribers
 };
 
