@@ -11,7 +11,7 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector3f>;
 
-/// The part of a convex polygon with sign * (z - height) >= 0 (Sutherland and Hodgman, 1974).
+/// The part of a convex polygon where sign * (z - height) >= 0 (Sutherland and Hodgman, 1974).
 Polygon clip(const Polygon& polygon, float height_m, float sign) {
   Polygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -22,19 +22,19 @@ using Eigen::Vector3f;
 
 constexpr double kCell_m = 0.05;
 constexpr double kMostCells = 1000;  // along x and along y
-constexpr float kLevel = 0.7F;       // least cosine of a level face's slope: scans are rough
-constexpr float kUpright = 0.05F;    // less: a vertical face, which covers no area seen from above
-constexpr float kHeadroom_m = 1.0F;  // with less headroom, nobody can stand on a surface
+constexpr float kLevel = 0.7F;     // a level face's slope has at least this cosine: scans are rough
+constexpr float kUpright = 0.05F;  // below this cosine, a face is vertical: no area seen from above
+constexpr float kHeadroom_m = 1.0F;  // with less headroom, one cannot stand on a surface
 constexpr float kLayer_m = 0.1F;     // surfaces closer than this count as one
-constexpr double kBin_m = 0.05;      // of the histogram of heights
-constexpr double kLeast_m2 = 1.0;    // of a floor
-constexpr double kLarge = 0.25;      // of the largest level surface
-constexpr double kMostBelow = 0.25;  // share of the surface below a floor: excludes seats
+constexpr double kBin_m = 0.05;      // bin width of the histogram of heights
+constexpr double kLeast_m2 = 1.0;    // smallest area of a floor
+constexpr double kLarge = 0.25;  // least area of a large surface, as a share of the largest one's
+constexpr double kMostBelow = 0.25;  // greatest share of surface below a floor: excludes seats
 constexpr double kSteepest_rad = 2.0 * std::numbers::pi / 180;
-constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // less is measurement error
+constexpr double kLevelFloor_rad = 0.1 * std::numbers::pi / 180;  // below it: measurement error
 constexpr double kLevelFloor_m = 1e-3;
 
-/// A surface crossed above one position.
+/// Where the vertical line through a cell's center crosses a surface.
 struct Sample {
   std::uint32_t cell = 0;
   float z_m = 0;
@@ -95,20 +95,20 @@ class Columns {
   }
 
   /// Samples of walkable classes. If there is not enough headroom between two of them, only the
-  /// upper one is kept: a house's floor and not the ground below it.
+  /// upper one is kept: for example a house's floor, not the ground below it.
   std::vector<Sample> labeled() const {
     std::vector<Sample> some;
     std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labeled);
     return with_headroom(some);
   }
-  /// Samples that one could stand on, with headroom above.
+  /// Samples that one could stand on: with headroom above, and among the things.
   std::vector<Sample> standable() const {
     std::vector<Sample> some = with_headroom(samples);
     std::erase_if(some, [&](const Sample& sample) { return !among_things(point(sample)); });
     return some;
   }
-  /// Whether a point is within the extent of the things: a plane that extends to the horizon is
-  /// mostly outside of it.
+  /// Whether a point is within the extent of the things, which excludes most of a ground plane that
+  /// extends to the horizon.
   bool among_things(const Vector3d& p) const {
     return things_.contains(p.head<2>().cast<float>().eval());
   }
@@ -127,7 +127,8 @@ class Columns {
     return some;
   }
 
-  /// The extent of the things, without and with the faces that are labeled as floor.
+  /// The extent of the things, which is that of all faces that are not level; and the same extent
+  /// enlarged to include the faces that are labeled as floor.
   static std::pair<Eigen::AlignedBox2f, Eigen::AlignedBox2f> extents(const Scene& scene) {
     Eigen::AlignedBox2f things, labeled, all;
     for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -199,7 +200,7 @@ std::optional<double> lowest_large(const std::vector<Sample>& some, double cell_
   };
   std::vector<std::size_t> count(bin(high.z_m) + 2, 0);
   for (const Sample& sample : some) ++count[bin(sample.z_m)];
-  // Three bins: a floor is not at exactly one height.
+  // Sums of three adjacent bins, since a floor is not at exactly one height.
   std::vector<std::size_t> window(count.size(), 0);
   for (std::size_t i = 1; i + 1 < count.size(); ++i)
     window[i] = count[i - 1] + count[i] + count[i + 1];
@@ -207,7 +208,7 @@ std::optional<double> lowest_large(const std::vector<Sample>& some, double cell_
   const double enough = std::max(kLeast_m2 / cell_m2, kLarge * most);
   for (std::size_t i = 0; i < window.size(); ++i) {
     if (static_cast<double>(window[i]) < enough) continue;
-    while (i + 1 < window.size() && window[i + 1] > window[i]) ++i;  // its center
+    while (i + 1 < window.size() && window[i + 1] > window[i]) ++i;  // to the peak
     std::vector<float> heights;
     for (const Sample& sample : some)
       if (bin(sample.z_m) + 1 >= i && bin(sample.z_m) <= i + 1) heights.push_back(sample.z_m);
@@ -233,7 +234,7 @@ struct FloorPlane {
   }
 };
 
-/// Least-squares fit to the points near the plane; the height is then the median.
+/// A least-squares fit to the points near `plane`; its height is the median of the points'.
 FloorPlane refitted(const std::vector<Vector3d>& points, const FloorPlane& plane, double reach_m,
                     bool may_slope) {
   std::vector<Vector3d> near;
@@ -280,8 +281,8 @@ bool too_much_below(const Scene& scene, const FloorPlane& plane, const Columns& 
   return below > kMostBelow * all || below > above;
 }
 
-/// Five standard deviations of the floor vertices' height above the plane: far enough that noise
-/// puts none of a scan's many thousands of vertices beyond it.
+/// Five standard deviations of the floor vertices' heights above the plane: even among a scan's
+/// many thousands of floor vertices, noise moves none that far.
 double roughness_m(const Scene& scene, const FloorPlane& plane) {
   std::vector<double> away;
   for (std::size_t face = 0; face < scene.triangles.size(); ++face) {
@@ -341,7 +342,7 @@ std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> f
   std::ranges::copy_if(some, std::back_inserter(inner), [&](const Sample& sample) {
     return (labeled || sample.level) && columns.among_things(columns.point(sample));
   });
-  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // the objects are not on the floor
+  if (columns.area_m2(inner) < kLeast_m2) inner = some;  // the objects are beside the floor
   const std::optional<double> z_m = floor_z_m ? floor_z_m : lowest_large(inner, columns.cell_m2());
   if (!z_m) return std::nullopt;
 
@@ -375,8 +376,8 @@ bool looks_y_up(const Scene& scene) {
     floor_aside += static_cast<double>(n.y());
   }
   if (0.5 * std::max(floor_up, floor_aside) >= kLeast_m2) return floor_aside > 2 * floor_up;
-  // A room is lower than it is wide, and most of its horizontal surface is floor, ceiling and
-  // tables.
+  // A room is lower than it is wide, and more of its surface faces up or down (floor, ceiling,
+  // tables) than along a horizontal axis.
   const Vector3f size = box.isEmpty() ? Vector3f::Zero().eval() : Vector3f(box.sizes());
   return size.z() > 3.2F && size.y() > 1.8F && size.y() < 0.9F * std::min(size.x(), size.z()) &&
          level_area(scene, 1) > level_area(scene, 2);

@@ -27,22 +27,23 @@ struct FoundFloor {
 };
 
 /// Clips rooms that are boxes to 2 m around the things in the scene: ground that extends to the
-/// horizon is floor, but nothing drives, scans or takes images far from all objects.
+/// horizon is floor, but no robot or camera moves far away from all objects.
 void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& things_m);
 
-/// Finds the floor of a scene that does not state one: from faces of a walkable class, otherwise
-/// the lowest large level surface with headroom to stand. If there are two levels, the lower one is
-/// taken if it is at least a quarter as large as the larger. A plane is fitted that may slope by up
-/// to 2 degrees; steeper fits are replaced by a level plane. `rough_m` is five times the spread,
-/// 0.03 to 0.12 m.
-/// @param floor_z_m  the user's floor height: a level plane is used
+/// Finds the floor of a scene that does not state one: from the faces of a walkable class or, if
+/// there are too few, from the lowest large level surface with headroom to stand. If there are two
+/// levels, the lower one is taken if it is at least a quarter as large as the larger. A plane is
+/// fitted that may slope by up to 2 degrees; steeper fits are replaced by a level plane.
+/// Floor::rough_m is set to five standard deviations of the floor's height, but to at least 0.03
+/// and at most 0.12 m.
+/// @param floor_z_m  the floor's height as stated by the user: the floor is then a level plane
 /// @param warnings   where to append anything doubtful; may be null
 /// @returns nullopt if there is nothing to stand on.
 std::optional<FoundFloor> find_floor(const Scene& scene, std::optional<double> floor_z_m = {},
                                      std::vector<std::string>* warnings = nullptr);
 
-/// Whether a scene looks as if its file had y up: its labeled floor is vertical or, without one,
-/// the scene is shaped like a room that lies on its side.
+/// Whether a scene looks as if its file had y up: its labeled floor is vertical or, if no floor is
+/// labeled, the scene is shaped like a room that lies on its side.
 bool looks_y_up(const Scene& scene);
 
 /// Turns a scene from y up to z up, as for glTF: (x, y, z) becomes (x, -z, y). `back` reverses it.

@@ -21,7 +21,7 @@ void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& 
   for (Room& room : rooms)
     if (room.is_box)
       for (Vector2d& corner : room.polygon_m) corner = corner.cwiseMax(low).cwiseMin(high);
-  const auto is_away = [](const Room& room) {  // it was entirely outside
+  const auto is_away = [](const Room& room) {  // the room was entirely outside
     return room.is_box && room.polygon_m.size() == 4 &&
            ((room.polygon_m[2] - room.polygon_m[0]).array() <= 0).any();
   };

@@ -67,7 +67,7 @@ class WorldReader {
     meshes_.clear();
     if (!scene_.lights.empty()) {
       const float edge_m = gazebo::edge_for_light_m(scene_);
-      constexpr std::size_t kEnoughFaces = 1'000'000;  // a 100 km road is split along its length
+      constexpr std::size_t kEnoughFaces = 1'000'000;  // reached, for example, by a 100 km road
       scene_ = subdivide(std::move(scene_), edge_m, kEnoughFaces);
     }
     finish_parts(scene_);
@@ -75,8 +75,8 @@ class WorldReader {
   }
 
  private:
-  /// Adds elements of a world. libsdformat rejects a whole document if it rejects one element: the
-  /// other elements are then read without it.
+  /// Adds elements of a world. libsdformat rejects a whole document if it rejects one element; the
+  /// other elements are then read without the rejected one.
   /// @returns whether nothing was rejected
   bool add_piece(const std::string& scene, std::span<const std::string> elements) {
     sdf::ParserConfig config;
@@ -106,7 +106,8 @@ class WorldReader {
     ambient_ = {ambient.R(), ambient.G(), ambient.B()};
   }
 
-  /// A pose that refers to a missing frame is taken as relative to its parent.
+  /// If a pose refers to a missing frame, the pose is taken as relative to the parent of its
+  /// element.
   template <class Thing>
   Eigen::Affine3d pose_of(const Thing& thing, const std::string& what) {
     ignition::math::Pose3d pose;
@@ -130,7 +131,7 @@ class WorldReader {
     std::optional<ClassId> class_id = rules_.find({model.Name()});
     if (!class_id && guess_class(model.Name()) != kVoid) class_id = guess_class(model.Name());
     const bool known = std::ranges::any_of(parts.class_of, [](ClassId c) { return c != kVoid; });
-    if (!class_id && !known) class_id = kVoid;  // makes it one object
+    if (!class_id && !known) class_id = kVoid;  // void, not unset, makes it one object
     append_part(scene_, std::move(parts), Eigen::Affine3d::Identity(), model.Name(), class_id);
   }
 

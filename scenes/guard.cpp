@@ -18,7 +18,7 @@ Scene load_guarded(const std::filesystem::path& file, std::vector<std::string>* 
   }
   std::vector<std::string> reported;
   Scene scene;
-  std::string read;  // record of what the child read: this process does not see the child's scopes
+  std::string read;  // what the child read, sent because its scopes are not seen in this process
   const auto work = [&]() -> std::function<void(PipeWriter&)> {
     const ReadScope scope;
     scene = load(&reported);

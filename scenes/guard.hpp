@@ -13,8 +13,8 @@ namespace mh {
 
 /// Runs a reader that relies on third-party parsers in a child process under limits, and receives
 /// the scene from it. If a parser crashes, hangs or exhausts memory, the result is a one-line
-/// error. A nested reader runs in the child of the outer one. What the child reads is recorded here
-/// (ReadScope).
+/// error. A nested reader runs in the child of the outer one. What the child reads is recorded in
+/// this process (ReadScope).
 /// @param file      named in error messages; the innermost file if readers are nested
 /// @param warnings  where to append what `load` appended; may be null.
 /// @param load      reads the scene; its argument is where to append warnings.

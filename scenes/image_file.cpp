@@ -84,7 +84,7 @@ const char* png_fault(std::string_view bytes) {
   return "is truncated";
 }
 
-/// Bytes of a decoded pixel, if the bytes are a JPEG or PNG.
+/// Number of bytes that a pixel of a JPEG or PNG takes once it is decoded.
 std::uint64_t bytes_per_pixel(std::string_view bytes) {
   constexpr std::size_t kBits = 24, kColorType = 25;  // offsets in a PNG
   if (bytes.starts_with("\xff\xd8") || bytes.size() <= kColorType) return 3;

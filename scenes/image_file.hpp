@@ -26,7 +26,8 @@ std::optional<ImageSize> announced_size(std::string_view bytes);
 
 /// What is wrong with a JPEG or PNG as a file, found without decoding it: "is truncated", a PNG's
 /// wrong checksum, or the kind of the image if it is not supported; nullptr if nothing is wrong.
-/// Decoders would return an image whose end is gray, and at most report that on stderr.
+/// For a truncated file, decoders would return an image whose end is gray, and at most report that
+/// on stderr.
 const char* image_fault(std::string_view bytes);
 
 /// Whether the header declares more pixels than this number of bytes can encode, or more than are
@@ -43,8 +44,8 @@ enum class ImageForm { kStored, kColor, kGray };
 
 /// Decodes an image of any kind that OpenCV reads, or a TGA (only as stored). All image decoding in
 /// the program goes through this function.
-/// @throws InputError stating what is wrong with it, to be appended to a file's name: damaged,
-/// truncated, or declaring more pixels than the file can contain.
+/// @throws InputError whose text is to be appended to the file's name and states what is wrong:
+/// damaged, truncated, or declaring more pixels than the file can contain.
 cv::Mat decode_image(std::string_view bytes, ImageForm form = ImageForm::kStored);
 /// Reads an image file. @throws InputError naming the file.
 cv::Mat read_image(const std::filesystem::path& file, ImageForm form = ImageForm::kStored);
@@ -58,7 +59,8 @@ std::optional<Grid2d<Rgb8>> decode_color(std::string_view bytes);
 std::optional<Grid2d<std::uint16_t>> decode_gray16(std::string_view bytes);
 
 /// Decodes a depth image: one channel of 16 bits. Fewer bits cannot hold millimeters.
-/// @throws InputError stating what it is instead, to be appended to a file's name.
+/// @throws InputError whose text is to be appended to the file's name and states what the image is
+/// instead.
 Grid2d<std::uint16_t> decode_depth16(std::string_view bytes);
 
 /// @param quality  of the JPEG, 1 to 100

@@ -94,7 +94,7 @@ Scene load(const std::filesystem::path& file, std::vector<std::string>* warnings
 
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings,
                  const SceneFrame& frame) {
-  std::vector<std::string> unheard;  // so that the same files are read if no warnings are wanted
+  std::vector<std::string> unheard;  // so that the same files are read even without `warnings`
   if (warnings == nullptr) warnings = &unheard;
   try {
     Scene scene = load(file, warnings, frame);

@@ -19,8 +19,8 @@ namespace mh {
 /// bounding box as a room.
 /// @param warnings  where to append what was repaired; may be null.
 /// @param frame     what the user states about the file's frame
-/// @throws InputError if the file is missing, damaged or of an unknown type, or `frame` turns a
-/// house.
+/// @throws InputError if the file is missing, damaged or of an unknown type, or `frame` states that
+/// a house has y up.
 Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* warnings = nullptr,
                  const SceneFrame& frame = {});
 

@@ -23,7 +23,7 @@ using MaterialId = std::uint16_t;  ///< index into Scene::materials
 struct BoxStyle {
   float bevel_m = 0.004F;  ///< chamfer of all edges; 0 = sharp
   int grain_axis = -1;     ///< 0, 1, 2: u (the wood grain) runs along x, y, z; -1: along the
-                           ///< longest
+                           ///< longest side
 };
 
 /// Radii of a round body at its two ends.
@@ -42,7 +42,7 @@ struct Plane {
 /// are counter-clockwise seen from outside.
 class MeshBuilder {
  public:
-  /// The material of a spec, created once per distinct spec; it may glow (linear radiance).
+  /// The material of a spec, created once per distinct spec and emission (linear radiance).
   MaterialId material(const MaterialSpec& spec, const Eigen::Vector3f& emission = {0, 0, 0});
 
   /// Starts an object: everything added from now on belongs to it. @pre the name is new.
@@ -82,8 +82,8 @@ class MeshBuilder {
   /// Round body between two centers (a cone if the radii differ), optionally closed by caps.
   void cylinder(MaterialId material, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                 const EndRadii& radii, int sides = 16, bool caps = true);
-  /// Revolves a profile of (radius, height) around the z axis through `center`, listed so that the
-  /// outside is to the right of its direction (faces of a profile listed upward point outward).
+  /// Revolves a profile of (radius, height) around the z axis through `center`. The outside is to
+  /// the right of the profile's direction: faces of a profile that is listed upward point outward.
   void lathe(MaterialId material, const Eigen::Vector3f& center,
              std::span<const Eigen::Vector2f> profile, int sides = 24);
   /// A polygon in the xy plane (counter-clockwise, star-shaped about its mean) extruded along z.
@@ -96,8 +96,8 @@ class MeshBuilder {
   /// A soft box: edges rounded by radius_m, top and bottom bulging by bulge_m.
   void cushion(MaterialId material, const Eigen::Vector3f& center, const Eigen::Vector3f& size_m,
                float radius_m, float bulge_m = 0.0F, float edge_m = 0.07F);
-  /// A surface point(s, t), s and t in [0, 1], with nu x nv cells; size_m is its size on the
-  /// texture.
+  /// A surface given by point(s, t), s and t in [0, 1], with nu x nv cells; size_m is its size on
+  /// the texture.
   void sheet(MaterialId material, const std::function<Eigen::Vector3f(float, float)>& point, int nu,
              int nv, const Eigen::Vector2f& size_m);
   /// A pointed leaf from `root` along `way` (unit), drooping by `droop` (share of its length).

@@ -30,7 +30,7 @@ void MeshBuilder::box(MaterialId material, const Vector3f& min_m, const Vector3f
   const Vector2f offset(static_cast<float>(random.uniform(0)),
                         static_cast<float>(random.uniform(1)));
 
-  // Breaks per axis inside the bevel, shared by faces and bevels.
+  // Breaks along each axis between the bevels; used for both faces and bevels.
   std::array<std::vector<float>, 3> stops;
   for (int k = 0; k < 3; ++k) {
     const float a = min_m[k] + bevel, b = max_m[k] - bevel;

@@ -17,7 +17,8 @@ using Eigen::Vector3f;
 
 constexpr float kTau = 2.0F * std::numbers::pi_v<float>;
 
-/// Point k of n on the unit circle; k = n is exactly k = 0, so that rings close without a crack.
+/// Point k of n on the unit circle; point n is exactly point 0, so that rings close without a
+/// crack.
 Vector2f on_circle(int k, int n) {
   const float angle = kTau * static_cast<float>(k % n) / static_cast<float>(n);
   return {std::cos(angle), std::sin(angle)};
@@ -30,7 +31,7 @@ std::pair<Vector3f, Vector3f> across(const Vector3f& way) {
   return {first, way.cross(first)};
 }
 
-/// Projects a welded soft shape to a plane without a seam: none of its faces is edge-on.
+/// Projects a welded soft shape to a plane, without a seam and such that no face is edge-on.
 Vector2f soft_uv(const Vector3f& p) {
   return {p.x() + 0.6F * p.z(), p.y() + 0.6F * p.z()};
 }

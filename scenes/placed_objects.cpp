@@ -25,7 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kMostIds = std::numeric_limits<std::uint16_t>::max();
 
-/// Appends a per-vertex array; if only one side has it, the other is filled with `neutral`.
+/// Appends a per-vertex array; if only one of the two scenes has it, the other's part is filled
+/// with `neutral`.
 template <class T>
 void append_values(std::vector<T>& whole, std::size_t before, const std::vector<T>& part,
                    std::size_t count, const T& neutral) {

@@ -20,7 +20,7 @@ struct PlacedObject {
   std::string name;  ///< unique in its scene
   std::filesystem::path file;
   Eigen::Affine3d scene_from_object = Eigen::Affine3d::Identity();
-  std::optional<ClassId> class_id;  ///< of the whole file; nullopt = as the file itself states
+  std::optional<ClassId> class_id;  ///< class of the whole file; nullopt: classes as in the file
   std::optional<UpAxis> up;         ///< of the file
 };
 

@@ -32,7 +32,7 @@ struct PlainPng {
   }
 };
 
-/// Reads the header and joins the data; nullopt if it is of another kind.
+/// Reads the header and joins the data; nullopt if the PNG is of a kind that is not decoded here.
 std::optional<PlainPng> read_chunks(std::string_view bytes) {
   constexpr std::size_t kSignature = 8, kHeader = 13;
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return std::nullopt;

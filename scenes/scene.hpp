@@ -30,8 +30,8 @@ struct Material {
   SharedGrid<std::uint8_t> opacity{};
   Eigen::Vector2f tile_m{1.0F, 1.0F};  ///< physical size of one repeat of the texture, if known
   Eigen::Vector3f emission = Eigen::Vector3f::Zero();  ///< linear radiance added to reflected light
-  /// Share of light (linear RGB) that a thin pane transmits, such as glass and gauze curtains; zero
-  /// = none. A pane tints what is behind it and has no depth or label of its own.
+  /// Share of light (linear RGB) that a thin pane, such as glass or a gauze curtain, transmits;
+  /// zero = none. A pane tints what is behind it and has no depth or label of its own.
   Eigen::Vector3f transmission = Eigen::Vector3f::Zero();
   bool is_pane() const { return !transmission.isZero(0.0F); }
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Serialization of a scene. One list of fields per type serves both directions; its structured
-// binding names every field, so a newly added field that is missing here does not compile.
+// Serialization of a scene. One list of fields per type serves both for writing and for reading;
+// its structured binding names every field, so the code does not compile if a newly added field is
+// missing here.
 
 #include <algorithm>
 #include <concepts>

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kTgaHeader = 18, kMostTgaPixels = std::size_t{1} << 28;
 
 enum TgaKind { kTgaPalette = 1, kTgaColor = 2, kTgaGray = 3 };
-constexpr int kRunLengths = 8;  // added to the kind
+constexpr int kRunLengths = 8;  // added to the kind if run-length encoded
 
 /// Content of a header: where the palette and the pixels are, and how they are written.
 struct TgaHeader {

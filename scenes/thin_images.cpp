@@ -32,7 +32,7 @@ std::map<const void*, AreaByHalvings> measure(const Scene& scene) {
                           step2 = (uv[c] - uv[a]).cast<double>();
     const double texels = 0.5 * std::abs(step1.x() * step2.y() - step2.x() * step1.y()) *
                           static_cast<double>(image.size());
-    constexpr double kFew = 4.0;  // a face that takes its color from a single point
+    constexpr double kFew = 4.0;  // with fewer, a face takes its color from a single point
     if (texels < kFew || area_m2 <= 0.0) continue;
     const double halvings = std::floor(std::log2(kCoarsest_m / std::sqrt(area_m2 / texels)));
     const auto [place, is_new] = areas.try_emplace(image.identity(), AreaByHalvings{});

@@ -197,7 +197,7 @@ void washbasin(Piece& p) {
         {{0.35F, h - 0.19F}, {0.7F, h - 0.15F}, {0.93F, h - 0.08F}, {0.97F, h - 0.055F}}};
     oval(p, white, {0, 0, 0}, {w / 2, d / 2, 0.6F}, belly, 30);
   }
-  // The slab with its basin, one closed shape from rim to hollow.
+  // The slab and its basin, as one closed shape.
   p.part("sink", "sink");
   const float bx = std::min(0.42F * w, 0.25F), by = 0.33F * d, cy = -0.06F * d;
   m.box(white, {-w / 2, -d / 2, h - 0.055F}, {-bx, d / 2, h}, {.bevel_m = 0.012F});

@@ -172,8 +172,8 @@ MaterialSpec plain(std::string kind, Rgb8 tone, double variation = 0.3, std::uin
 struct Front {
   float x0, x1, y, z0, z1;
 };
-/// Space for books: standing on z, spines at y = front (facing -y), at most `height` tall and
-/// `depth` deep.
+/// Space for books of at most `height` and `depth` that stand at height z, with their spines at y =
+/// front (facing -y).
 struct BookSpace {
   float x0, x1, front, z, height, depth;
 };
@@ -183,8 +183,8 @@ void books(Piece& piece, const BookSpace& space, std::uint64_t row);
 struct Oval {
   float radius_x_m, radius_y_m, square = 1.0F;
 };
-/// A round body with this cross section. The profile lists (share of the radii, height above
-/// center) upward; its faces point outward.
+/// A round body with this cross section. The profile lists pairs (share of the radii, height above
+/// `center`) from bottom to top; the faces point outward.
 void oval(Piece& piece, MaterialId material, const Eigen::Vector3f& center, const Oval& section,
           std::span<const Eigen::Vector2f> profile, int sides = 28);
 /// The material of handles: the role `metal`.

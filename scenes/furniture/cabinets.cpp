@@ -39,7 +39,8 @@ void drawer_front(Piece& p, MaterialId wood, MaterialId metal, const Front& fron
   handle(p, metal, {x - reach, y - 0.018F, z}, {x + reach, y - 0.018F, z});
 }
 
-/// Base and closed case behind door and drawer fronts; returns the plane of the fronts' backs.
+/// Builds the base and the closed case behind the fronts of doors and drawers; returns the y of the
+/// backs of these fronts.
 float closed_case(Piece& p, MaterialId wood, float plinth, float top) {
   const float x = p.size_m.x() / 2, y = p.size_m.y() / 2, h = p.size_m.z();
   const float front = -y + 0.055F;  // fronts and handles stay inside the footprint
@@ -79,7 +80,7 @@ void dresser(Piece& p) {
   const float each = (h - 0.08F - 0.035F) / static_cast<float>(rows);
   for (int i = 0; i < rows; ++i) {
     const float z0 = 0.08F + each * static_cast<float>(i) + 0.003F, z1 = z0 + each - 0.006F;
-    if (i == rows - 1) {  // two small ones above
+    if (i == rows - 1) {  // two small drawers on top
       drawer_front(p, wood, grip, {-w / 2 + 0.012F, -0.003F, y, z0, z1});
       drawer_front(p, wood, grip, {0.003F, w / 2 - 0.012F, y, z0, z1});
     } else {

@@ -22,7 +22,7 @@ void curtain(Piece& p) {
   p.mesh.sheet(cloth,
                [&](float s, float t) -> Vector3f {
                  const float a = 6.2831853F * folds * s;
-                 const float swell = 0.55F + 0.45F * t;  // folds open downward
+                 const float swell = 0.55F + 0.45F * t;  // folds widen toward the bottom
                  const float y = swell * 0.36F * d *
                                  (std::sin(a + phase) + 0.22F * std::sin(2.3F * a + 4.0F * t));
                  const float x =

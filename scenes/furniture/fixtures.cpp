@@ -96,7 +96,7 @@ void pipes(Piece& p) {
   const MaterialId valve = p.fixed(plain("plastic", {176, 44, 40}, 0.1, 165));
   MeshBuilder& m = p.mesh;
   const float r = std::min(0.014F, 0.28F * d), y = d / 2 - 1.6F * r - 0.006F;
-  // Two go up at the left; near the floor they turn and run along the wall.
+  // Two pipes rise at the left; near the floor they turn and run along the wall.
   for (int i = 0; i < 2; ++i) {
     const float x = -w / 2 + 0.03F + 0.07F * static_cast<float>(i),
                 z = 0.05F + 0.07F * static_cast<float>(i);

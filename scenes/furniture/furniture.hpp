@@ -32,15 +32,15 @@ class Piece {
   const Eigen::Vector3f size_m;  ///< width, depth, height
   const RandomStream random;     ///< of this piece alone
 
-  /// The material of a role ("wood", "fabric"): the user's if given, otherwise `usual`. Images get
-  /// the size of `usual`.
+  /// The material of a role ("wood", "fabric"): the user's if given, otherwise `usual`. An image
+  /// always has the size of `usual`.
   MaterialId material(const std::string& role, MaterialSpec usual,
                       const Eigen::Vector3f& emission = {0, 0, 0});
   /// A material that the user cannot change.
   MaterialId fixed(const MaterialSpec& spec, const Eigen::Vector3f& emission = {0, 0, 0}) {
     return mesh.material(spec, emission);
   }
-  /// Starts a part that is a separate object ("bed" -> "bed/pillow_1"), until body().
+  /// Starts a part that is a separate object ("bed" -> "bed/pillow_1"); body() ends it.
   void part(const std::string& suffix, std::string_view class_name);
   void body() { mesh.resume_instance(body_); }
 

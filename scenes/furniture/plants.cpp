@@ -11,7 +11,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// Pot with earth; returns the height of the earth.
+/// A pot with soil; returns the height of the soil.
 float pot(Piece& p, float radius, float height) {
   const MaterialId clay = p.material("pot", plain("ceramic", {186, 174, 158}, 0.3, 111));
   const MaterialId earth = p.fixed(plain("carpet", {70, 52, 38}, 0.6, 112));

@@ -45,7 +45,7 @@ void bed(Piece& p) {
           {w + 0.3F, d - 0.6F});
   m.cushion(duvet, {0, top - 0.02F, 0.485F}, {w - 0.03F, 0.22F, 0.085F}, 0.04F);  // the fold
   m.sheet(duvet,
-          [&](float s, float t) {  // over the foot
+          [&](float s, float t) {  // over the foot of the bed
             Vector3f q = cover(s, 0.0F);
             q.z() -= t * std::max(0.0F, q.z() - 0.30F);
             return q;

@@ -51,7 +51,7 @@ void bookshelf(Piece& p) {
           {-w / 2 + 0.026F, -w / 2 + 0.026F + fill * (w - 0.055F), -d / 2 + 0.03F, z,
            pitch - kBoard - 0.02F, d - 0.06F},
           static_cast<std::uint64_t>(i));
-    if (fill < 0.85F) {  // an ornament in the space left
+    if (fill < 0.85F) {  // an ornament in the remaining space
       const float space = (1.0F - fill) * w, r = std::min(0.07F, 0.38F * space);
       const float tall = std::min(0.22F, pitch - 0.08F);
       p.part(fmt::format("vase_{}", i + 1), "vase");

@@ -11,7 +11,7 @@ namespace {
 void four_legs(Piece& p, MaterialId wood, float top, float leg, float inset, float apron) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   MeshBuilder& m = p.mesh;
-  m.max_edge_m = 0.07F;  // for the shadows of things on it
+  m.max_edge_m = 0.07F;  // fine enough for the shadows of things on the top
   m.box(wood, {-w / 2, -d / 2, h - top}, {w / 2, d / 2, h}, {.bevel_m = 0.006F, .grain_axis = 0});
   m.max_edge_m = 0.12F;
   const float x = w / 2 - inset - leg / 2, y = d / 2 - inset - leg / 2;

@@ -16,7 +16,8 @@ MaterialSpec black_plastic() {
   return plain("plastic", {26, 26, 28}, 0.2, 2);
 }
 
-/// A frame of four bars without miters around an image at the front of the piece's back wall.
+/// A frame of four bars without miters, and the image in it, `image_inset` behind the frame's
+/// front.
 void framed(Piece& p, MaterialId frame, MaterialId image, float bar, float image_inset) {
   const float w = p.size_m.x(), d = p.size_m.y(), h = p.size_m.z();
   MeshBuilder& m = p.mesh;

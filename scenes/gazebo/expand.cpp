@@ -83,7 +83,8 @@ class Expander {
       else
         elements.push_back(text_of_all(element));
     }
-    // libsdformat takes 4 MB for each model, and 0.1 s for each document.
+    // libsdformat takes 4 MB for each model and 0.1 s for each document: pieces must be neither too
+    // large nor too many.
     const std::size_t at_once = std::clamp<std::size_t>(elements.size() / 16, 16, 128);
     for (std::size_t i = 0; i < elements.size(); ++i) {
       if (expanded.pieces.empty() || (!refers && i % at_once == 0)) expanded.pieces.emplace_back();

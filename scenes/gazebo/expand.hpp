@@ -18,11 +18,11 @@ namespace mh::gazebo {
 ///
 /// If model://sun and model://ground_plane are missing, they are replaced by a light from above and
 /// a gray 100 m plane. Other missing models and meshes are omitted with a warning.
-/// @param visuals  number of visuals in it
+/// @param visuals  number of visuals in the world
 /// @throws InputError naming file and place: invalid XML, circular includes or more than 10,000 of
 /// them.
 struct Expanded {
-  std::string scene;                             ///< the element of that name, or empty
+  std::string scene;  ///< the world's element `scene`; empty if it has none
   std::vector<std::vector<std::string>> pieces;  ///< elements of the world, mainly its models
   std::size_t visuals = 0;
 };

@@ -17,10 +17,11 @@ class Finder {
   ///
   /// A path (with or without file://) is searched for in the folder of the file that contains it
   /// and in the four folders above. model://NAME/... and package://NAME/... are searched for in
-  /// these folders and the models/ folder of each, in the same places relative to the world's
-  /// folder, and in the folders of GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH; https://
-  /// in Fuel's cache (~/.gz/fuel, ~/.ignition/fuel, GZ_FUEL_CACHE_PATH). The current folder is
-  /// never searched. Percent codes are decoded if no file has the name as written.
+  /// these folders and the models/ folder of each; in the corresponding folders of the world's
+  /// file; and in the folders listed in GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH.
+  /// https://... is searched for in Fuel's cache (~/.gz/fuel, ~/.ignition/fuel,
+  /// GZ_FUEL_CACHE_PATH). The current folder is never searched. Percent codes are decoded if no
+  /// file has the name as written.
   std::optional<std::filesystem::path> find(const std::string& uri,
                                             const std::filesystem::path& file) const;
 

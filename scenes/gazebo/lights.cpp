@@ -9,7 +9,7 @@ namespace mh::gazebo {
 
 Light light_of(const sdf::Light& light, const Eigen::Affine3d& world_from_light) {
   const auto diffuse = light.Diffuse();
-  // Gazebo shows albedo x diffuse x cosine, we show albedo x irradiance / pi.
+  // Gazebo shows albedo x diffuse x cosine; we show albedo x irradiance / pi, hence the factor pi.
   const float gain = std::numbers::pi_v<float> * static_cast<float>(light.Intensity());
   const Eigen::Vector3f color =
       gain * Eigen::Vector3f(diffuse.R(), diffuse.G(), diffuse.B()).cwiseMax(0.0F);
@@ -37,7 +37,7 @@ float edge_for_light_m(const Scene& scene) {
                          .cross(scene.positions_m[c] - scene.positions_m[a])
                          .cast<double>()
                          .norm();
-  constexpr double kMostFaces = 1e6, kFacesPerSquare = 4.0;  // halving leaves up to four
+  constexpr double kMostFaces = 1e6, kFacesPerSquare = 4.0;  // halving edges can leave up to four
   return static_cast<float>(std::max(1.0, std::sqrt(kFacesPerSquare * area_m2 / kMostFaces)));
 }
 

@@ -10,8 +10,8 @@
 
 namespace mh::gazebo {
 
-/// What is wrong with a shape's dimensions, since libsdformat accepts any number; nullopt if they
-/// are valid.
+/// What is wrong with a shape's dimensions; nullopt if they are valid. libsdformat does not check
+/// this: it accepts any number.
 std::optional<std::string> fault_of(const sdf::Geometry& geometry);
 
 /// A box, capsule, cylinder, ellipsoid, plane or sphere as one object, centered on its own origin;

@@ -23,8 +23,8 @@ void gather_references(const XMLElement* element, std::set<std::string>& names) 
   }
 }
 
-/// Overwrites with spaces an XML declaration that follows a comment: some released models have this
-/// error, which does not matter here.
+/// If an XML declaration follows a comment, overwrites it with spaces: some released models have
+/// this harmless error.
 void drop_late_declaration(std::string& text) {
   const std::size_t at = text.find("<?xml");
   if (at == 0 || at == text.npos || at > text.find("<sdf")) return;

@@ -14,7 +14,7 @@ namespace mh::gazebo {
 struct Source {
   std::filesystem::path file;
   tinyxml2::XMLDocument document;
-  bool has_frames = false;         ///< before SDF 1.7, a pose's frame had no meaning
+  bool has_frames = false;         ///< false before SDF 1.7, where a pose's frame had no meaning
   std::set<std::string> referred;  ///< names used by relative_to and attached_to
 };
 

@@ -7,11 +7,11 @@ namespace mh::generate {
 
 // Many pieces of one design, arranged in a pattern.
 
-/// Adds rows of identical pieces that face one wall: desks in a classroom. @returns the number of
-/// pieces
+/// Adds rows of identical pieces that face one wall, such as desks in a classroom. @returns the
+/// number of pieces
 int add_rows(Draft& draft, const Design& design);
-/// Adds double rows back to back, with aisles between them and around their ends: shelves in a
-/// store.
+/// Adds double rows back to back, with aisles between them and around their ends, such as shelves
+/// in a store.
 int add_aisles(Draft& draft, const Design& design);
 /// Adds curtains on both sides of each window, or one radiator or blind per window, about as wide
 /// as the window.

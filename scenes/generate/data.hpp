@@ -6,7 +6,7 @@
 
 namespace mh {
 
-/// In the order of the paper's Table 1.
+/// The categories, in the order of the paper's Table 1.
 inline constexpr std::array<std::string_view, 12> kCategoryNames = {
     "bathroom", "bedroom", "bookstore",   "classroom", "conference_room", "copy_mail_room",
     "hallway",  "kitchen", "living_room", "lobby",     "office",          "misc"};

@@ -22,7 +22,7 @@ struct Stuff {
 /// Names of materials.
 struct Surfaces {
   std::string floor, wall, ceiling, trim, frame, garden;
-  std::string accent;  ///< of one wall; if empty, it is like the others
+  std::string accent;  ///< of one wall; if empty, that wall is like the others
   Side accent_side = Side::kSouth;
 };
 
@@ -50,8 +50,8 @@ struct Draft {
 /// Number of positions tried for one piece.
 inline constexpr int kTries = 24;
 
-/// Rounds to a millimeter. Plans are written in whole millimeters, so what is checked is what is
-/// read back.
+/// Rounds to a millimeter. Plans are written in whole millimeters: after rounding, the positions
+/// that are checked are those that will be read back.
 double whole_mm(double m);
 Eigen::Vector2d whole_mm(const Eigen::Vector2d& at_m);
 double half_degrees(double deg);

@@ -21,12 +21,12 @@ namespace mh::generate {
 namespace {
 
 constexpr double kWall_m = 0.12;
-constexpr int kTriedDrafts = 400;   // rooms or corridors drawn until one has all that it needs
-constexpr int kAnyNumber = 10'000;  // of objects: only the rules limit them
+constexpr int kTriedDrafts = 400;   // rooms or corridors that are drawn until one is complete
+constexpr int kAnyNumber = 10'000;  // number of objects, limited only by the rules
 constexpr double kLeastFreeShare = 0.12;
 
-/// Draws pieces by all rules of the grammar. @returns whether all required pieces fit and enough
-/// floor stays free
+/// Draws pieces according to all rules of the grammar. @returns whether all required pieces fit and
+/// enough floor stays free
 bool furnish_by_rules(Draft& draft) {
   draft.wanted_objects = kAnyNumber;
   for (const ItemRule& rule : draft.grammar.furniture)
@@ -118,7 +118,7 @@ void add_room(HouseFile& floor, const HouseFile& house, const std::string& name,
   room.special_walls = std::move(special);
   for (ItemEntry& item : room.items) {
     for (auto& [role, material] : item.materials) material = own(material);
-    if (!item.on.empty()) continue;  // in its carrier's frame
+    if (!item.on.empty()) continue;  // it is placed in its carrier's frame
     item.at_m = place * item.at_m;
     if (place.turned) item.turn_deg = std::remainder(item.turn_deg + 180.0, 360.0);
   }
@@ -225,7 +225,7 @@ GeneratedPlan generate_floor(const FloorGrammar& grammar, std::uint64_t seed) {
         static_cast<int>(std::ranges::count(draft.layout.items(), true, &LayoutItem::fitting));
   };
   count(corridor);
-  plan.objects -= 2 * per_side;  // doors are on both sides of their wall
+  plan.objects -= 2 * per_side;  // the rooms' doors are counted with the rooms
   for (std::size_t k = 0; k < places.size(); ++k) {
     const Draft room = inhabited(design, grammar.objects_of_its_own, Dice(stream.fork(3).fork(k)));
     add_room(floor, describe(room, name), fmt::format("room_{}", k + 1), places[k]);

@@ -23,7 +23,7 @@ namespace {
 
 using namespace generate;
 
-constexpr int kDrafts = 400;         // rooms drawn until one has everything that it needs
+constexpr int kDrafts = 400;         // rooms that are drawn until one is complete
 constexpr double kLeastFree = 0.07;  // share of the floor where the robot can stand
 
 int draw_wanted_objects(Dice& dice, int group, double area_m2) {
@@ -125,7 +125,7 @@ std::string with_detail(const GeneratedPlan& plan) {
     const double wanted = std::clamp(count, static_cast<double>(kLeastTriangles),
                                      static_cast<double>(kMostTriangles));
     if (wanted == count) break;
-    // Round shapes do not scale with detail: aim slightly higher.
+    // The number of triangles of round shapes does not scale with detail: aim slightly higher.
     fine.detail = std::clamp(*fine.detail * std::pow(wanted / count, 0.65), 0.5, 6.0);
   }
   return to_yaml(fine);

@@ -40,8 +40,8 @@ struct GeneratedPlan {
   std::string yaml() const { return to_yaml(house); }  ///< see docs/formats.md, House
 };
 GeneratedPlan generate_plan(const GeneratedReference& reference);
-/// The plan's text, with a mesh fine enough for kLeastTriangles, so that small rooms get finer
-/// light.
+/// The plan's text with its `detail` chosen so that the mesh has about kLeastTriangles to
+/// kMostTriangles. Small rooms thus get finer light.
 std::string with_detail(const GeneratedPlan& plan);
 inline constexpr std::size_t kLeastTriangles = 120'000, kMostTriangles = 550'000;
 Scene generate_scene(const GeneratedReference& reference);

@@ -155,7 +155,7 @@ std::vector<ItemRule> read_rules(const YamlReader& yaml) {
   return rules;
 }
 
-/// Reads everything about a room except its name and shape. Finishes the mapping.
+/// Reads everything about a room except its name and shape, then calls finish() on the mapping.
 void read_interior(YamlReader& yaml, RoomGrammar& room) {
   room.windows = range_or(yaml, "windows", room.windows, 0, 12);
   room.window_width_m = range_or(yaml, "window_width_m", room.window_width_m, 0.3, 5.0);

@@ -61,14 +61,14 @@ struct ItemRule {
   bool need = false;     ///< an environment without it is redrawn
   double chance = 1.0;   ///< probability that the rule is tried at all
   double weight = 1.0;   ///< weight among extras
-  int most = 1000;       ///< extras: maximum of its kind in the whole room
+  int most = 1000;       ///< extras: maximum number of its kind in the whole room
   bool fitting = false;  ///< not counted as an object, wherever its rule appears
   DrawRange count{1, 1};
   std::optional<std::array<DrawRange, 3>> size_m;  ///< if not set, about the kind's usual size
   std::optional<DrawRange> z_m;   ///< height above the floor (on, around: above the carrier's base)
   DrawRange gap_m{0.005, 0.03};   ///< to the wall or to the piece that it belongs to
   DrawRange turn_deg{0, 0};       ///< added to the rotation that the place requires
-  double front_m = 0.0;           ///< floor that must stay free in front of it
+  double front_m = 0.0;           ///< depth of the floor that must stay free in front of it
   DrawRange spacing_m{1.2, 1.5};  ///< rows and aisles: clear width between them
   std::array<double, 4> zone{-1, -1, 1, 1};      ///< of the carrier's top, x and y in units of its
                                                  ///< half size
@@ -92,7 +92,7 @@ struct RoomGrammar {
   std::string lamp = "ceiling_lamp";
   double area_per_lamp_m2 = 8;
   DrawRange lamp_power{3.0, 5.0}, warmth{0.0, 1.0};
-  std::map<std::string, std::string> roles;  ///< role -> palette, before Palettes::list_of_role
+  std::map<std::string, std::string> roles;  ///< role -> palette; overrides Palettes::list_of_role
   std::vector<ItemRule> furniture, extras;
   std::vector<ItemRule> fittings;  ///< placed last and not counted as objects
 };
@@ -102,7 +102,7 @@ struct RoomGrammar {
 struct FloorGrammar {
   std::string name;
   DrawRange rooms_per_side, corridor_width_m, height_m;
-  DrawRange objects_of_its_own;  ///< of each room, drawn from its extras
+  DrawRange objects_of_its_own;  ///< number per room, drawn from the room's extras
   RoomGrammar room;              ///< furniture and fittings are the same in every room
   RoomGrammar corridor;          ///< its size follows from the rooms
 };

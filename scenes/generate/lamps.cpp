@@ -24,8 +24,7 @@ std::array<Arm, 2> arms(const FloorRect& room, const FloorRect& cut) {
            {{0.5 * (cut.x0 + cut.x1), y}, {cut.x0 > room.x0 ? room.x1 : room.x0, y}}}};
 }
 
-/// Moves a position next to the missing corner, if the room has one, to the center line of that
-/// arm.
+/// If a position is in an arm next to the room's missing corner, moves it to the arm's center line.
 Vector2d beside_cut(const Layout& layout, const Vector2d& at_m) {
   if (!layout.cut()) return at_m;
   const FloorRect& cut = *layout.cut();

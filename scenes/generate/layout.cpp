@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kDoorSwing_m = 0.95;    // floor that a door sweeps, and on which people enter
-constexpr double kRobotHeight_m = 1.25;  // things that hang higher do not obstruct
-constexpr double kFlat_m = 0.03;         // rugs
+constexpr double kRobotHeight_m = 1.25;  // things that hang higher do not obstruct the robot
+constexpr double kFlat_m = 0.03;         // height of rugs, which do not obstruct
 constexpr double kApart_m = 0.004;       // gap between neighbors: rounding must not make them
                                          // overlap
 
@@ -123,8 +123,8 @@ bool Layout::inside(const Footprint& footprint) const {
 bool Layout::belong_together(const LayoutItem& item, std::size_t i) const {
   const LayoutItem& other = items_[i];
   if (item.under == i) return true;
-  // The back of a chair that is pushed under a table is next to the table, not beneath the things
-  // on it.
+  // The boxes of a chair that is pushed under a table and of a thing on the table may intersect:
+  // the chair's back, its only part that is that high, is next to the table.
   if (item.under && other.on == item.under) return true;
   if (item.on && other.under == item.on) return true;
   for (std::optional<std::size_t> below = item.on; below; below = items_[*below].on)
@@ -176,7 +176,7 @@ void Layout::narrow(Grid2d<float>& room, const Footprint& footprint) const {
        y <= std::min(room.height() - 1, cell(y1 + kReach_m)); ++y)
     for (int x = std::max(0, cell(x0 - kReach_m));
          x <= std::min(room.width() - 1, cell(x1 + kReach_m)); ++x)
-      if (room(x, y) > 0.9 * kRobotRadius_m)  // smaller values are too small in any case
+      if (room(x, y) > 0.9 * kRobotRadius_m)  // smaller distances never suffice for the robot
         room(x, y) =
             std::min(room(x, y), static_cast<float>(distance_m(cell_center(x, y), footprint)));
 }
@@ -232,9 +232,10 @@ std::optional<std::size_t> Layout::add(const LayoutItem& item, double front_m) {
     if (hinders) {
       Grid2d<float> after = room_m_;
       narrow(after, footprint);
-      // All floor that is wide enough for the robot must be reachable, also with the clearance.
-      // Plans are in whole millimeters, so exact fits occur: slightly smaller and larger radii must
-      // pass, too, so that rounding does not decide.
+      // All floor that is wide enough for the robot must be connected, both with and without the
+      // clearance. Plans are in whole millimeters, so that a gap can be exactly as wide as the
+      // robot: the test must also pass for slightly smaller and larger radii, so that rounding does
+      // not decide it.
       constexpr double kTie_m = 0.0002;
       for (const double radius : {kRobotRadius_m, kRobotRadius_m + kPlay_m})
         for (const double tie : {-kTie_m, kTie_m})

@@ -24,7 +24,7 @@ Eigen::Vector2d from_frame(const Eigen::Vector2d& middle_m, double turn_deg,
 
 /// A stretch of wall and the space in front of it.
 struct WallRun {
-  Side side = Side::kSouth;  ///< of the room, or of the part of it in front of this stretch
+  Side side = Side::kSouth;  ///< where the wall is, seen from the floor in front of it
   double face_m = 0, from_m = 0, to_m = 0;
   bool outer = true;  ///< may have a window
 
@@ -63,7 +63,7 @@ struct LayoutItem {
 class Layout {
  public:
   static constexpr double kRobotRadius_m = 0.26;  ///< half of 0.52 m
-  static constexpr double kPlay_m = 0.03;         ///< clearance on each side of its paths
+  static constexpr double kPlay_m = 0.03;         ///< clearance on each side of the robot's paths
   static constexpr double kCell_m = 0.02;
 
   /// @param cut  the missing corner of an L-shaped room
@@ -83,12 +83,12 @@ class Layout {
   /// Adds an opening if it fits into a stretch of wall, clear of the other openings. @returns
   /// whether it fits
   bool add_opening(const WallRun& wall, WallOpening opening);
-  /// Adds a piece if it is inside the room, overlaps nothing, and leaves free doors, windows, its
-  /// own front and the fronts of other pieces. All floor on which the robot fits must stay
-  /// connected, also for a robot that is wider by the clearance. @returns its index, nullopt if it
+  /// Adds a piece if it is inside the room, overlaps nothing, and leaves doors, windows, its own
+  /// front and the fronts of other pieces clear. All floor on which the robot fits must stay
+  /// connected, even for a robot that is wider by the clearance. @returns its index, nullopt if it
   /// does not fit
   std::optional<std::size_t> add(const LayoutItem& item, double front_m);
-  /// Share of the floor where the robot's center can be, including its clearance.
+  /// Share of the floor's area where the robot's center can be, with its clearance kept.
   double free_share() const;
   /// Number of objects: pieces, doors and windows, without fittings.
   int object_count() const;
@@ -112,7 +112,7 @@ class Layout {
   std::vector<WallOpening> openings_;
   std::vector<LayoutItem> items_;
   std::vector<Footprint> swings_;  ///< of doors
-  std::vector<Footprint> fronts_;  ///< floor in front of pieces, only for their own chairs
+  std::vector<Footprint> fronts_;  ///< floor in front of pieces, where only their own chairs may be
   Grid2d<float> room_m_;  ///< distance from a cell's center to the nearest obstacle, m; exact only
                           ///< where it matters
 };

@@ -133,7 +133,7 @@ std::optional<LayoutItem> put_at_owner(Draft& draft, const Design& design,
   Vector2d local = Vector2d::Zero();
   double turn = 0;
   if (rule.z_m) item.z_m = whole_mm(draw(dice, *rule.z_m));
-  const double slack = dice.number(rule.zone[0], rule.zone[2]);  // sideways, in half sizes
+  const double slack = dice.number(rule.zone[0], rule.zone[2]);  // sideways, in owner's half widths
   switch (rule.place) {
     case Place::kBeside: {
       const double side = dice.chance(0.5) ? 1.0 : -1.0;

@@ -7,8 +7,8 @@
 
 namespace mh::generate {
 
-/// A free-standing piece at a position that its rule allows; nullopt if there is none. Does not
-/// check yet whether the piece fits there.
+/// A free-standing piece at a position that its rule allows; nullopt if there is none. Does not yet
+/// check whether the piece fits there.
 std::optional<LayoutItem> put_in_room(Draft& draft, const Design& design);
 
 /// The same for a piece that belongs to another: on, next to, in front of or above it.

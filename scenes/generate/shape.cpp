@@ -26,7 +26,7 @@ Draft draw_shape(const RoomGrammar& grammar, Dice dice, int group) {
   if (dice.chance(0.5)) std::swap(w, d);
   const double height = whole_mm(draw(dice, grammar.height_m));
   std::optional<FloorRect> cut;
-  constexpr double kLeft_m = 1.2, kLeast_m = 0.4;  // least wall beside the cut, least cut
+  constexpr double kLeft_m = 1.2, kLeast_m = 0.4;  // shortest wall beside the cut, smallest cut
   const double cw = whole_mm(std::min(a * w, w - kLeft_m));
   const double cd = whole_mm(std::min(b * d, d - kLeft_m));
   if (missing && cw > kLeast_m && cd > kLeast_m) {

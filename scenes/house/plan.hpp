@@ -46,7 +46,7 @@ constexpr Side opposite(Side side) {
   return kOpposite[static_cast<std::size_t>(side)];
 }
 
-/// Inner face of the wall on a side of a room, m: an x or a y.
+/// Position of the inner face of the wall on a side of a room, m: its x or its y.
 double wall_at(const FloorRect& rect, Side side);
 /// Start and end of that wall, m.
 std::pair<double, double> wall_span(const FloorRect& rect, Side side);

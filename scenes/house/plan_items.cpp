@@ -14,8 +14,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTouch = 0.01;  // furniture may touch: a smaller overlap is a builder's tolerance
-constexpr double kFlat = 0.03;   // rugs: people and furniture can be on them
+constexpr double kTouch = 0.01;  // m; furniture may touch: a smaller overlap is tolerated
+constexpr double kFlat = 0.03;   // height of rugs, which people and furniture can be on
 
 std::size_t piece_by_name(const YamlReader& yaml, const HousePlan& house, std::size_t room) {
   const std::string name = house.rooms[room].name + "/" + yaml.as_string();

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kWallStep = 0.075F;  // for the shadows of furniture on walls and floors
+constexpr float kWallStep = 0.075F;  // fine enough for the shadows of furniture on walls and floors
 constexpr float kCeilingStep = 0.12F;
 constexpr float kHullStep = 0.8F;
 constexpr float kJamb = 0.03F;     // thickness of the lining of a doorway or window
@@ -112,7 +112,7 @@ bool pierces(const HousePlan& house, const OpeningPlan& opening, std::size_t roo
 
 void build_baseboard(MeshBuilder& mesh, MaterialId material, const WallFrame& wall, float from,
                      float to, const std::vector<Hole>& holes) {
-  // Walls along y stop short of the corner, where the other two meet them.
+  // Baseboards along y stop short of the corners, where they meet those along x.
   const float corner = wall.along_x() ? 0.0F : kProud + 0.0005F;
   std::vector<std::pair<float, float>> gaps;
   for (const Hole& hole : holes)
@@ -176,7 +176,7 @@ void build_room(const HousePlan& house, std::size_t index, MaterialId trim, Mesh
   }
 }
 
-/// Boards that line a hole through the wall, and the casing around it on the faces at these depths.
+/// Boards that line a hole through the wall, and casings around it, each between two depths.
 struct Lining {
   float back;  ///< how far it reaches behind the wall's face
   bool below;
@@ -302,16 +302,16 @@ void build_hull_layer(const HousePlan& house, MaterialId material, float inset, 
                 .inwards = !outwards,
                 .step_m = kHullStep});
   }
-  if (!outwards) return;  // nothing stands on the far side of floors and ceilings
+  if (!outwards) return;  // only walls: nothing stands beyond floors and ceilings
   mesh.begin_instance("house/roof", class_id("ceiling"));
   mesh.panel(material, {{0, 0, top}, Vector3f::UnitX(), Vector3f::UnitY()}, xs, ys);
   mesh.begin_instance("house/slab", class_id("otherstructure"));
   mesh.panel(material, {{0, 0, bottom}, Vector3f::UnitY(), Vector3f::UnitX()}, ys, xs);
 }
 
-/// Closes off the space behind every joint of the rooms with something dark. One layer is not
-/// enough: light is stored per vertex for both sides, so sunlight outside would make its inside
-/// glow.
+/// Puts something dark behind every joint between the rooms' surfaces. One layer is not enough:
+/// light is stored per vertex for both sides of a face, so sunlight on the outside would make the
+/// inside glow.
 void build_hull(const HousePlan& house, MeshBuilder& mesh) {
   const MaterialId render = mesh.material({.name = "outer_render",
                                            .kind = "plaster",
@@ -326,8 +326,8 @@ void build_hull(const HousePlan& house, MeshBuilder& mesh) {
 
 /// A glowing image of a garden is placed beyond each side that has windows, with a lawn in front.
 /// Each side has its own image, as wide as the side, so that no window repeats another's view.
-/// Images and lawn do not belong in a map of the house, so their class is void and they are no
-/// objects.
+/// Images and lawn do not belong in a map of the house, so their class is void and they belong to
+/// no object.
 void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder& mesh) {
   const auto d = static_cast<float>(garden.distance_m), h = static_cast<float>(garden.height_m);
   const auto glow = static_cast<float>(garden.glow);

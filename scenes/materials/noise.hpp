@@ -27,8 +27,8 @@ Field white_noise(int width, int height, RandomStream random);
 /// Bilinear sample of a repeating field, at texel coordinates.
 float sample(const Field& field, float x, float y);
 
-/// Distances, in lattice cells, to the nearest and second-nearest of one random point per cell, and
-/// which point is nearest (its lattice index). Wraps around.
+/// For one random point per lattice cell: the distances, in cells, to the nearest and the
+/// second-nearest point, and the lattice index of the nearest. Wraps around.
 struct Voronoi {
   Field nearest, second;
   Grid2d<int> cell;

@@ -141,7 +141,7 @@ void slash(Canvas& canvas, Dice& dice, const Eigen::Vector2f& at, float reach, f
   canvas.line(at.x(), at.y(), at.x() + dx, at.y() + dy, thickness, tint);
 }
 
-/// One book seen from its back, standing at x and `width` wide; its top edge at y.
+/// The spine of one book: `width` wide from x on, its top edge at y.
 void spine(Image& image, const PaintJob& job, Dice& dice, int x, int y, int width) {
   const int height = image.height() - y;
   Image book(width, height);

@@ -6,8 +6,8 @@
 namespace mh {
 namespace {
 
-/// If a text begins with a comment, a hole or a tag of a polygon with holes, the length of that;
-/// otherwise 0.
+/// If a text begins with a comment, a hole, or a tag of a polygon with holes, returns the length of
+/// that part; otherwise 0.
 std::size_t size_of_unread(std::string_view text) {
   const auto up_to = [&](std::string_view end) {
     const std::size_t found = text.find(end);

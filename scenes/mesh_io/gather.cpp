@@ -30,7 +30,7 @@ std::optional<To> extra_number(const aiMetadata& extras, const char* key) {
   return std::nullopt;
 }
 
-/// The class in a glTF node's extras, by name or by number.
+/// The class in a glTF node's extras, given by name or by number.
 std::optional<ClassId> extra_class(const aiMetadata& extras) {
   aiString name;
   if (extras.Get("class", name)) return class_by_name(name.C_Str());
@@ -50,9 +50,10 @@ NodeLabel label_of(const aiNode& node) {
   return label;
 }
 
-/// Guesses the class from names around a node whose own name gives none: the mesh's name, then
-/// those of the nodes above it, the nearest first. "floor" is ignored in nodes above, since it is
-/// used for stories. The top node is skipped: it is named after the exporter or the file.
+/// For a node whose own name gives no class, guesses it from other names: first from the mesh's
+/// name, then from the names of the nodes above it, nearest first. "floor" is ignored in the nodes
+/// above, because there it means a story of a building. The top node is skipped: it is named after
+/// the exporter or the file.
 ClassId guess_around(const aiNode& node, const aiMesh& mesh) {
   ClassId found = guess_class(mesh.mName.C_Str());
   for (const aiNode* above = node.mParent; found == kVoid && above != nullptr && above->mParent;
@@ -80,7 +81,8 @@ class Gatherer {
     survey(*in_.mRootNode);
     reserve_ids(*in_.mRootNode);
     visit(*in_.mRootNode, aiMatrix4x4());
-    // Per-vertex arrays are all or nothing: parts without them were filled with neutral values.
+    // Parts without a per-vertex array were filled with neutral values; an array that no part has
+    // is cleared.
     if (!any_uvs_) scene_.uvs.clear();
     if (!any_colors_) scene_.colors.clear();
     if (!any_light_) scene_.light.clear();
@@ -88,7 +90,7 @@ class Gatherer {
   }
 
  private:
-  /// Whether save_glb wrote the file: then vertex colors are light.
+  /// Finds out whether save_glb wrote the file: if so, its vertex colors are light.
   void survey(const aiNode& node) {
     ours_ = ours_ || (format_.gltf && std::string_view(node.mName.C_Str()).find("#instance=") !=
                                           std::string_view::npos);
@@ -132,7 +134,7 @@ class Gatherer {
     return next_id_;
   }
 
-  /// The id for a node's faces; a PLY is one unlabeled piece.
+  /// The instance id for a node's faces; 0 for a PLY, which is one unlabeled piece.
   InstanceId enter_instance(const NodeLabel& label) {
     if (format_.ply) return 0;
     if (label.instance == InstanceId{0}) return 0;
@@ -146,7 +148,8 @@ class Gatherer {
   std::string unique_name(const std::string& wanted) {
     const std::string base = wanted.empty() ? "object" : wanted;
     std::string name = base;
-    // Continues from the last copy: some files have thousands of nodes with the same name.
+    // Continues from the number of the last copy: some files have thousands of nodes with the same
+    // name.
     for (int& copies = copies_of_.try_emplace(base, 1).first->second; !names_.insert(name).second;)
       name = fmt::format("{}_{}", base, ++copies);
     return name;

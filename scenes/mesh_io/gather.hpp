@@ -24,7 +24,7 @@ struct ReadMesh {
   const std::filesystem::path& file;
   const MeshFormat& format;
   const LabelRules& rules;
-  const std::map<std::string, MtlUvs>& uvs;  ///< by material; other materials keep their own
+  const std::map<std::string, MtlUvs>& uvs;  ///< by material; others keep the file's coordinates
 };
 
 /// Collects the meshes of a file's nodes into one scene, with their objects and classes (see

@@ -16,7 +16,7 @@ namespace {
 using Share = std::array<std::uint8_t, 3>;  // share of the emission, in steps of 1 / kSteps
 constexpr float kSteps = 31.0F;
 
-/// The mean over a face, from samples about a texel apart, at most 32 along an edge.
+/// The mean of a texture over a face, from samples about a texel apart, at most 32 along an edge.
 Share share_of(const Scene& scene, std::size_t face, const Grid2d<Rgb8>& texture) {
   const auto& corners = scene.triangles[face];
   const Eigen::Vector2f first = scene.uvs[corners[0]];

@@ -50,14 +50,15 @@ void require_places(const Json& gltf, const std::filesystem::path& file) {
   }
 }
 
-/// Whether a file is glTF 2, which has these extensions; a file that states no version counts as 2.
+/// Whether a file is glTF 2, the version whose extensions are handled here; a file that states no
+/// version counts as glTF 2.
 bool is_version_2(const Json& gltf) {
   const Json::json_pointer place("/asset/version");
   return !gltf.contains(place) || !gltf[place].is_string() ||
          gltf[place].get_ref<const std::string&>().starts_with("2");
 }
 
-/// @returns the content of an additional buffer
+/// @returns the content of the additional buffer; empty if there is none
 std::string mend(Json& gltf, const std::filesystem::path& file, std::string_view body,
                  std::vector<std::string>& warnings) {
   gltf::drop_movement(gltf);

@@ -13,8 +13,8 @@
 
 namespace mh {
 
-/// A side table that maps names to classes: shell patterns (* ? [a-z]), ignoring letter case; the
-/// first match wins.
+/// A side table that maps names to classes. Names are given as shell patterns (* ? [a-z]) and
+/// matched ignoring letter case; the first match wins.
 struct LabelRules {
   struct Rule {
     std::string pattern;

@@ -22,7 +22,7 @@ void move_face(aiFace& from, aiFace& to) {
   std::swap(from.mIndices, to.mIndices);
 }
 
-/// Gives a mesh a new array of faces, without large ones.
+/// Gives a mesh a new array of faces, in which large faces are cut into triangles.
 void cut(aiMesh& mesh) {
   const std::span old_faces(mesh.mFaces, mesh.mNumFaces);
   std::size_t count = 0;
@@ -42,7 +42,8 @@ void cut(aiMesh& mesh) {
   delete[] mesh.mFaces;
   mesh.mFaces = faces;
   mesh.mNumFaces = static_cast<unsigned>(count);
-  // assimp asserts that there are polygons if the flag says so.
+  // assimp asserts that a mesh with the polygon flag has polygons, so the flag is cleared if none
+  // is left.
   const auto is_polygon = [](const aiFace& face) { return face.mNumIndices > 3; };
   mesh.mPrimitiveTypes |= aiPrimitiveType_TRIANGLE;
   if (std::ranges::none_of(std::span(faces, count), is_polygon))

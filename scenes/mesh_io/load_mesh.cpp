@@ -107,7 +107,7 @@ void warn_of_missing_materials(const fs::path& file, std::vector<std::string>* w
   }
 }
 
-/// Vertex colors are read, face colors are not.
+/// Warns if a PLY has only face colors: only vertex colors are read.
 void warn_of_face_colors(std::string_view bytes, const fs::path& file,
                          std::vector<std::string>* warnings) {
   const ply::Header header = ply::parse_header(bytes, file.string());
@@ -120,7 +120,8 @@ void warn_of_face_colors(std::string_view bytes, const fs::path& file,
         fmt::format("{}: its face colors are not read; vertex colors would be", file.string()));
 }
 
-/// assimp assigns a gray material to a mesh without one; vertex colors should show unchanged.
+/// Whitens the gray material that assimp assigns to a mesh without one, so that vertex colors show
+/// unchanged.
 void whiten_default_material(const MeshFormat& format, Scene& scene) {
   if (scene.colors.empty() && scene.light.empty()) return;
   for (Material& material : scene.materials)

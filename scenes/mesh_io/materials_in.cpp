@@ -174,7 +174,7 @@ std::array<const char*, 2> edges_of(const aiMaterial& record) {
 
 void warn_of_edges(const Scene& scene, const std::vector<std::array<const char*, 2>>& edges,
                    const fs::path& file, std::vector<std::string>& warnings) {
-  constexpr float kBeyond = 0.01F;  // charts end at edges, give or take a few texels
+  constexpr float kBeyond = 0.01F;  // tolerance: charts may reach a few texels beyond an edge
   std::vector<const char*> crossed(edges.size(), nullptr);
   for (std::size_t face = 0; face < scene.triangles.size() && !scene.uvs.empty(); ++face)
     for (const std::uint32_t vertex : scene.triangles[face])

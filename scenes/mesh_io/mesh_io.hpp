@@ -36,7 +36,7 @@ struct MeshUse {
 /// - otherwise the node's name: "kitchen/night_stand_2" is a night stand; every node is an
 ///   instance.
 ///
-/// Vertex colors of a file written by save_glb are its baked light and return to Scene::light;
+/// Vertex colors of a file written by save_glb are baked light and are read into Scene::light;
 /// those of other files are Scene::colors.
 /// @param warnings  where to append one line per repaired flaw; may be null.
 /// @param rules     rules that take precedence over those of the side table
@@ -52,8 +52,8 @@ Scene load_turned_mesh(const std::filesystem::path& file, std::optional<UpAxis> 
 
 /// Writes a ScanNet-like mesh: binary little-endian PLY with x y z (float) and red green blue alpha
 /// (uchar, sRGB) per vertex, faces as `uchar int vertex_indices`. The color of a vertex is its
-/// visible color: texture x base color x vertex color x baked light, plus emission; where a vertex
-/// belongs to several materials, that of the first face.
+/// visible color: texture x base color x vertex color x baked light, plus emission; if a vertex
+/// belongs to several materials, that of its first face counts.
 ///
 /// Next to it, <stem>.labels.json: {"format": "modelhouse-labels", "version": 1, "name",
 /// "vertices": count, "faces": count, "instances": [[id, class name, name], ...], "runs": [[count,
@@ -66,7 +66,8 @@ void save_scannet_ply(const Scene& scene, const std::filesystem::path& file,
 /// Writes a binary glTF 2.0 with embedded PNG textures, y-up as glTF requires, one node per
 /// instance (and class) named `name#class=CLASS#instance=ID` with extras `class` and `instance`,
 /// and baked light times vertex color as linear vertex colors (they may exceed 1) of unlit
-/// materials. Lamps and tile sizes are not kept; rooms come back as the boxes of the floors.
+/// materials. Lamps and tile sizes are not kept; when the file is loaded, rooms are the boxes of
+/// the floors.
 /// @throws InputError if the file cannot be written or would exceed glTF's 4 GiB.
 void save_glb(const Scene& scene, const std::filesystem::path& file);
 

@@ -17,8 +17,8 @@ constexpr std::string_view kBlanks = " \t\r";
 
 struct Option {
   std::string_view name;
-  std::size_t most;  ///< arguments
-  bool numbers;      ///< arguments are numbers, and may be fewer
+  std::size_t most;  ///< maximum number of arguments
+  bool numbers;      ///< arguments are numbers; fewer than `most` are allowed
 };
 
 constexpr std::array<Option, 14> kOptions = {{{"-blendu", 1, false},

@@ -31,7 +31,8 @@ struct MtlTextures {
 };
 
 /// Removes the options of the textures that we show (`map_Kd -s 2 2 1 -bm 1 my image.png`), before
-/// or after the name of the file, except -clamp, which assimp reads. nullopt if there are none.
+/// or after the name of the file, except -clamp, which assimp reads. nullopt if there are no such
+/// options.
 /// @param file  names the MTL in warnings about ignored options that would change what is seen
 std::optional<std::string> without_options(std::string_view mtl, const std::filesystem::path& file,
                                            MtlTextures& textures);

@@ -114,7 +114,7 @@ ClassId guess_class(std::string_view name) {
   const std::vector<std::string> words = words_in_name(name.substr(name.rfind('/') + 1));
   ClassId head = kVoid;
   for (std::size_t i = 0; i < words.size();) {
-    // Words after "with" or "of" describe the thing before it.
+    // Words after "with", "of" or the like only describe the thing named before.
     if (head != kVoid && std::ranges::find(kAbout, words[i]) != std::end(kAbout)) return head;
     std::size_t used = 1;
     for (std::size_t count = std::min(kLongest, words.size() - i); count > 0; --count) {

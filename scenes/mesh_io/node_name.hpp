@@ -25,9 +25,10 @@ std::string node_name(std::string_view name, ClassId class_id, InstanceId instan
 NodeLabel parse_node_name(std::string_view node);
 
 /// Guesses the class from a name's last part ("kitchen/night_stand_2"); void if there is no match.
-/// Words are separated by non-letters and by CamelCase; singular or plural, from NYU40, COCO or a
-/// list of synonyms (class_words.hpp). If there are several nouns, the last one before a "with",
-/// "of" or the like wins: "floor_01_walls" is a wall, "TableLamp" a lamp, "box_of_books" a box.
+/// Words are separated by non-letters and by CamelCase; they are known from NYU40, COCO or a list
+/// of synonyms (class_words.hpp), in the singular and the plural. If there are several nouns, the
+/// last one before a "with", "of" or the like wins: "floor_01_walls" is a wall, "TableLamp" a lamp,
+/// "box_of_books" a box.
 ClassId guess_class(std::string_view name);
 
 /// The class of a name that ends in its noun, as annotators write: "coffee cup" is a cup, "oven

@@ -13,8 +13,8 @@
 
 namespace mh {
 
-/// Gives assimp access to regular files only, the mesh and files it references, and records each
-/// (ReadScope).
+/// Gives assimp access only to regular files (the mesh and the files that it references), and
+/// records each of them (ReadScope).
 class NotedFiles : public Assimp::IOSystem {
  public:
   /// @param in_memory  content of files by name, which replaces the stored files

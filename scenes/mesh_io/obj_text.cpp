@@ -24,7 +24,8 @@ bool is_line_of(std::string_view line, std::string_view key) {
   return line.starts_with(key) && line.size() > key.size() && is_blank(line[key.size()]);
 }
 
-/// The position of the first face if there are materials but none is chosen before it; else npos.
+/// The position of the first face if the file has materials but chooses none before this face; else
+/// npos.
 std::size_t face_without_material(std::string_view text) {
   bool has_materials = false;
   for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {

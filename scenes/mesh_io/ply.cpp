@@ -235,7 +235,8 @@ class BodyParser {
       }
       const List list = read_list(element, property, face);
       if (&property != indices) continue;
-      // Such a face is invisible; and if the count is damaged, everything after it is misread.
+      // A face with fewer corners is invisible; and if the count is damaged, everything after it is
+      // misread.
       if (list.count < 3)
         fail(fmt::format("face {} has {} corners: 3 are needed", face, list.count));
       const auto corner = [&](std::size_t k) {

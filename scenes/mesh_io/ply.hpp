@@ -24,7 +24,7 @@ struct PlyMesh {
   std::vector<std::uint32_t> objects{};       ///< vertex property `objectId` (3RScan)
   std::vector<std::uint32_t> face_objects{};  ///< face property `object_id` (Replica), per triangle
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< larger polygons are split into fans
-  std::size_t bytes_left = 0;  ///< after the last element, without whitespace; 0 if intact
+  std::size_t bytes_left = 0;  ///< bytes after the last element, except whitespace; 0 if intact
 };
 
 /// Value in face_objects for a face that belongs to no object.

@@ -98,7 +98,7 @@ class Labeler {
     if (warnings_ != nullptr) warnings_->push_back(fmt::format("{}: {}", file_.string(), what));
   }
 
-  /// The majority of three values; the first if all differ.
+  /// The value that at least two of three values have; the first value if all differ.
   template <class T>
   static T most(const std::array<T, 3>& values) {
     return values[1] == values[2] && values[0] != values[1] ? values[1] : values[0];
@@ -117,8 +117,8 @@ class Labeler {
     return place->second;
   }
 
-  /// Replaces a missing class, or one in which NYU40 merges several, with the one that the name
-  /// gives.
+  /// Replaces a missing class, or a class in which NYU40 merges several others, with the class that
+  /// the name gives.
   void refine(ClassId& id, const std::string& name) {
     const ClassId named = class_named(name);
     if (id == kVoid || is_finer(class_of_noun(name).value_or(kVoid), id)) id = named;

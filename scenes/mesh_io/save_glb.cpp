@@ -188,8 +188,8 @@ class GlbBuilder {
     json_["scenes"] = Json::array({{{"name", scene_.name}, {"nodes", std::move(children)}}});
   }
 
-  /// A primitive of these faces, with vertices of its own in the order in which the faces use them
-  /// first.
+  /// A primitive of these faces, with vertices of its own in the order in which the faces first use
+  /// them.
   Json make_primitive(const std::vector<std::size_t>& faces, std::uint16_t material) {
     ++primitive_;
     std::vector<std::uint32_t> vertices, indices;

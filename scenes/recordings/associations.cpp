@@ -29,8 +29,8 @@ bool is_number(const std::string& word) {
   return used == word.size();
 }
 
-/// @throws InputError if the first line's second word is a number: the pairs were made by
-/// associate.py from a list of poses.
+/// @throws InputError if the first line has more than four words and the second is a number:
+/// associate.py made the list, and paired images with poses.
 void refuse_poses(const std::string& text, const std::string& name) {
   std::istringstream lines(text);
   std::string line;
@@ -48,7 +48,7 @@ void refuse_poses(const std::string& text, const std::string& name) {
   }
 }
 
-/// Whether an image is depth; nullopt if it cannot be read.
+/// Whether a file is a depth image; nullopt if it cannot be read as an image.
 std::optional<bool> is_depth(const fs::path& file) {
   try {
     decode_depth16(read_file(file));

@@ -20,9 +20,9 @@ enum class FirstImage { kColor, kDepth };
 std::vector<RecordedFrame> read_associations(const std::filesystem::path& list,
                                              FirstImage otherwise = FirstImage::kColor);
 
-/// Sorts frames by stamp (equal stamps as listed) if they are unordered: if a quarter or more of
-/// them would have to be dropped for the rest to be in order. A clock that was wrong for a while
-/// does not make them unordered.
+/// Sorts frames by stamp (equal stamps as listed) if they are unordered, which means that a quarter
+/// or more of them would have to be dropped for the rest to be in order. Frames do not count as
+/// unordered just because the clock was wrong for a while.
 /// @param notes  receives a line if they were sorted; may be null
 void sort_frames(std::vector<RecordedFrame>& frames, const std::filesystem::path& list,
                  std::vector<std::string>* notes);

@@ -33,8 +33,8 @@ Camera bonn_camera() {
   return camera;
 }
 
-/// T_ros from the data set's page: between the axes of the file's poses and those of the laser
-/// scan. It is its own inverse.
+/// T_ros from the data set's page: it converts between the axes of the file's poses and those of
+/// the laser scan. It is its own inverse.
 SE3 exchanged_axes() {
   Eigen::Matrix3d rotation;
   rotation << -1, 0, 0, 0, 0, 1, 0, 1, 0;

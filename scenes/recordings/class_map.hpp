@@ -30,8 +30,8 @@ struct LabelsOfFrames {
   std::function<std::string(std::size_t)> place;  ///< for messages
 };
 
-/// Adds a note if the first labels that can be read and are not empty contain no id with a class:
-/// with the wrong table, a scene would look empty.
+/// Adds a note if the first label image that can be read and is not empty contains no id that has a
+/// class: with the wrong table, a scene would look empty.
 void note_foreign_ids(const LabelsOfFrames& labels, const ClassMap& map,
                       const std::filesystem::path& table, std::vector<std::string>& notes);
 
@@ -40,7 +40,7 @@ std::string no_labels_note(const std::filesystem::path& table);
 
 /// A label image as class distributions, each with all probability on one class.
 /// @param map  meaning of the ids; null: they are our classes
-/// @throws InputError "class N is unknown" on an id beyond our classes.
+/// @throws InputError "class N is unknown" if `map` is null and an id is not one of our classes.
 SemanticImage one_hot(const Grid2d<std::uint16_t>& ids, const ClassMap* map);
 
 }  // namespace mh

@@ -16,8 +16,8 @@
 namespace mh {
 
 // EuRoC's layout (Burri et al., "The EuRoC micro aerial vehicle datasets", IJRR 2016): mav0/cam0,
-// cam1 (for stereo), imu0 and state_groundtruth_estimate0. The body frame is that of the first
-// camera, and also of the inertial sensor in its housing.
+// cam1 (for stereo), imu0 and state_groundtruth_estimate0. The body frame is the frame of the first
+// camera, which is also that of the inertial sensor in the same housing.
 
 inline constexpr std::string_view kEurocImuColumns =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
@@ -25,8 +25,8 @@ inline constexpr std::string_view kEurocImuColumns =
 std::string euroc_line(const ImuReading& reading);
 void write_euroc_imu(const std::filesystem::path& file, std::span<const ImuReading> readings);
 
-/// Reads the measurements of an inertial sensor, in these columns. Readings that are not numbers
-/// and those whose stamp does not increase are left out and counted.
+/// Reads the measurements of an inertial sensor, a file with the columns kEurocImuColumns. Readings
+/// that are not finite and those whose stamp does not increase are left out and counted.
 /// @param notes  receives how many were left out
 /// @throws InputError naming file, line and value: not seven numbers, no reading, accelerations
 /// that are not in m/s^2 (the mean of a sensor that is not falling is near 9.81)

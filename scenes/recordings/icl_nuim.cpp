@@ -26,8 +26,8 @@ Stamp stamp_of_number(Stamp number_ns) {
   return static_cast<Stamp>(std::llround(static_cast<double>(number_ns) / kIclNuimRate_hz));
 }
 
-/// The published calibration. As published, fy is -480, for the world of the poses; here it is
-/// positive, because images of this layout are stored top row first.
+/// The published calibration, except that fy is published as -480, which fits the world of the
+/// poses. Here it is positive, because images of this layout are stored top row first.
 Camera icl_nuim_camera() {
   Camera camera;
   camera.width_px = 640;

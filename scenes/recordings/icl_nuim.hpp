@@ -5,9 +5,10 @@
 
 namespace mh {
 
-/// ICL-NUIM's sequences with TUM-compatible images (Handa et al., ICRA 2014): TUM's folder, but
-/// frame numbers in place of stamps, depth listed before color, and true poses in the renderer's
-/// left-handed world. The calibration is the published one unless a different one is specified.
+/// ICL-NUIM's sequences with TUM-compatible images (Handa et al., ICRA 2014): TUM's layout, but
+/// with frame numbers in place of stamps, depth listed before color, and true poses in the
+/// renderer's left-handed world. The calibration is the published one unless a different one is
+/// specified.
 extern const SequenceReader kIclNuimReader;
 
 }  // namespace mh

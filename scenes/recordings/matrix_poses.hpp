@@ -14,7 +14,7 @@ namespace mh {
 /// counted.
 class MatrixPoses {
  public:
-  /// @param text   16 numbers by rows
+  /// @param text   16 numbers, row by row
   /// @param where  file and place, for the note
   void add(Stamp stamp_ns, const std::string& text, const std::string& where);
   /// Counts a frame for which the data set has no pose.

@@ -21,8 +21,8 @@ double rate_of_hz(const std::vector<Stamp>& stamps_ns);
 class StampIndex {
  public:
   explicit StampIndex(const std::vector<Stamp>& stamps_ns);
-  /// The index of the stamp nearest in time, ties to the first in the list; nullopt if none is
-  /// within kMaxApart_ns.
+  /// The index of the stamp nearest in time, or of the first in the list if several are equally
+  /// near; nullopt if none is within kMaxApart_ns.
   std::optional<std::size_t> nearest(Stamp stamp_ns) const;
 
  private:

@@ -14,8 +14,8 @@ namespace mh {
 /// Parses an unsigned whole number; nullopt if the text has anything but digits.
 std::optional<int> whole_number_of(std::string_view digits);
 
-/// The files of a folder whose names are a number between two words, such as "frame-" and
-/// ".color.png", by number.
+/// Those files of a folder whose names consist of a number between two given texts, such as
+/// "frame-" and ".color.png", by number.
 /// @throws InputError if two files have the same number.
 std::map<int, std::filesystem::path> numbered_images(const std::filesystem::path& folder,
                                                      std::string_view before,
@@ -25,7 +25,8 @@ std::map<int, std::filesystem::path> numbered_images(const std::filesystem::path
 class LeftOut {
  public:
   void add(const std::filesystem::path& color);
-  /// Adds a line about the images left out, if there are any. @param offered  color images in all
+  /// Adds a line about the images left out, if there are any. @param offered  number of all color
+  /// images
   void note(const std::filesystem::path& recording, std::size_t offered,
             std::vector<std::string>& notes) const;
 

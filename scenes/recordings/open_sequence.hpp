@@ -79,7 +79,8 @@ std::pair<std::string, std::filesystem::path> split_sequence(const std::string& 
 std::string join_sequence(const std::string& layout, const std::filesystem::path& path);
 
 /// Removes a recording's path from the start of a message: a result must not depend on where the
-/// recording is stored, and the cache serves copies of it elsewhere.
+/// recording is stored, and the cache also serves copies of the recording that are stored
+/// elsewhere.
 std::string without_place(const std::string& message, const std::string& source);
 
 /// The layout of a recording: the one in its name, otherwise the one recognized from the files at

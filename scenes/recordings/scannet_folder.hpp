@@ -25,8 +25,9 @@ namespace mh {
 std::unique_ptr<Sequence> open_scannet(const std::filesystem::path& path,
                                        std::vector<std::string>& notes);
 
-/// ScanNet's layouts. The calibration is their own; a class map replaces the label table. The scene
-/// type is that of NAME.txt next to the frames, where NAME is the folder's or the .sens file's.
+/// ScanNet's layouts. The calibration is the recording's own; a class map replaces the label table.
+/// The scene type is that of NAME.txt next to the frames, where NAME is the folder's or the .sens
+/// file's.
 extern const SequenceReader kScannetReader;
 
 /// Units per meter of the 16-bit depth that is written.
@@ -39,9 +40,9 @@ std::uint16_t millimeters(float depth_m);
 RecordedLens recorded_lens(const Camera& camera);
 
 /// Writes a recording as ScanNet releases one: NAME.sens, NAME_2d-label-filt.zip (our class ids as
-/// raw category ids), NAME_2d-instance-filt.zip and the label table that explains them; NAME is the
-/// folder's. The same camera serves as color and as depth camera; depth beyond 65.5 m is dropped.
-/// Each file appears when it is complete; leftovers of a killed process are removed.
+/// raw category ids), NAME_2d-instance-filt.zip and the label table that defines these ids; NAME is
+/// the folder's. The same camera serves as color and as depth camera; depth beyond 65.5 m is
+/// dropped. Each file appears when it is complete; leftovers of a killed process are removed.
 /// @param frame_at  called once per index, in order
 /// @throws InputError if it cannot be written.
 void write_scannet_recording(const std::filesystem::path& folder, const Camera& camera,

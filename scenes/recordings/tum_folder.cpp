@@ -67,7 +67,8 @@ class ByStamp {
   explicit ByStamp(const std::vector<Listed>& entries)
       : entries_(entries), index_(stamps_of(entries)) {}
 
-  /// The entry nearest in time, ties to the first in the list; null if none is near enough.
+  /// The entry nearest in time, or the first in the list of several that are equally near; null if
+  /// none is near enough.
   const Listed* nearest(Stamp stamp_ns) const {
     const auto found = index_.nearest(stamp_ns);
     return found ? &entries_[*found] : nullptr;

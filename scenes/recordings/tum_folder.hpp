@@ -24,7 +24,7 @@ struct RecordedCamera {
   Camera camera;
   double depth_per_meter = kDepthPerMeter;  ///< value of a depth pixel at one meter
   bool exchange_red_blue = false;           ///< the files' first channel is blue
-  std::uint16_t no_depth = 0;               ///< value of depth pixels without depth, besides 0
+  std::uint16_t no_depth = 0;  ///< value (in addition to 0) of depth pixels without depth
 };
 
 /// A pair of color and depth images of a recording.
@@ -62,9 +62,9 @@ class TumWriter : public SequenceWriter {
  public:
   TumWriter(std::filesystem::path folder, const Camera& camera,
             PngCompression png_compression = {});
-  /// Adds only what a system may see. label.txt lists the frames that have labels; odometry.txt
-  /// holds the poses from odometry, imu.csv (EuRoC's columns) the readings of the inertial sensor,
-  /// and lasers.txt the laser scans, if there are any.
+  /// Adds a frame with only what a SLAM system may see. label.txt lists the frames that have
+  /// labels; odometry.txt holds the poses from odometry, imu.csv (EuRoC's columns) the readings of
+  /// the inertial sensor, and lasers.txt the laser scans, if there are any.
   void add(const RgbdFrame& frame);
   void add(std::size_t index, const ExactFrame& frame) override;
   bool resume(std::size_t index, Stamp stamp_ns, const SE3& world_from_camera) override;

@@ -11,8 +11,8 @@
 namespace mh {
 namespace {
 
-/// Whether a stamp is a time since 1970 in nanoseconds, as ROS programs name their images: seconds
-/// have no more than ten digits before the point.
+/// Whether a stamp is in nanoseconds since 1970: ROS programs name images this way. A stamp in
+/// seconds cannot be mistaken for one, since it has at most ten digits before the decimal point.
 bool is_in_nanoseconds(const std::string& stamp) {
   constexpr std::size_t kDigits = 18;  // since 1973
   return stamp.size() >= kDigits && stamp.find_first_not_of("0123456789") == std::string::npos;

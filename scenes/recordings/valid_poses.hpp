@@ -16,8 +16,8 @@ namespace mh {
 std::optional<Trajectory> read_truth(const std::filesystem::path& file,
                                      std::vector<std::string>& notes);
 
-/// Notes that something that is not a file, such as a folder, has the name of the file of true
-/// poses.
+/// Adds a note if the path of the file of true poses is taken by something that is not a file, such
+/// as a folder.
 void note_no_file(const std::filesystem::path& truth, std::vector<std::string>& notes);
 
 }  // namespace mh

@@ -24,7 +24,7 @@ std::vector<std::uint32_t> parse_segments(std::string_view json, const std::stri
 /// @throws InputError naming file and group: damaged JSON, an objectId shared by two groups.
 std::vector<SegmentGroup> parse_aggregation(std::string_view json, const std::string& name);
 
-/// The content of the two files, for the scene with that id.
+/// The content of *.segs.json and of *.aggregation.json, for the scene with that id.
 std::string segments_text(const std::vector<std::uint32_t>& segment_of_vertex,
                           const std::string& scene_id);
 std::string aggregation_text(const std::vector<SegmentGroup>& groups, const std::string& scene_id);

@@ -18,9 +18,9 @@ struct ScannetFiles {
 /// Whether a path is a folder with a ScanNet mesh, or is such a mesh in a folder with annotations.
 bool is_scannet_scene(const std::filesystem::path& path);
 
-/// Finds the files of the scene in that folder, or of that mesh. If a folder contains several, the
-/// one with the folder's name is used. @throws InputError if there is none, or the choice is
-/// ambiguous.
+/// Finds the files of the scene in that folder, or of that mesh. If a folder contains several
+/// scenes, the one with the folder's name is used. @throws InputError if there is none, or the
+/// choice is ambiguous.
 ScannetFiles find_scannet_files(const std::filesystem::path& path);
 
 /// Finds the label tables next to a scene, v2's before v1's, or those in the nearest of three

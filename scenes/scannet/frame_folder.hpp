@@ -17,7 +17,7 @@ namespace mh {
 /// The number in an image's name: "17.png", "label-filt/000017.png"; nullopt if it is not a number.
 std::optional<std::uint32_t> number_of_name(const std::filesystem::path& name);
 
-/// The files of a folder that are named by numbers, in numeric order.
+/// Those files of a folder whose names are numbers, in numeric order.
 class NumberedFiles {
  public:
   /// @param endings  which files are included, e.g. ".png"

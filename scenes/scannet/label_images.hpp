@@ -22,8 +22,8 @@ class LabelImages {
   virtual const std::string& place() const = 0;
   /// Whether a frame has an image.
   virtual bool contains(std::uint32_t number) const = 0;
-  /// The file with a frame's image, which is read on demand; empty if there is none, or if all are
-  /// in one file that was already read.
+  /// The file with a frame's image, which is read on demand; empty if there is none, or if all
+  /// images are in one file that was already read.
   virtual std::filesystem::path file(std::uint32_t) const { return {}; }
   /// The image of a frame; nullopt if there is none. @throws InputError if it is damaged.
   virtual std::optional<Grid2d<std::uint16_t>> read(std::uint32_t number) const = 0;
@@ -31,7 +31,8 @@ class LabelImages {
 
 /// Opens the label images next to a recording: a folder `kind` ("label-filt", "instance-filt"), or
 /// a zip *_2d-KIND.zip. Null if neither exists.
-/// @throws InputError if the zip is damaged, or has names that point outside of it.
+/// @throws InputError if the zip is damaged, or if an entry would be extracted outside of the
+/// target folder.
 std::unique_ptr<LabelImages> find_label_images(const std::filesystem::path& folder,
                                                const std::string& kind);
 /// Opens a zip of label images; `name` names the file in messages.
@@ -47,7 +48,7 @@ class LabelImageWriter {
 };
 std::unique_ptr<LabelImageWriter> write_label_folder(const std::filesystem::path& folder,
                                                      const std::string& kind);
-/// The zip appears with finish().
+/// The zip appears when finish() is called.
 std::unique_ptr<LabelImageWriter> write_label_zip(const std::filesystem::path& file,
                                                   const std::string& kind);
 

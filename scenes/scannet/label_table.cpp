@@ -133,7 +133,7 @@ class TableParser {
   static constexpr std::size_t kNone = ~std::size_t{0};
   LabelTable table_;
   std::uint32_t rows_ = 0;
-  std::size_t columns_ = 0, needed_ = 0;  ///< columns; those up to the first that gives a class
+  std::size_t columns_ = 0, needed_ = 0;  ///< columns in all; columns up to a class column
   std::size_t category_ = kNone, id_ = kNone, nyu40_id_ = kNone, nyu40_class_ = kNone, own_ = kNone;
 };
 

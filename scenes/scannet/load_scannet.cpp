@@ -138,7 +138,8 @@ class Loader {
   }
 
   std::vector<ClassId> classes_of_labels() {
-    // Some aligned scenes of v2 (scene0270_00 and others) contain a few labels beyond NYU40.
+    // Labels beyond NYU40 indicate raw ids only if the scene is not aligned: some aligned scenes of
+    // v2 (scene0270_00 and others) contain a few.
     raw_ids_ = (greatest_label_ > kLastNyu40 && !aligned_) ||
                (table_ && table_->release == ScannetRelease::kV1);
     if (raw_ids_ && !table_)
@@ -292,7 +293,7 @@ class Loader {
     }
   }
 
-  /// Index of the first of three values that has the majority value; nullopt if all differ.
+  /// Index of the first of three values that occurs at least twice; nullopt if all differ.
   template <class T>
   static std::optional<int> majority(const std::array<T, 3>& values) {
     if (values[0] == values[1] || values[0] == values[2]) return 0;

@@ -38,7 +38,7 @@ struct RecordingInfo {
 struct RecordedMoment {
   Stamp stamp_ns = 0;  ///< of the color image
   Grid2d<Rgb8> color;
-  Grid2d<std::uint16_t> depth;           ///< in RecordingInfo::depth_per_meter; 0 = no return
+  Grid2d<std::uint16_t> depth;  ///< RecordingInfo::depth_per_meter units per m; 0 = no return
   std::optional<SE3> world_from_device;  ///< nullopt if the scan's tracking was lost
 };
 
@@ -63,8 +63,8 @@ class Recording {
   virtual std::vector<std::filesystem::path> images() const = 0;
 
  protected:
-  /// Returns what `read` returns; if it throws because the data is not a pose, counts that and
-  /// returns nullopt.
+  /// Returns what `read` returns; if it throws because the data is not a pose, counts the faulty
+  /// pose and returns nullopt.
   std::optional<SE3> pose_or_none(const std::function<std::optional<SE3>()>& read);
   void note_faulty_poses();
 
@@ -82,7 +82,8 @@ std::unique_ptr<Recording> open_recording(const std::filesystem::path& path);
 
 /// 16 numbers, row by row; they need not be finite. @throws InputError "what: ..." on other text.
 Eigen::Matrix4d parse_matrix(const std::string& text, const std::string& what);
-/// A camera's 4x4 intrinsics or a pose, row by row. @throws InputError "what" on an invalid matrix.
+/// The lens with these 4x4 intrinsics and extrinsics. @throws InputError "what" on an invalid
+/// matrix.
 RecordedLens lens_of(const Eigen::Matrix4d& intrinsics, const Eigen::Matrix4d& extrinsics,
                      int width_px, int height_px, const std::string& what);
 /// Whether a matrix is a rotation, within the precision of files with few decimals.

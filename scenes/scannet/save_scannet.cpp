@@ -28,7 +28,8 @@ struct Owner {
   friend auto operator<=>(const Owner&, const Owner&) = default;
 };
 
-/// Gives each vertex one owner: where faces of several owners meet, the later ones get copies.
+/// Gives each vertex one owner: where faces of several owners meet, the faces of the later owners
+/// get copies.
 /// @returns the owner of every vertex; unused vertices are void
 std::vector<Owner> part_owners(Scene& scene) {
   const std::size_t before = scene.positions_m.size();

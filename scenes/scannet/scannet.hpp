@@ -15,9 +15,10 @@ namespace mh {
 /// is the object (objectId + 1) whose segments it belongs to, the last one if several claim it. Its
 /// class is that of the object's category in the label table; without an object, the mesh's own
 /// `label` is used, a raw category id in v1. In v2 that label is an NYU40 id and takes precedence
-/// over the category if the two differ. A face takes the class, and the instance, that most of its
-/// vertices have; if all three differ, those of the first vertex. Objects of a category that is not
-/// in the table are unlabeled.
+/// over the category if the two contradict each other. A face takes the class that at least two of
+/// its vertices have or, if all three differ, that of the first vertex. Likewise for the instance,
+/// but if all three differ, it is that of the vertex from which the class was taken. Objects of a
+/// category that is not in the table are unlabeled.
 ///
 /// The mesh alone is also a valid scene. What is missing or unknown is reported in `warnings`, with
 /// counts.
@@ -32,9 +33,9 @@ std::vector<std::string> saved_scannet_names(const std::filesystem::path& folder
 /// labels, segments, aggregation, txt and label table. The scene's id is the folder's name.
 /// Textures and light become vertex colors; to represent them, faces of scenes with textures or
 /// light are split until no edge is longer than max_edge_m (0 = not split). Vertices where faces of
-/// several objects meet are written once for each, so that load_scannet restores every face's class
-/// and instance. Classes that NYU40 lacks (those above 41) are preserved for faces that belong to
-/// an object.
+/// several objects meet are written once for each object, so that load_scannet restores every
+/// face's class and instance. Classes that NYU40 lacks (those above 41) are preserved for faces
+/// that belong to an object.
 /// @throws InputError if a file cannot be written or the scene is inconsistent.
 void save_scannet(const Scene& scene, const std::filesystem::path& folder,
                   float max_edge_m = 0.04F);

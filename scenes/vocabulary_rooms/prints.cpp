@@ -149,7 +149,7 @@ Sheet scales(const Ink& ink) {
   return fill([&](int x, int y) {
     const float u = static_cast<float>(x * columns) / kTexels;
     const float v = static_cast<float>(y * rows) / kTexels;
-    // The topmost scale that covers this texel belongs to the lowest possible row.
+    // The topmost of the scales that cover this texel is the one in the lowest row.
     for (int row = static_cast<int>(v) + 1; row >= static_cast<int>(v) - 1; --row) {
       const float shift = 0.5F * static_cast<float>((row + 2) % 2);
       const float column = std::floor(u - shift);

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float kMaxEdge = 0.15F;  // m; baked light lives at the vertices
+constexpr float kMaxEdge = 0.15F;  // m; baked light is stored at the vertices
 /// Assembles a training room from flat and round faces.
 class RoomMaker {
  public:

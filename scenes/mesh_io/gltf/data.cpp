@@ -69,7 +69,7 @@ float number_at(const char* at, std::size_t type, bool normalized) {
   }
 }
 
-/// What the items of an accessor are made of.
+/// Type, width and number of an accessor's items.
 struct Kind {
   std::size_t type, width, count;
   std::size_t bytes() const { return size_of(type) * width; }
@@ -90,8 +90,8 @@ int decode(std::string_view mode, char* to, std::size_t count, std::size_t strid
   return meshopt_decodeIndexSequence(to, count, stride, bytes, from.size());
 }
 
-/// Whether the decoders accept data with these parameters, since they only assert some of their
-/// assumptions.
+/// Whether the decoders can take data with these parameters. They only assert some of their
+/// assumptions, so this must be checked first.
 bool is_decodable(std::string_view mode, std::string_view filter, std::size_t count,
                   std::size_t stride) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 32, kWidest = 256;
@@ -215,7 +215,7 @@ Values Data::values(std::size_t index, bool shares) {
   const std::size_t view_index = index_in(accessor, "bufferView", kNone);
   if (view_index == kNone) {
     if (!accessor.contains("sparse")) fail(fmt::format("accessors[{}]: has no data", index));
-    constexpr std::size_t kMost = std::size_t{1} << 28;  // zeros that no buffer has to hold
+    constexpr std::size_t kMost = std::size_t{1} << 28;  // zeros, which take no space in the file
     if (kind.count > kMost) fail(fmt::format("accessors[{}]: {} items", index, kind.count));
     values.numbers.assign(kind.count * kind.width, 0.0F);
   } else {
@@ -245,7 +245,7 @@ void Data::replace_sparse(std::size_t accessor, bool normalized, Values& values)
   const Place from = place_of(index_in(replaced, "bufferView", kNone),
                               index_in(replaced, "byteOffset", 0), kind.bytes(), count);
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t item = 0;  // of little-endian bytes
+    std::uint32_t item = 0;  // its bytes in the file are little-endian
     std::memcpy(&item, at.bytes.data() + i * size_of(index_type), size_of(index_type));
     if (item >= values.count())
       fail(fmt::format("accessors[{}]: sparse index {} of {}", accessor, item, values.count()));

@@ -20,11 +20,10 @@ using Json = nlohmann::json;
 /// The name of the buffer with the decoded data: not a file, since assimp gets it from memory.
 inline constexpr const char* kDecodedBuffer = "decoded by modelhouse.bin";
 
-/// The items of the array with this name in the file or in one of its items; empty if there is
-/// none.
+/// The elements of the array that is a JSON object's member of this name; empty if there is none.
 std::span<Json> list_of(Json& item, const char* name);
 
-/// The index in the member with this name; `otherwise` if there is none.
+/// The index that an object's member of this name holds; `otherwise` if there is no such member.
 std::size_t index_in(const Json& item, const char* name, std::size_t otherwise);
 inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
@@ -57,8 +56,8 @@ class Data {
 
   /// Whether assimp reads the accessor as we do: floats in a buffer, not sparse.
   bool is_plain(std::size_t accessor) const;
-  /// Values as floats: normalized integers are divided by their type's maximum, sparse values are
-  /// replaced.
+  /// Values as floats: normalized integers are divided by their type's maximum, values that a
+  /// sparse accessor overrides are replaced.
   /// @param shares the values are fractions of one: integers are normalized even if the file does
   /// not request that
   Values values(std::size_t accessor, bool shares = false);

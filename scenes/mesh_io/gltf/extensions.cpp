@@ -50,7 +50,7 @@ constexpr Extension kExtensions[] = {
     {"KHR_materials_volume"},
     {"MSFT_packing_normalRoughnessMetallic"},
     {"MSFT_packing_occlusionRoughnessMetallic"},
-    // Movement, sound, and choices that a viewer offers besides the initial view.
+    // Movement, sound, and choices that a viewer offers in addition to the initial view.
     {"KHR_animation_pointer"},
     {"KHR_audio"},
     {"KHR_audio_emitter"},
@@ -59,7 +59,7 @@ constexpr Extension kExtensions[] = {
     {"KHR_node_hoverability"},
     {"KHR_node_selectability"},
     {"MSFT_lod"},
-    // Facts about what is shown.
+    // Metadata about what is shown.
     {"AGI_articulations"},
     {"AGI_stk_metadata"},
     {"CESIUM_primitive_outline"},

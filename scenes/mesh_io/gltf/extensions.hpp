@@ -11,7 +11,7 @@ namespace mh::gltf {
 
 /// Checks the extensions that a glTF 2.0 file lists against a table: those that are honored or
 /// change nothing visible pass silently, others cause a warning.
-/// @param warnings  a line for each loss
+/// @param warnings  receives a line for each visible loss
 /// @throws InputError naming a required extension that is not known.
 void check_extensions(Json& gltf, const std::filesystem::path& file,
                       std::vector<std::string>& warnings);

@@ -21,8 +21,8 @@ void choose_images(Json& gltf);
 /// KHR_materials_pbrSpecularGlossiness and KHR_materials_emissive_strength.
 void mend_materials(Json& gltf);
 
-/// Removes the texture placement from each material. @returns the placement of the base color or,
-/// if it has no texture, of the emission.
+/// Removes the texture placement from each material. @returns for each material, the placement of
+/// its base color's texture or, if it has none, of its emission's texture
 /// @param warnings a line for each material whose two textures are placed differently
 /// @throws InputError naming the material if its placement is invalid
 std::vector<UvPlacement> take_uv_placements(Json& gltf, const std::filesystem::path& file,

@@ -26,7 +26,7 @@ class Mender {
   }
 
  private:
-  /// Warns of indices beyond the vertices: assimp silently leaves out their faces.
+  /// Warns about out-of-range vertex indices: assimp silently drops the faces that use them.
   void check_indices(const Json& primitive, const Json& mesh, const Json& attributes) {
     const std::size_t indices = index_in(primitive, "indices", kNone),
                       position = index_in(attributes, "POSITION", kNone);
@@ -60,7 +60,8 @@ class Mender {
     if (!sum.numbers.empty()) attributes["POSITION"] = data_.add(sum);
   }
 
-  /// Keeps only the material's set of texture coordinates.
+  /// Makes the set of texture coordinates that the material uses the first set, and applies the
+  /// material's placement to it.
   void place_uvs(const Json& primitive, const Json& mesh, Json& attributes) {
     const std::size_t material = index_in(primitive, "material", kNone);
     UvPlacement placement = material < placements_.size() ? placements_[material] : UvPlacement();
@@ -92,7 +93,8 @@ class Mender {
     return place->second = data_.add(uvs);
   }
 
-  /// Keeps the other attributes only if they are visible, and floats or convertible to floats.
+  /// Keeps only attributes that are used here. Among those that assimp would misread, positions and
+  /// colors are converted to floats, and the others are removed.
   void make_floats(Json& attributes) {
     constexpr std::array<std::string_view, 5> kKept = {"COLOR_0", "NORMAL", "POSITION", "TANGENT",
                                                        "TEXCOORD_0"};

@@ -19,10 +19,11 @@ struct UvPlacement {
 
 /// Gives every primitive data that assimp reads correctly: positions, colors and texture
 /// coordinates as floats (KHR_mesh_quantization, sparse accessors, Draco), morph targets applied
-/// with the weights of their mesh, and the set of texture coordinates that its material uses as the
-/// first set.
+/// with the weights of their mesh, and, as the first set of texture coordinates, the set that its
+/// material uses.
 /// @param placements  the placement for each material, see take_uv_placements
-/// @param warnings    a line for each mesh that lacks the set that its material uses
+/// @param warnings    receives a line for each mesh that lacks the set of coordinates its material
+/// uses
 void mend_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
                      std::vector<std::string>& warnings);
 

@@ -43,7 +43,7 @@ T number(const Fields& fields, std::string_view name) {
   return ByteReader(bytes).number<T>();
 }
 
-/// Seconds, then nanoseconds.
+/// The time of receipt, which is stored as seconds, then nanoseconds.
 std::int64_t received_ns(const Fields& fields) {
   if (!fields.contains("time")) return 0;
   const auto time = number<std::uint64_t>(fields, "time");
@@ -85,12 +85,12 @@ class BagFile : public MessageFile {
     std::string_view bytes;
     std::size_t begin = 0;
     std::uint32_t chunk = MessagePlace::kFile;
-    std::uint64_t chunk_at = 0;  ///< in the file
+    std::uint64_t chunk_at = 0;  ///< position in the file
   };
 
   struct Record {
     std::string_view header, data;
-    std::size_t end = 0;  ///< in the bytes that hold it
+    std::size_t end = 0;  ///< position in the bytes that hold it
   };
 
   /// nullopt if there is no whole record at this position.
@@ -147,8 +147,8 @@ class BagFile : public MessageFile {
     }
   }
 
-  /// Reads the connections that are stored outside of chunks from this position on (bags repeat
-  /// them after the last chunk), in case the only chunk that holds them is damaged.
+  /// From this position on, reads the connections that are stored outside of chunks, in case the
+  /// only chunk that holds them is damaged: bags repeat connections after the last chunk.
   void read_connections_from(std::uint64_t at) {
     if (std::exchange(connections_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {

@@ -21,8 +21,8 @@ constexpr std::size_t kPiece = std::size_t{1} << 20;
   throw InputError(fmt::format("is damaged: its {} data cannot be decompressed", compression));
 }
 
-/// Makes room for the next bytes of a result of at most `size` bytes, and for one byte more, so
-/// that a longer result is noticed.
+/// Makes room for the next bytes of a result that should have at most `size` bytes, but allows one
+/// byte more, so that a longer result is noticed.
 std::size_t make_room(std::string& out, std::size_t used, std::uint64_t size) {
   if (used == out.size())
     out.resize(std::min<std::size_t>(size + 1, std::max(kPiece, 2 * out.size())));
@@ -113,7 +113,7 @@ std::string compress(std::string_view content, const std::string& compression) {
   std::string out;
   std::size_t size = 0;
   if (compression == "lz4") {
-    // The decoder of ROS 1 reads independent blocks.
+    // The decoder of ROS 1 reads only independent blocks.
     LZ4F_preferences_t preferences{};
     preferences.frameInfo.blockMode = LZ4F_blockIndependent;
     preferences.frameInfo.blockSizeID = LZ4F_max4MB;

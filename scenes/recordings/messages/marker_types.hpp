@@ -45,7 +45,7 @@ struct Marker {
   static constexpr const char* kMd5 = "4048c9de2a16f4ae8e0538085ebf1b97";
   static constexpr std::uint8_t kCube = 1, kCubeList = 6, kText = 9, kAdd = 0;
   Header header;
-  std::string ns;  ///< with id: identifies the marker that this one replaces
+  std::string ns;  ///< together with id, identifies the marker that this one replaces
   std::int32_t id = 0;
   std::int32_t type = kCube;
   std::int32_t action = kAdd;

@@ -9,7 +9,7 @@ namespace mh::mcap {
 /// The first and last bytes of an MCAP file.
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 
-/// Kinds of records: a byte, before the content's length as u64.
+/// Kinds of records: the byte that precedes the content's length (u64).
 enum class Opcode : std::uint8_t {
   kHeader = 1,
   kFooter,

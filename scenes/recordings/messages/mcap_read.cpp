@@ -46,12 +46,12 @@ class McapFile : public MessageFile {
     std::string_view bytes;
     std::size_t begin = 0;
     std::uint32_t chunk = MessagePlace::kFile;
-    std::uint64_t chunk_at = 0;  ///< in the file
+    std::uint64_t chunk_at = 0;  ///< position in the file
   };
 
   struct Record {
     Opcode opcode{};
-    std::size_t content_at = 0;  ///< in the bytes that hold it
+    std::size_t content_at = 0;  ///< position in the bytes that hold it
     std::string_view content;
     std::size_t end() const { return content_at + content.size(); }
   };
@@ -96,8 +96,8 @@ class McapFile : public MessageFile {
     return at;
   }
 
-  /// Reads the channels that are stored outside of chunks from this position on (a summary repeats
-  /// them), in case the only chunk that holds them is damaged.
+  /// From this position on, reads the channels that are stored outside of chunks, in case the only
+  /// chunk that holds them is damaged: a summary repeats channels.
   void read_channels_from(std::uint64_t at) {
     if (std::exchange(channels_are_read_, true)) return;
     while (const std::optional<Record> record = record_at(bytes(), at)) {
@@ -199,7 +199,7 @@ class McapFile : public MessageFile {
   std::map<std::uint16_t, std::size_t> channels_by_id_;
   bool channels_are_read_ = false;  ///< by read_channels_from()
   bool ended_ = false;              ///< the data section has ended
-  bool footer_ = false;             ///< found without a DataEnd record before it
+  bool footer_ = false;             ///< a footer was found without a DataEnd record before it
 };
 
 }  // namespace

@@ -88,7 +88,7 @@ class McapWriter : public MessageWriter {
   void finish() override {
     if (chunk_.size() > 0) end_chunk();
     ByteWriter end;
-    end.number(crc_);  // of everything before this record
+    end.number(crc_);  // checksum of everything before this record
     put_record(Opcode::kDataEnd, end.bytes());
     write_summary();
     put(mcap::kMagic);

@@ -35,10 +35,10 @@ struct MessagePlace {
   std::size_t part = 0;  ///< index of the file in a recording of several files; set by the visitor
 };
 
-/// A file of messages, MCAP or a ROS 1 bag, which stays mapped while it is used. Opening reads its
-/// records once from beginning to end, without the indexes: a truncated recording has none, and
-/// others may be wrong. After that, messages are read by their places; the last compressed chunk
-/// used is cached.
+/// A file of messages, MCAP or a ROS 1 bag, which stays mapped while it is used. When it is opened,
+/// its records are read once from beginning to end, without using the indexes: a truncated file has
+/// none, and those of other files may be wrong. After that, messages are read by their places; the
+/// last compressed chunk used is cached.
 class MessageFile {
  public:
   /// Receives each message: its channel, its bytes (valid during the call), its place.
@@ -77,7 +77,7 @@ class MessageFile {
   HeldBytes open_chunk(std::uint32_t number) const;
   /// Counts something that is left out; the first of its kind is described.
   void leave_out(const std::string& kind, std::uint64_t at, const std::string& why);
-  /// The kind of data after the last whole record.
+  /// The kind, for leave_out(), of data after the last whole record.
   static constexpr const char* kCut = "records cut short";
   /// Whether anything of a kind was left out.
   bool leaves_out(const std::string& kind) const { return left_out_.contains(kind); }

@@ -19,7 +19,7 @@ struct TopicSpec {
   std::string name;
   std::string type;        ///< as in ROS 1: "sensor_msgs/Image"
   std::string definition;  ///< in the language of .msg files
-  std::string md5;         ///< of ROS 1
+  std::string md5;         ///< checksum of the definition in ROS 1
   bool latched = false;    ///< kept for later subscribers
 };
 
@@ -34,8 +34,8 @@ enum class ChunkCompression { kNone, kLz4, kZstd };
 /// A chunk ends once it has this many bytes, before compression.
 inline constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
 
-/// Writes a file of messages, MCAP or a ROS 1 bag. The file gets its name when it is finished; an
-/// unfinished one leaves nothing behind.
+/// Writes a file of messages, MCAP or a ROS 1 bag. The file appears under its name when it is
+/// finished; an unfinished file leaves nothing behind.
 class MessageWriter {
  public:
   virtual ~MessageWriter() = default;

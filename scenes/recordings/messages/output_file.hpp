@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// A file that is written piece by piece and gets its name at the end; an unfinished one is
-/// removed.
+/// A file that is written piece by piece and appears under its name when it is finished; an
+/// unfinished file is removed.
 class OutputFile {
  public:
   /// @throws as make_output_folder(), throw_unwritable()

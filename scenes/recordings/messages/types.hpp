@@ -13,8 +13,8 @@ namespace mh::ros {
 // message lists its fields once, in order, to a visitor `f`: f(name, member) for a field in both
 // versions, f(name in ROS 1, name in ROS 2, member) where the names differ, f.ros1() and f.ros2()
 // for a field in only one version. Serialization, parsing and the text of the definition follow
-// (wire.hpp, definition.hpp). kMd5 is the published checksum of the definition in ROS 1, for types
-// that are sent.
+// from this list (wire.hpp, definition.hpp). kMd5 is the published checksum of the definition in
+// ROS 1, for types that are sent.
 
 struct Time {
   std::int64_t ns = 0;
@@ -24,7 +24,7 @@ struct Duration {
   std::int64_t ns = 0;
 };
 
-/// uint8[], as a view of bytes stored elsewhere, so that those of an image are not copied.
+/// uint8[], as a view of bytes stored elsewhere, so that an image's bytes are not copied.
 using Bytes = std::string_view;
 
 struct Header {

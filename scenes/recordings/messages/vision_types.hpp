@@ -82,8 +82,8 @@ struct Detection2D {
   Header header;
   std::vector<ObjectHypothesisWithPose> results;
   BoundingBox2D bbox;
-  Image source_img;  ///< of ROS 1; left empty
-  std::string id;    ///< of ROS 2: the instance
+  Image source_img;  ///< only in ROS 1; left empty
+  std::string id;    ///< only in ROS 2: the instance
   static void fields(auto& m, auto& f) {
     f("header", m.header);
     f("results", m.results);

@@ -183,7 +183,7 @@ class Parser {
 };
 
 /// @returns the message; its Bytes are views of `bytes`
-/// @throws InputError "is ..." if the bytes do not hold one.
+/// @throws InputError "is ..." if the bytes do not hold such a message.
 template <class M>
 M parsed(std::string_view bytes, Wire wire) {
   M message;

@@ -41,15 +41,16 @@ bool is_rectified(const std::string& topic) {
   return topic.substr(topic.rfind('/') + 1).find("_rect") != std::string::npos;
 }
 
-/// One axis of a calibration: the whole sensor, and the part that was cropped from it, whose pixels
-/// were binned (REP 104).
+/// One axis of a calibration: the size of the whole sensor, the part that was cropped from it, and
+/// how many of that part's pixels were binned into one (REP 104).
 struct Axis {
   double focal_px, center_px;
   std::uint32_t size_px, offset_px, part_px, joined;
 
   std::uint32_t step() const { return std::max(joined, 1U); }
   double focal() const { return focal_px / step(); }
-  /// Pixel centers are at integers: the center of binned pixels is between theirs.
+  /// Pixel centers are at integers, so the center of a binned pixel is in the middle between the
+  /// centers of the pixels that it joins.
   double center() const { return (center_px - offset_px - 0.5 * (step() - 1)) / step(); }
   int size() const {
     return static_cast<int>(std::min(part_px > 0 ? part_px : size_px, 65535U) / step());
@@ -125,8 +126,8 @@ Camera calibrated(const ChosenTopics& chosen, const RosTopics& topics,
   }
 }
 
-/// The transform that RealSense's recorder stores for the stream of an image topic, whose name
-/// begins with the stream's. @returns the end of the transform's name ("/tf/0"), and
+/// The transform that RealSense's recorder stores for the stream of an image topic; the topic's
+/// name begins with the stream's name. @returns the end of the transform's name ("/tf/0"), and
 /// stream_from_reference
 std::optional<std::pair<std::string, SE3>> recorded_tf(const RosTopics& topics,
                                                        const ImageTopic& images) {
@@ -150,8 +151,8 @@ std::optional<SE3> color_from_depth(const ChosenTopics& chosen, const RosTopics&
   const auto color_tf = recorded_tf(topics, color), depth_tf = recorded_tf(topics, depth);
   if (color_tf && depth_tf && color_tf->first == depth_tf->first)
     return (color_tf->second * depth_tf->second.inverse()).normalized();
-  // Drivers that align depth to color still publish depth's own calibration with it: the frame id
-  // reveals that depth is aligned.
+  // Drivers that align depth to color still publish the calibration of the unaligned depth with it;
+  // only the frame id reveals that depth is aligned.
   if (color.frame == depth.frame)
     return have_sizes_of_their_own(color, depth) ? std::optional(SE3()) : std::nullopt;
   if (auto fixed = fixed_transform(topics, color.frame, depth.frame);

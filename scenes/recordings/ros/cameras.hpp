@@ -18,9 +18,9 @@ struct RosCameras {
   double depth_per_meter = 0;        ///< for integer depth
 };
 
-/// Reads the cameras from CameraInfo or, for color, from a settings file. Depth that is not
-/// registered to color uses the transforms from tf, from RealSense's recorder or from its driver's
-/// extrinsics.
+/// Reads the cameras from CameraInfo or, for color, from a settings file. Depth that is not yet
+/// registered to color is registered with the transforms from tf, from RealSense's recorder, or
+/// from the extrinsics that RealSense's driver publishes.
 /// @throws InputError naming file and topic if there is no calibration, if its lens is not
 /// supported, or if depth cannot be registered.
 RosCameras ros_cameras(const ChosenTopics& chosen, const RosTopics& topics,

@@ -26,8 +26,8 @@ bool is_one_of(const auto& encodings, const std::string& encoding) {
   return std::ranges::find(encodings, encoding) != encodings.end();
 }
 
-/// Whether a topic is one of our own, for any camera: labels and instances are neither color nor
-/// depth.
+/// Whether a topic holds our own label or instance images, of any camera: these are neither color
+/// nor depth.
 bool is_ours(const ImageTopic& topic) {
   return topic.name.ends_with("/labels/image") || topic.name.ends_with("/instances/image");
 }
@@ -54,8 +54,8 @@ std::string parent_of(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
 }
 
-/// The topics whose names begin like the color topic's ("/camera2/..."), if there are several
-/// topics.
+/// If there are several topics, those whose names begin like the color topic's ("/camera2/..."), or
+/// all if none does.
 std::vector<const ImageTopic*> of_same_camera(std::vector<const ImageTopic*> topics,
                                               const ImageTopic& color) {
   const auto camera_of = [](const std::string& name) { return name.substr(0, name.find('/', 1)); };

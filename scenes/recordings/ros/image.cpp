@@ -70,16 +70,17 @@ struct ColorLayout {
   bool wide = false;  ///< 16 bits per channel
 };
 
-/// A color encoding that OpenCV converts: its rows of bytes per two rows of the image, its bytes in
-/// a row per two pixels, and OpenCV's code for the conversion to red, green, blue.
+/// A color encoding that OpenCV converts: how many rows of bytes it has for two rows of the image,
+/// how many bytes a row has for two pixels, and OpenCV's code for the conversion to red, green,
+/// blue.
 struct Conversion {
   const char* encoding;
   int rows_of_2, bytes_of_2;
   int code;
 };
 
-// ROS names a mosaic by its first two rows. So do the names of OpenCV that are used here; its older
-// names start at the second row and column.
+// ROS names a mosaic after its first two rows. The names of OpenCV that are used here follow the
+// same rule; OpenCV's older names start at the second row and column.
 constexpr std::array kConversions = {Conversion{"bayer_rggb8", 2, 2, cv::COLOR_BayerRGGB2RGB},
                                      Conversion{"bayer_bggr8", 2, 2, cv::COLOR_BayerBGGR2RGB},
                                      Conversion{"bayer_gbrg8", 2, 2, cv::COLOR_BayerGBRG2RGB},
@@ -173,8 +174,8 @@ Grid2d<float> compressed_depth(std::string_view message, ros::Wire wire, double 
   return depth_m;
 }
 
-/// Decodes a JPEG or PNG. A mosaic is stored as a gray image: "bayer_rggb8; png compressed
-/// bayer_rggb8".
+/// Decodes a JPEG or PNG. A mosaic is stored as a gray image; its format is "bayer_rggb8; png
+/// compressed bayer_rggb8".
 Grid2d<Rgb8> compressed_color(const ros::CompressedImage& image) {
   if (auto color = decode_color(image.data)) return std::move(*color);
   auto gray = decode_gray16(image.data);

@@ -8,7 +8,7 @@
 namespace mh {
 
 /// The files of a recording: the path itself, the only matching file in a folder, or the parts into
-/// which a recorder split a recording, in order. These are the files that ROS 2's metadata.yaml
+/// which a recorder split a recording, in order. The parts are the files that ROS 2's metadata.yaml
 /// lists, or files whose names differ only in the number at the end, from 0 on (NAME_0.bag,
 /// NAME_1.bag), and in the time that ROS 1's recorder writes into NAME.
 /// @param pattern  "*.bag"

@@ -19,9 +19,9 @@ namespace mh {
 
 /// Writes a camera's frames as ROS messages: color (rgb8), depth (32FC1, m), the calibration of
 /// both, class and instance images, detections, the true pose, and the camera's pose in tf. Depth
-/// is that of TUM's files, rounded to 0.2 mm, so that a frame reads back with the same bits from
-/// either. Messages are written in the order of the frames, regardless of the order in which
-/// threads add them.
+/// is rounded to 0.2 mm as in TUM's files, so that a frame has the same bits whether it is read
+/// from messages or from TUM's files. Messages are written in the order of the frames, regardless
+/// of the order in which threads add them.
 class RosRecorder : public SequenceWriter {
  public:
   /// @param robot  messages of the robot that carries the camera, including its pose in tf, sorted;
@@ -66,7 +66,7 @@ class RosRecorder : public SequenceWriter {
   std::mutex mutex_;                         ///< guards the file and the members below
   std::size_t next_ = 0;                     ///< frame to be written
   std::size_t next_robot_ = 0;               ///< entry of the log
-  std::map<std::size_t, std::pair<Stamp, Messages>> waiting_;  ///< for earlier frames
+  std::map<std::size_t, std::pair<Stamp, Messages>> waiting_;  ///< until earlier frames arrive
 };
 
 /// The calibration as a message.

@@ -197,7 +197,7 @@ OpenedRecording open_mcap_recording(const fs::path& path, const RecordingConfig&
 struct Read {
   std::vector<std::unique_ptr<MessageFile>> files;
   RosTopics topics;
-  std::vector<MessageChannel> channels;  ///< of all files, each once
+  std::vector<MessageChannel> channels;  ///< channels of all files, each listed once
   std::size_t messages = 0;
 };
 

@@ -17,7 +17,7 @@
 namespace mh {
 namespace {
 
-/// ROS 1's tf wrote "/map" where tf2 writes "map".
+/// A frame's name without a leading slash: ROS 1's tf wrote "/map" where tf2 writes "map".
 std::string frame_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
@@ -58,7 +58,7 @@ bool stands_still(const auto& stamped) {
 
 /// Replaces the stamps of the poses of a topic or an edge with the times of receipt if all stamps
 /// are equal.
-/// @returns whether they were
+/// @returns whether it replaced them
 bool repair(auto& topic) {
   if (!stands_still(topic.poses)) return false;
   for (std::size_t i = 0; i < topic.poses.size(); ++i)

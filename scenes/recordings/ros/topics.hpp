@@ -34,7 +34,7 @@ struct ImageTopic {
 /// A topic of calibrations.
 struct Calibration {
   std::string topic;
-  ros::CameraInfo info;              ///< the first
+  ros::CameraInfo info;              ///< the first message's content
   std::optional<Stamp> other_at_ns;  ///< stamp of the first that differs; nullopt if none does
 };
 
@@ -85,8 +85,8 @@ struct ChosenTopics {
   const ImageTopic* color = nullptr;
   const ImageTopic* depth = nullptr;
   const ImageTopic* labels = nullptr;       ///< may be null
-  const Calibration* info = nullptr;        ///< of color; may be null
-  const Calibration* depth_info = nullptr;  ///< may be null
+  const Calibration* info = nullptr;        ///< calibration of color; may be null
+  const Calibration* depth_info = nullptr;  ///< of depth; may be null
 };
 /// Chooses by name, otherwise by type and encoding.
 /// @throws InputError naming the file and its topics if there is no topic of a kind, or more than

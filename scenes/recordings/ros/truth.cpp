@@ -41,7 +41,8 @@ std::vector<Link> way_up(const RosTopics& topics, std::string frame, const std::
   return way;
 }
 
-/// body_from_optical, if only static edges lie between; nullopt if the edges do not lead to `body`.
+/// body_from_optical; nullopt if the edges do not lead from the optical frame to `body`, or if one
+/// of them moves.
 std::optional<SE3> fixed_from(const RosTopics& topics, const std::string& body,
                               const std::string& optical) {
   if (body.empty() || body == optical) return SE3();
@@ -69,8 +70,8 @@ std::optional<Trajectory> by_tf(const RosTopics& topics, const ImageTopic& color
   const auto moving =
       std::ranges::count_if(way, [](const Link& l) { return !is_fixed(*l.second); });
   if (moving == 0) return std::nullopt;
-  // Poses by edge, sorted. If only one edge moves, the stamps of its poses are used, since no
-  // interpolation is needed.
+  // Poses by edge, sorted. If only one edge moves, the stamps of its poses are used, because then
+  // no interpolation is needed.
   std::vector<Trajectory> edges;
   std::vector<Stamp> stamps;
   for (const StoredImage& image : color.images) stamps.push_back(image.stamp_ns);
@@ -162,7 +163,8 @@ bool never_moves(const TfEdge& edge) {
   });
 }
 
-/// A frame and those above it, up to the first edge that moves; each with above_from_frame.
+/// A frame and those above it, up to the first edge that moves; each with its transform
+/// above_from_frame.
 std::vector<std::pair<std::string, SE3>> fixed_way_up(const RosTopics& topics,
                                                       const std::string& frame) {
   std::vector<std::pair<std::string, SE3>> above{{frame, SE3()}};
