@@ -10,9 +10,9 @@
 namespace mh {
 
 /// The results as text: first in the form of the paper's Table 2 next to its published numbers,
-/// then everything else that a report must include. They depend only on suite, seeds and binary;
-/// times are in a separate table. Failed runs are counted in the rows where they are missing and
-/// are listed with their errors at the end, as are runs that have not been made yet.
+/// then everything else that a report must include. The text depends only on suite, seeds and
+/// binary; times are in a separate table. Failed runs are counted in the rows where they are
+/// missing and are listed with their errors at the end, as are runs that have not been made yet.
 std::string results_table(const Suite& suite, std::span<const RunResult> runs,
                           std::span<const FailedRun> failed = {},
                           std::span<const std::string> missing = {});

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The smallest step of 1, 2, 5, 10, 20, ... at which a range gets at most six ticks.
+/// The distance between ticks: the smallest of 1, 2, 5, 10, 20, ... with at most six ticks.
 double tick_step(double range) {
   double step = 1;
   for (std::size_t i = 0; range / step > 5; ++i) step *= i % 3 == 1 ? 2.5 : 2;
