@@ -29,8 +29,7 @@ void run(const ExportArguments& options) {
     fmt::print("{}", text);
     return;
   }
-  constexpr std::size_t kHead =
-      16;  // characters of the format's first line that identify our files
+  constexpr std::size_t kHead = 16;  // bytes that identify our files
   require_replaceable(options.out, std::string_view(text).substr(0, kHead), "`modelhouse export`",
                       read);
   write_atomically(options.out, text);

@@ -276,8 +276,7 @@ void run(RenderArguments options) {
   };
   const Shutter shutter = shutter_along(path);
   const Camera reported_camera = recorded_camera(shutter.camera(), options.sequence);
-  if (options.format ==
-      "scannet") {  // one file for all frames, which are added one by one in order
+  if (options.format == "scannet") {  // one file: frames are added in order
     const std::vector<std::size_t> wanted = moments(shutter, sensors, options.sequence);
     using Clock = std::chrono::steady_clock;
     const auto seconds_since = [](Clock::time_point start) {

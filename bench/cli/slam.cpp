@@ -62,7 +62,7 @@ SlamState first_state(const SlamArguments& options,
     state = make_slam(settings.camera, settings.slam, vocabulary);
   } else {
     state = load_slam(options.map, vocabulary);
-    Camera made_by = state.camera;  // the camera without disparity_sigma_px, which was learned
+    Camera made_by = state.camera;  // without the learned disparity_sigma_px
     if (!made_by.disparity_sigma_is_given) made_by.disparity_sigma_px = Camera{}.disparity_sigma_px;
     if (made_by != settings.camera)
       throw InputError(fmt::format("{}: was made with a different camera", options.map));
