@@ -61,7 +61,7 @@ class DetectorJudge {
   /// @param confidence  least score for a box to count; average precision uses boxes of all scores
   explicit DetectorJudge(double confidence) : confidence_(confidence) {}
 
-  /// @param found    in pixels of the exact image, best first
+  /// @param found    boxes in pixels of the exact image, best first
   /// @param depth_m  the sensed depth, from which labels are made; may be empty
   /// @returns the objects that were missed
   std::vector<VisibleObject> add(const RenderedFrame& exact, const std::vector<DetectedBox>& found,

@@ -44,10 +44,13 @@ class PosedFrames : public Sequence {
 
 /// What becomes of an image's keypoints in another image that was taken from the same pose.
 struct KeypointAgreement {
-  std::size_t keypoints = 0;   ///< keypoints of the first image
-  std::size_t repeated = 0;    ///< have a keypoint of the other image within 3 px and one octave
-  std::size_t matched = 0;     ///< their most similar one within 20 px and 50 bits is of these
-  std::size_t mismatched = 0;  ///< their most similar one within 20 px and 50 bits is not of these
+  std::size_t keypoints = 0;  ///< keypoints of the first image
+  /// With a keypoint of the other image in the same place: within 3 px and one octave.
+  std::size_t repeated = 0;
+  /// Whose most similar keypoint within 20 px and 50 bits is in the same place.
+  std::size_t matched = 0;
+  /// Whose most similar keypoint within 20 px and 50 bits is not in the same place.
+  std::size_t mismatched = 0;
 };
 KeypointAgreement agreement(const Features& first, const Features& other);
 

@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kTicksPerFrame = 2;          // camera ticks (30 Hz) per frame
-constexpr int kStepsWithoutDriver = 8;     // until the robot stops, half a second
+constexpr int kStepsWithoutDriver = 8;     // half a second until the robot stops
 constexpr int kDarkSteps = 15;             // a kidnapping takes one second
 constexpr std::size_t kMostPoints = 4000;  // most points of the map in one message
 constexpr std::uint64_t kStepsPerMap = 15;

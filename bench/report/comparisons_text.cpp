@@ -44,7 +44,7 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
 }
 
 /// The line to print below a comparison by the suite's measure: whether the first system is shown
-/// to be not worse by more than the suite's margin. Empty for other comparisons, or if the suite
+/// not to be worse by more than the suite's margin. Empty for other comparisons, or if the suite
 /// states no margin.
 std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
   if (!suite.non_inferiority_margin || c.pairs == 0 || c.what.measure != name(suite.measure))

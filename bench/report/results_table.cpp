@@ -91,7 +91,7 @@ std::vector<std::string> base_lines(const Suite& suite) {
 
 namespace {
 
-/// Empty unless the suite states published figures.
+/// The table of ATE beside published ATE; empty unless the suite states published values.
 std::string published_text(const AteBesidePublished& table) {
   if (table.environments.empty()) return "";
   std::vector<std::string> headings{"ATE m"};

@@ -64,7 +64,7 @@ void add_weight_cells(const Sweep& sweep, const QuerySummary& s, std::vector<std
   cells.push_back(shown_mass(s));
 }
 
-/// Rows of one level and kind of labels.
+/// The rows of the table for one level and one kind of labels.
 std::string points_text(const Suite& suite, std::span<const CategoryRow> rows,
                         std::span<const CategoryRow> all) {
   std::vector<std::string> headings{"system"};

@@ -17,8 +17,8 @@ inline constexpr std::string_view kBaselineFormat = "modelhouse-baseline-1";
 struct Baseline {
   std::string suite;         ///< its name
   std::string suite_digest;  ///< digest of its runs' scenes, tours, systems, seeds, protocol
-  /// Program and machine that produced the figures: on the same program and machine, results must
-  /// be equal to the bit.
+  /// Program and machine that produced the figures. If both are the same in a later run, its
+  /// results must be equal to the bit.
   nlohmann::ordered_json origin;
   /// Settings that a change may alter along with the program (see gate_settings). Null in a
   /// baseline written by an older program.
