@@ -30,8 +30,8 @@ CLI::Validator one_of_words(std::vector<std::string> words);
 /// Accepts any text except an empty one, such as that of an unset shell variable.
 CLI::Validator not_empty();
 
-/// Replaces a shipped name by its file (find_shipped; find_scene for scenes); leaves an empty word
-/// unchanged.
+/// Replaces a shipped name with its file (using find_shipped, or find_scene for scenes); leaves an
+/// empty word unchanged.
 void resolve(std::string& word, Shipped what);
 
 /// Checks, before any work is done, that the file can be written, and that an existing file is of

@@ -103,7 +103,8 @@ fs::path part_of_sequence(const fs::path& folder) {
   return {};
 }
 
-/// Refuses a folder with an older sequence: images of two tours in one folder would look like one.
+/// Refuses a folder with an older sequence: images of two tours in one folder would look like one
+/// sequence.
 void refuse_older_sequence(const fs::path& folder) {
   if (!is_folder(folder) || fs::exists(folder / "render.json"))
     return;  // compared later, when all settings are known

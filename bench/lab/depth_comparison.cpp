@@ -33,7 +33,7 @@ std::vector<Eigen::Vector2d> distorted(const Camera& camera,
 /// Whether the wanted depth is found at a pixel or next to it. The neighbors count because a
 /// keypoint on an edge may have a neighbor's depth.
 bool shows(const Grid2d<float>& depth_m, int x, int y, float wanted_m) {
-  constexpr float kSame = 0.05F;  // share of the depth: noise may differ from when the map was made
+  constexpr float kSame = 0.05F;  // share of the depth; noise may differ from that in the map
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u)
       if (depth_m.contains(u, v) && std::abs(depth_m(u, v) - wanted_m) <= kSame * wanted_m)

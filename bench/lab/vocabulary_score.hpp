@@ -23,8 +23,8 @@ struct PlacedView {
   static constexpr int kStep = 8;
 };
 
-/// Share of the points measured by `a` that `b` measured, too: they are in the image of `b`, at
-/// most 10 % farther from the camera than the depth of `b` there. 0 if `a` measured nothing.
+/// Share of the points measured by `a` that `b` sees, too: these are in the image of `b` and at
+/// most 10 % farther from its camera than what `b` measured there. 0 if `a` measured nothing.
 double overlap(const PlacedView& a, const PlacedView& b, const Camera& camera);
 
 struct VocabularyScoreConfig {

@@ -68,7 +68,7 @@ std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows,
   return scenes;
 }
 
-/// First minus second in one scene.
+/// Returns first minus second in one scene.
 using Difference = PairedDifference (*)(const Row&, const Row&, QuerySet);
 
 template <auto QuerySummary::*kField>

@@ -74,7 +74,7 @@ View shoot(std::string caption, const Renderer& renderer, const Camera& camera, 
 /// A view from a corner of a room, with measures of how good it is.
 struct CornerView {
   View view;
-  int objects = 0;   ///< that fill at least 1/100 of the view, except walls, floor and ceiling
+  int objects = 0;   ///< that fill 1/100 of the view or more; not walls, floor, ceiling
   float near_m = 0;  ///< 9/10 of the view is farther away; near 0 if something blocks it
 };
 

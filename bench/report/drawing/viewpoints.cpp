@@ -167,7 +167,8 @@ std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const 
   for (const SE3& pose : candidates)
     views.push_back(look(scene, renderer, small, level.world_from_level() * pose));
 
-  constexpr double kObject = 10, kGround = 0.01;  // values of one, in surface cubes
+  // The value of one object and of one cube of ground; a cube of other surface has value 1.
+  constexpr double kObject = 10, kGround = 0.01;
   std::vector<SE3> chosen;
   std::set<InstanceId> objects;
   std::set<std::array<int, 3>> surface, ground;

@@ -14,7 +14,7 @@ struct PlotOrder {
                    ///< on the grid of its map)
   int table = 0;   ///< 1 or 2, as in the paper: draws this table instead of a figure
   std::string run = {};                ///< run that figures 2 and 5 show; empty: the first
-  std::string measure = "ate_rmse_m";  ///< that figure 3 shows: the key of a column
+  std::string measure = "ate_rmse_m";  ///< key of the column that figure 3 shows
   double width_cm = 8.5;               ///< the width of a column in a paper
 };
 

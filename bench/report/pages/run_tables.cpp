@@ -29,7 +29,7 @@ void identify(PageTable& table, const RunSpec& spec, const std::string& status) 
   table.number({"trial", "trial"}, spec.trial);
 }
 
-/// The title of a run's metric, after the short name of its query set or, for episodes, "episodes".
+/// The title of a run's metric, preceded by the short name of its query set or by "episodes".
 std::string metric_title(const Metric& metric) {
   std::string title = metric.heading.empty() ? metric.name : std::string(metric.heading);
   if (metric.name.starts_with("episodes.")) return "episodes: " + title;
