@@ -83,7 +83,7 @@ void resolve(std::string& word, Shipped what) {
 
 namespace {
 
-/// The first bytes of a file with this extension; empty if the extension determines none.
+/// The first bytes that a file with this extension must have; empty if the extension implies none.
 std::string_view head_of(const fs::path& file) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeads = {
       {{".png", "\x89PNG"},
@@ -96,7 +96,7 @@ std::string_view head_of(const fs::path& file) {
   return {};
 }
 
-/// Whether a file begins with `head`; also true if it is empty or missing.
+/// Whether a file begins with `head`. Also true if the file is empty or missing.
 bool begins_with(const fs::path& file, std::string_view head) {
   std::string start(head.size(), '\0');
   std::ifstream in(file, std::ios::binary);

@@ -63,7 +63,7 @@ std::vector<std::string> names_of_audit() {
 
 namespace {
 
-/// The planned runs of a folder's results; nullopt if it has no results.
+/// The planned runs of the results in a folder; nullopt if the folder has no results.
 std::optional<PlannedKeys> runs_of_results(const std::filesystem::path& out) {
   const std::filesystem::path file = out / "results.sqlite";
   if (!std::filesystem::exists(file)) return std::nullopt;
@@ -77,7 +77,7 @@ void forget_other_audit(const std::filesystem::path& out) {
   const auto runs = runs_of_results(out);
   if (!runs || !std::filesystem::exists(file)) return;
   const auto json = parse_json_or_discard<nlohmann::ordered_json>(read_file(file));
-  if (!json.is_object() || !json.contains("definitions")) return;  // not one of ours
+  if (!json.is_object() || !json.contains("definitions")) return;  // not written by this program
   nlohmann::ordered_json same = nlohmann::ordered_json::object();
   for (const auto& [name, key] : *runs) same[name] = key;
   if (json.value("runs", nlohmann::ordered_json()) == same) return;

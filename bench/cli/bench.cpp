@@ -48,7 +48,7 @@ struct BenchArguments {
   bool audit = false;
   std::optional<std::size_t> slurm;
   std::string sbatch;
-  std::vector<std::string> arguments_of_part;  // as given, for the shares of --slurm
+  std::vector<std::string> arguments_of_part;  // as given; --slurm passes them on to the shares
   double time_limit_s = BenchOptions{}.time_limit_s;
   double memory_limit_mb = 0;
   double images_limit_gb = BenchOptions{}.images_limit_gb;
@@ -63,7 +63,8 @@ void print_settings() {
   fmt::print("{}", writer.text());
 }
 
-/// The default folder: results of a quick look must not replace the suite's own.
+/// The default folder. A quick look gets its own folder, so that it does not replace the full
+/// results.
 std::filesystem::path usual_folder(const Suite& suite, bool varied) {
   std::string name = suite.name;
   if (suite.max_frames) name += fmt::format("-first-{}", *suite.max_frames);
@@ -227,7 +228,7 @@ void add_bench(CLI::App& app) {
       "Examples:\n  modelhouse bench model_house --jobs 2\n"
       "  modelhouse bench my_suite.yaml --scene house.glb --frames 600");
   command->callback([=] {
-    // Options that are not passed on to a share, which has its own folder.
+    // Options that are not passed on to a share, such as the output folder: each share has its own.
     const std::set<std::string> not_of_part{"suite",   "--out",   "--json",  "--shard",
                                             "--audit", "--slurm", "--sbatch"};
     for (const CLI::Option* option : command->get_options()) {

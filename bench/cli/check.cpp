@@ -40,8 +40,9 @@ fs::path baseline_file(const CheckArguments& options) {
   return fs::path(options.suite).replace_extension(".baseline.json");
 }
 
-/// Returns where an interrupted check of that suite leaves its finished results, to be resumed by
-/// the same command; nullopt if it cannot be created, or if another process is working there.
+/// Returns the folder in which an interrupted check of this suite leaves its finished results, so
+/// that the same command can resume. nullopt if the folder cannot be created, or if another process
+/// is working in it.
 std::optional<OwnedFolder> place_for(const fs::path& suite) {
   const fs::path cache = Cache::default_folder();
   if (cache.empty()) return std::nullopt;
@@ -55,7 +56,7 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
         Store::open_to_read(place);
         return left;
       } catch (const InputError&) {
-        left->remove();  // damaged: only time is lost
+        left->remove();  // damaged: its runs are repeated
       }
     }
     return OwnedFolder::make(place);
@@ -64,9 +65,9 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
   }
 }
 
-/// Runs the suite. Reuses no earlier results except those of the same interrupted check. From the
-/// cache it uses only light and detections, whose keys cover everything that determines them: runs
-/// without images never take maps from there.
+/// Runs the suite. Earlier results are reused only if they are from the same check, interrupted.
+/// From the cache, only light and detections are used, since their keys cover everything that
+/// determines them; runs that store no images never take maps from the cache.
 /// @param inputs  reads the inputs; some may have been read already
 Baseline measure(const Suite& suite, const CheckArguments& of, InputReader& inputs,
                  Progress& progress) {
@@ -126,7 +127,8 @@ GateResult judge(const Suite& suite, const Baseline& before, const Baseline& now
   return result;
 }
 
-/// Shows what a new baseline changes, if the old one contains the same runs, and writes it.
+/// Shows what a new baseline changes, if the old baseline contains the same runs, and writes the
+/// new one.
 void update(const CheckArguments& options, const Suite& suite, const Baseline& now) {
   const fs::path file = baseline_file(options);
   if (fs::exists(file)) {

@@ -5,10 +5,11 @@
 
 namespace mh::cli {
 
-/// Thrown by a command that completed but whose check failed: exit code 1.
+/// Thrown by a command that ran to its end but whose check failed: exit code 1.
 struct CheckFailed {};
 
-// Each adds one subcommand; its work runs in the callback, after the whole command line is parsed.
+// Each of these functions adds one subcommand. The command's work is done in its callback, after
+// the whole command line is parsed.
 void add_audit(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_check(CLI::App& app);
@@ -33,7 +34,7 @@ void add_slam(CLI::App& app);
 void add_twin(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_vocabulary(CLI::App& app);
-/// Adds `completion` and `manual`, which are generated from all of `app`.
+/// Adds `completion` and `manual`, whose texts are generated from all commands of `app`.
 void add_declarations(CLI::App& app);
 
 }  // namespace mh::cli

@@ -16,12 +16,13 @@ std::string in_quotes(const std::string& text) {
   return result + "'";
 }
 
-/// Returns the first sentence, for one-line lists.
+/// Returns the first sentence of a text, for lists with one line per command.
 std::string first_sentence(const std::string& text) {
   return text.substr(0, std::min(text.find(". "), text.find(';')));
 }
 
-/// "' bench'|' scene'|'scene info'": in each pattern, the command reached so far and the next word.
+/// "' bench'|' scene'|'scene info'": shell patterns, each with the command reached so far and a
+/// word that may follow.
 std::string steps(const std::vector<CommandDeclaration>& all) {
   std::vector<std::string> steps;
   for (const CommandDeclaration& command : all)
@@ -37,7 +38,7 @@ std::vector<std::string> option_names(const CommandDeclaration& command) {
   return names;
 }
 
-/// Words for positional arguments: shipped names.
+/// The words to suggest for positional arguments: shipped names.
 std::vector<std::string> positional_words(const CommandDeclaration& command) {
   std::vector<std::string> words;
   for (const OptionDeclaration& option : command.options)

@@ -27,7 +27,7 @@ std::vector<std::string> words_in(const std::string& type) {
   return words;
 }
 
-/// The kind of shipped file that an option of that name takes.
+/// The kind of shipped file that an option (given by its name) takes.
 std::optional<Shipped> shipped_for(const std::string& name) {
   if (name == "suite") return Shipped::kSuite;
   if (name == "scene" || name == "scenes" || name == "--scene") return Shipped::kScene;

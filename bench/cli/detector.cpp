@@ -57,7 +57,7 @@ class Frames {
             "--settings {}: is for a recording, and the sources are images", options.settings));
       images_ = options.sources;
       for (const std::string& image : images_)
-        if (!is_there(image)) read_file(image);  // throws; damaged ones are skipped later
+        if (!is_there(image)) read_file(image);  // throws; damaged images are skipped later
       return;
     }
     if (options.sources.size() != 1)
@@ -72,12 +72,12 @@ class Frames {
     sequence_ = std::move(opened.sequence);
   }
   std::size_t size() const { return sequence_ ? sequence_->size() : images_.size(); }
-  /// Image files have the default stamp of an RgbdFrame.
+  /// For image files, each stamp is the default stamp of an RgbdFrame.
   std::vector<Stamp> stamps_ns() const {
     return sequence_ ? stamps_of(*sequence_)
                      : std::vector<Stamp>(images_.size(), RgbdFrame{}.stamp_ns);
   }
-  /// " of FILE" for an image; "" for a recording's frame.
+  /// " of FILE" for an image file; empty for a recording's frame.
   std::string source_of(std::size_t i) const {
     return sequence_ ? "" : " of " + printable(images_[i]);
   }
@@ -93,11 +93,11 @@ class Frames {
   std::vector<std::string> images_;
 };
 
-/// Appends a frame's results in COCO's format. The category is COCO's id for COCO's 80 classes;
-/// otherwise the class's index, from 1.
+/// Appends a frame's results in COCO's format. The category of COCO's 80 classes is COCO's id; the
+/// category of other classes is their index, starting from 1.
 void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected& found,
                  bool of_coco) {
-  std::map<int, int> category;  // by index among the 80
+  std::map<int, int> category;  // COCO's ids by index among the 80
   for (int id = 1; id <= 90; ++id) category[coco80_of_category(id)] = id;
   for (const DetectedBox& box : found.boxes)
     json.push_back({{"image_id", frame},
@@ -119,7 +119,7 @@ bool is_image_name(const std::string& name) {
                              [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// @throws InputError if a file that is read is in the output folder, where it could be taken for
+/// @throws InputError if an input file is in the output folder, where it could be mistaken for
 /// output.
 void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec& spec) {
   std::vector<fs::path> read = {spec.boxes};
@@ -129,14 +129,14 @@ void require_read_elsewhere(const DetectorArguments& options, const DetectorSpec
   for (const fs::path& file : read) {
     if (file.empty()) continue;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    for (const fs::path& place : {folder, file})  // boxes may be a folder
+    for (const fs::path& place : {folder, file})  // the boxes may be a folder
       if (fs::equivalent(place, options.out, error) && !error)
         throw InputError(fmt::format("{}: is in the output folder, {}: name another", file.string(),
                                      options.out));
   }
 }
 
-/// The images that an earlier run of this command drew, from its own list.
+/// The images that an earlier run of this command drew, according to its own list.
 std::vector<std::string> drawn_earlier(const fs::path& out) {
   std::vector<std::string> names;
   if (!is_file(out / kDrawn)) return names;
@@ -147,8 +147,8 @@ std::vector<std::string> drawn_earlier(const fs::path& out) {
   return names;
 }
 
-/// @throws InputError naming the file if an existing file with the name of a wanted image is not
-/// from an earlier run.
+/// @throws InputError naming the file if an image to be written has the name of an existing file
+/// that is not from an earlier run.
 void require_no_other_images(const fs::path& out, const std::vector<std::size_t>& wanted) {
   const std::vector<std::string> earlier = drawn_earlier(out);
   for (const std::size_t i : wanted)
@@ -188,10 +188,10 @@ void run(DetectorArguments options) {
   require_read_elsewhere(options, *spec);
   require_no_other_images(out, wanted);
   const OutputFolder folder(out, "detector run", {kResults, kDrawn});
-  const TemporaryFolder work(out);  // an earlier result stays until this one is complete
+  const TemporaryFolder work(out);  // keeps an earlier result until this one is complete
   Progress progress("detector run");
   const KeepDetections in_cache = detections_in(options.detector.opened_cache("detector run"));
-  bool made = false;  // by the network, not taken from the cache
+  bool made = false;  // whether the network made the boxes
   KeepDetections keep;
   if (in_cache != nullptr && detector->digest() != 0)
     keep = [&](const std::string& key, const auto& make) {

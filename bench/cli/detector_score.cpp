@@ -57,14 +57,15 @@ struct DetectorScoreArguments {
   bool json = false;
 };
 
-/// COCO's evaluation uses boxes with scores down to this; a detector's own threshold is far higher.
+/// COCO's evaluation uses boxes with scores down to this value; the threshold of a detector is far
+/// higher.
 constexpr double kLeastScore = 0.01;
 
 std::vector<std::string> names_of(const DetectorScoreArguments& options) {
   return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
-/// One frame as it was judged.
+/// One judged frame, with the objects that were missed and the boxes that were found.
 struct JudgedFrame {
   Grid2d<Rgb8> color;
   std::vector<VisibleObject> missed;
@@ -101,8 +102,8 @@ class Worst {
   std::vector<JudgedFrame> frames_;
 };
 
-/// Scores of the detector and, on the same frames, of the level's simulated detector with the
-/// measured settings.
+/// Scores of the detector and, on the same frames, of the simulated detector of the level with the
+/// settings that were measured.
 struct Judged {
   DetectorScore real;
   std::optional<DetectorScore> simulated;
@@ -140,7 +141,7 @@ void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
   progress.end();
 }
 
-/// Judges the detector, then the simulated one with the measured settings.
+/// Judges the detector; then judges the simulated detector with the measured settings.
 Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, Worst* worst) {
   const Cache cache = options.detector.opened_cache("detector");
   DetectorSpec spec = asked;
@@ -151,7 +152,7 @@ Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, W
   const SensorConfig sensors = load_sensor_config(options.level);
   const KeepDetections keep = detections_in(cache);
   DetectorJudge real(confidence);
-  std::vector<RenderedFrame> exact;  // only what the simulated detector uses
+  std::vector<RenderedFrame> exact;  // with only what the simulated detector uses
   std::vector<SE3> poses;
   for_each_moment(options, robot, sensors, [&](const Moment& moment, std::size_t index) {
     const RgbdFrame& frame = moment.sensed.frame;
@@ -202,7 +203,7 @@ void print_dials(const DetectorConfig& real, const DetectorConfig& simulated) {
   line("box_sigma", &DetectorConfig::box_sigma);
 }
 
-/// The largest counts, as "table 12, bed 3".
+/// The entries with the largest counts, as "table 12, bed 3".
 template <class Key, class Name>
 std::string most(const std::map<Key, std::size_t>& counts, const Name& name) {
   std::vector<std::pair<std::size_t, std::string>> all;
@@ -340,7 +341,7 @@ void fit(DetectorScoreArguments options) {
   const ReadScope scope;
   const Judged judged = judge(options, spec, nullptr);
   require_unchanged(scope.record());
-  require_not_read(options.out, scope.record());  // also the files of scenes and robot
+  require_not_read(options.out, scope.record());  // includes the files of scenes and robot
   if (judged.real.mean.truths == 0)
     throw InputError(fmt::format("no object in the {} is of COCO's classes: nothing is measured",
                                  counted(judged.real.images, "image")));

@@ -33,8 +33,8 @@ struct EpisodeArguments {
   bool no_cache = false, json = false;
 };
 
-/// The run that the options select (by default the first), with only the selected variant and the
-/// starts up to the selected one.
+/// The run that the options select (by default the first), reduced to the selected variant and to
+/// the starts up to the selected one.
 RunSpec chosen_run(const Suite& suite, const EpisodeArguments& options) {
   const auto check = [&](const char* option, const std::string& word,
                          const std::vector<std::string>& all) {

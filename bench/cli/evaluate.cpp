@@ -97,7 +97,7 @@ nlohmann::ordered_json to_json(const Evaluation& e, const std::string& align) {
           {"rpe", rpe}};
 }
 
-/// Formats an error; that of a diverged trajectory may be millions of meters.
+/// Formats an error. If a trajectory diverged, its error may be millions of meters.
 std::string cell(double error) {
   return error < 1000 ? fmt::format("{:>10.5f}", error) : fmt::format("{:>10.2e}", error);
 }
@@ -123,8 +123,8 @@ Stamp parse_offset(const std::string& text) {
   }
 }
 
-/// Loads both files in one format. KITTI's lines have no stamps: line i of one belongs to line i of
-/// the other.
+/// Loads both files in one format. KITTI's lines have no stamps: lines with the same number belong
+/// together.
 std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
   const Stamp offset_ns = parse_offset(options.offset);
   if (options.format == "tum") {
@@ -133,7 +133,7 @@ std::pair<Trajectory, Trajectory> load(const EvaluateArguments& options) {
                                            read_trajectory(options.estimate, &notes)};
     for (const std::string& note : notes) fmt::print(stderr, "evaluate: warning: {}\n", note);
     for (TimedPose& pose : both.second) {
-      // Within these limits, differences of stamps fit into a Stamp.
+      // Within these limits, differences between stamps fit into a Stamp.
       if (offset_ns > kLatest_ns - pose.stamp_ns || offset_ns < kEarliest_ns - pose.stamp_ns)
         throw InputError("--offset: gives stamps that are not from -1e7 to 9.2e9 s");
       pose.stamp_ns += offset_ns;

@@ -21,7 +21,7 @@ void run(const ExportArguments& options) {
       options.store, std::filesystem::path(options.store) / "results.sqlite"};
   if (!options.out.empty()) require_writable(options.out, read);
   const Store store = Store::open_to_read(options.store);
-  load_results(store, store.planned_suite());  // so that a damaged row is not exported
+  load_results(store, store.planned_suite());  // throws if a row is damaged
   const std::string text = options.format == "csv"    ? export_csv(store)
                            : options.format == "json" ? export_json(store)
                                                       : export_latex(store);
@@ -29,7 +29,7 @@ void run(const ExportArguments& options) {
     fmt::print("{}", text);
     return;
   }
-  constexpr std::size_t kHead = 16;  // of the format's first line
+  constexpr std::size_t kHead = 16;  // bytes that identify our files
   require_replaceable(options.out, std::string_view(text).substr(0, kHead), "`modelhouse export`",
                       read);
   write_atomically(options.out, text);

@@ -20,8 +20,8 @@
 namespace mh::cli {
 namespace {
 
-/// The verdicts by the suite's measure: a line for each pair of systems and set of queries, as many
-/// as fit on a screen.
+/// The verdicts by the suite's measure: a line for each pair of systems and set of queries, with as
+/// many lines as fit on a screen.
 std::string findings_text(const Suite& suite, const std::vector<RunResult>& runs) {
   constexpr std::size_t kMost = 8;
   std::string text;

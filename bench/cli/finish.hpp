@@ -15,17 +15,18 @@ namespace mh::cli {
 void finish(const std::filesystem::path& out, const Suite& suite, const BenchResults& results,
             bool json);
 
-/// Returns the names of the files that `bench` and `merge` write into a folder; empty if a results
-/// file shows that they already wrote there.
+/// Returns the names of the files that `bench` and `merge` write into a folder. Empty if a results
+/// file in the folder shows that they already wrote there.
 std::vector<std::string> names_written(const std::filesystem::path& out, const Suite& suite);
 
 /// Displays the progress of a suite.
 void show(Progress& progress, const PoolProgress& suite);
 
 /// Throws if any run failed; otherwise does nothing.
-/// @param why     the cause, or where to find it
-/// @param advice  what to do, unless all of them failed on bad input
-/// @throws InputError if all of them failed on bad input, else MachineError, naming the first.
+/// @param why     the cause of the failures, or where to find it
+/// @param advice  what to do about them; left out if all runs failed because of bad input
+/// @throws InputError if all runs failed because of bad input, otherwise MachineError. Both name
+/// the first run.
 void throw_failures(const std::vector<FailedRun>& failed, const std::string& why,
                     const std::string& advice);
 

@@ -44,7 +44,7 @@ int fail(int code, std::string message) {
   return code;
 }
 
-/// Flushes what is still buffered: a full disk is noticed here at the latest.
+/// Flushes the buffered output: a full disk is noticed here at the latest.
 int finish_output(int code) {
   std::cout.flush();
   const bool lost = std::fflush(stdout) != 0;
@@ -54,8 +54,8 @@ int finish_output(int code) {
   return fail(kMachineFailed, "standard output: cannot be written" + why);
 }
 
-/// The first word of the form "--out=", since CLI11 would take the next word as its value; nullptr
-/// if there is none.
+/// The first word that ends in "=" without a value, such as "--out=": CLI11 would take the next
+/// word as its value. nullptr if there is none.
 const char* option_without_value(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
     if (const std::string_view word = argv[i];
@@ -69,14 +69,15 @@ bool has_commands(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
-  // The process that started a run must see that the run was killed, not a message about it.
+  // A run does not report interrupts: the process that started it must see that it was killed.
   const bool is_run = argc >= 2 && std::string_view(argv[1]) == "run-one";
   if (!is_run) mh::tell_of_interrupts();
   mh::end_at_lost_pages(mh::kErrorMark, is_run ? mh::kInputChangedCode : kBadInput);
   // With this, a write beyond `ulimit -f` fails and is reported instead of ending the process
   // silently.
   std::signal(SIGXFSZ, SIG_IGN);
-  // For the same bits at any load, OpenCV must not split its work by the number of processors.
+  // OpenCV must not split its work by the number of processors: results must be the same to the
+  // bit.
   cv::setNumThreads(1);
   CLI::App app("Modelhouse: a simulation-backed test bench for object-aware visual SLAM.",
                "modelhouse");
@@ -151,8 +152,8 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Images come and go with every frame: kept by the process, their memory costs no page faults (a
-  // tenth of the time of `slam`).
+  // Every frame allocates and frees images. If the process keeps their memory, it avoids page
+  // faults, which would take a tenth of the time of `slam`.
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
   mallopt(M_TRIM_THRESHOLD, 128 << 20);
   return finish_output(run(argc, argv));

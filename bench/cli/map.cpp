@@ -195,11 +195,11 @@ void run(const MapMessagesArguments& options) {
              counted(study.objects.size(), "object"), counted(map.voxel_count(), "voxel"));
 }
 
-/// A goal next to a named object, where a robot in an episode would stop. If several objects match,
-/// it is next to the best-scored one that can be reached.
+/// A goal next to a named object, at a place where a robot in an episode would stop. If several
+/// objects match, the goal is next to the one with the best score that can be reached.
 Vector2d place_beside(const std::string& name, const VoxelMap& map, const KnownMap& known,
                       const Vector2d& from_m, double clearance_m) {
-  constexpr double kReach_m = 1.5;  // farther than this is not at the object
+  constexpr double kReach_m = 1.5;  // a place farther away is not at the object
   const std::vector<MapObject> objects = find_objects(map);
   std::vector<MapObject> meant;
   for (const std::size_t i : objects_named(objects, name)) meant.push_back(objects[i]);

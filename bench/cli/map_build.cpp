@@ -48,7 +48,7 @@ struct MapBuildArguments : SourceOptions {
 /// Poses of the frames whose depth is used, in the frame of their first camera.
 struct Posed {
   Trajectory poses;
-  std::vector<MapPoint> landmarks;  ///< of the SLAM map; empty without one
+  std::vector<MapPoint> landmarks;  ///< of the SLAM map; empty if there is none
 };
 
 Posed posed_by(const SlamState& state) {
@@ -63,7 +63,7 @@ Posed posed_by(const SlamState& state) {
 }
 
 /// Maps the sequence as a live feed.
-/// @param keep  receives each keyframe's frame
+/// @param keep  receives the frame of each keyframe
 Posed run_slam(const MapBuildArguments& options, const Source& source,
                const std::shared_ptr<const Vocabulary>& vocabulary,
                const std::function<void(const RgbdFrame&)>& keep) {
@@ -86,8 +86,8 @@ Posed run_slam(const MapBuildArguments& options, const Source& source,
   return posed_by(state);
 }
 
-/// Poses of the frames, interpolated from a trajectory whose stamps may differ from theirs, as with
-/// motion capture.
+/// Poses of the frames, interpolated from a trajectory whose stamps may differ from those of the
+/// frames, as with motion capture.
 Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory) {
   Trajectory poses;
   for (std::size_t i = 0; i < frames.size(); ++i)
@@ -96,7 +96,7 @@ Trajectory poses_of_frames(const Sequence& frames, const Trajectory& trajectory)
   return poses;
 }
 
-/// Keeps the frames of the sequence at the stamps of known poses. @returns their poses
+/// Keeps the frames of the sequence whose stamps have a known pose. @returns their poses
 Trajectory keep_posed(const MapBuildArguments& options, const Source& source,
                       const Trajectory& poses, const std::function<void(const RgbdFrame&)>& keep) {
   Trajectory kept;
@@ -116,8 +116,9 @@ Trajectory keep_posed(const MapBuildArguments& options, const Source& source,
   return kept;
 }
 
-/// Transform from the mapped poses' frame to that of the map: the scene's if there is one, since
-/// its robot knows its dock; else the floor's; nullopt if no floor was seen.
+/// Transform from the mapped poses' frame to the map's frame. The map's frame is that of the scene
+/// if there is one, since a robot in a scene knows the pose of its dock; otherwise it is that of
+/// the floor. nullopt if no floor was seen.
 std::optional<SE3> find_map_frame(const MapBuildArguments& options, const Source& source,
                                   const OccupancyMapper& mapper, const Trajectory& poses) {
   if (const Trajectory* truth = source.frames->truth(); options.is_scene() && truth != nullptr)
@@ -135,7 +136,7 @@ std::optional<SE3> find_map_frame(const MapBuildArguments& options, const Source
   return floor->floor_from_world;
 }
 
-/// The source's keyframes, by SLAM or at given poses; the mapper keeps their depth.
+/// The keyframes of the source, from SLAM or at given poses. The mapper keeps their depth.
 struct Keyframes {
   Posed posed;
   std::size_t kept = 0;
@@ -179,7 +180,7 @@ Keyframes keep_keyframes(const MapBuildArguments& options, const Source& source,
   return keyframes;
 }
 
-/// A scene that is mapped, and its robot's lasers if requested.
+/// A scene to be mapped, with its robot's lasers if they are requested.
 struct MappedScene {
   Scene scene;
   std::optional<SceneLasers> lasers;
@@ -194,8 +195,8 @@ std::unique_ptr<const MappedScene> load_mapped_scene(const MapBuildArguments& op
   return mapped;
 }
 
-/// What is mapped over the floor: grid, costs, objects.
-/// @param poses  of the keyframes, in the map's frame
+/// Computes what is mapped over the floor: grid, costs, objects.
+/// @param poses  the keyframes' poses, in the map's frame
 MapStudy study_floor(const MapBuildArguments& options, const Source& source,
                      const MappedScene* mapped, const VoxelMap& map, const Trajectory& poses) {
   std::optional<ScanGrid> scans;
@@ -222,7 +223,7 @@ MapScores score(const MapBuildArguments& options, const Trajectory& truth,
                    mapped.lasers ? &*mapped.lasers : nullptr);
 }
 
-/// Removes what an earlier build left in the folder, since this one may write less.
+/// Removes the files of an earlier build from the folder, since this build may write fewer.
 void remove_earlier(const fs::path& folder) {
   for (const char* name : kMapFiles) fs::remove(folder / name);
 }
@@ -282,7 +283,7 @@ void run(MapBuildArguments options) {
   if (options.score) scores = score(options, *source.frames->truth(), *mapped, mapper, study);
   const fs::path out = options.out;
   require_unchanged(reading.record());
-  remove_earlier(out);  // everything that replaces it is computed by now
+  remove_earlier(out);  // everything that replaces these files is computed by now
   write_map_files(out, mapper.map(), study);
   write_image(out / "grid_classes.png", classes);
   fmt::print("{}, grid of {} x {} cells, {}\n", built, study.grid.cells.width(),

@@ -23,7 +23,7 @@ struct MergeArguments {
 void run(const MergeArguments& options) {
   const fs::path out = options.out;
   const std::vector<fs::path> parts(options.in.begin(), options.in.end());
-  const std::vector<fs::path> all = mergeable_results(out, parts);  // before anything is written
+  const std::vector<fs::path> all = mergeable_results(out, parts);  // before writing
   const OutputFolder folder(out, "bench",
                             names_written(out, Store::open_to_read(all.back()).planned_suite()));
   merge_parts(out, parts, [](std::string_view note) { fmt::print(stderr, "merge: {}\n", note); });

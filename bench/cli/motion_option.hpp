@@ -16,7 +16,7 @@
 
 namespace mh::cli {
 
-/// How the camera moves (see sim/world/travel.hpp): as TOUR or as --motion.
+/// How the camera moves (see sim/world/travel.hpp), given as TOUR or as --motion.
 struct MotionOption {
   std::string tour, motion;
 
@@ -28,7 +28,8 @@ struct MotionOption {
                        "commands:FILE.yaml");
   }
   /// Returns the motion, with a shipped tour's name replaced by its file.
-  /// @throws InputError unless exactly one of the two was given, or if a bare word is not a motion
+  /// @throws InputError unless exactly one of the two was given, or if a bare word names neither a
+  /// kind of motion nor a tour
   std::string given() const {
     if (motion.empty() == tour.empty())
       throw InputError("give the motion once: as TOUR or as --motion");

@@ -84,7 +84,7 @@ void Progress::share(double done, std::string_view figures) {
 void Progress::share(double done, std::string_view figures, std::optional<double> to_go_s) {
   done = std::clamp(done, 0.0, 1.0);
   const int steps = terminal_ ? 200 : 10;
-  // 0.3 * 10 and the like may fall just short of the step that they reach.
+  // Products such as 0.3 * 10 may be slightly less than the step that they should reach.
   const int step = static_cast<int>(done * steps + 1e-9);
   if (step == last_step_ && (!terminal_ || figures == last_figures_)) return;
   last_step_ = step;
@@ -92,7 +92,7 @@ void Progress::share(double done, std::string_view figures, std::optional<double
   const std::string to_go =
       to_go_s && done < 1 ? ", " + readable_time(*to_go_s) + " to go" : std::string();
   if (terminal_) {
-    // The last column stays free: some terminals wrap as soon as it is written.
+    // The last column is left free: some terminals wrap as soon as it is written.
     fmt::print(to_, "\r{}\x1b[K", bar_line(what_, done, to_go, figures, columns_of(to_) - 1));
     line_open_ = true;
   } else {

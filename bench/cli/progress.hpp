@@ -19,12 +19,12 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void say(std::string_view stage);
-  /// The time remaining is shown once 1/20 of the work has been measured, counted from the first
-  /// progress: preparation before it would bias the estimate.
+  /// The time remaining is shown once 1/20 of the work has been measured. Measuring starts with the
+  /// first progress, since the preparation before it would bias the estimate.
   /// @param done     in [0, 1]
   /// @param figures  shown after the bar: status of the work
   void share(double done, std::string_view figures = {});
-  /// The same with the caller's own estimate of the time remaining; nullopt: not known yet.
+  /// The same with the caller's own estimate of the time remaining; nullopt if it is not known yet.
   void share(double done, std::string_view figures, std::optional<double> to_go_s);
   /// Ends the bar's line: what is printed next starts on a new line.
   void end();
@@ -40,8 +40,8 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// Returns one line of at most `columns` characters: the bar shrinks first, then the last figures
-/// are dropped.
+/// Returns one line of at most `columns` characters. If it would be longer, first the bar shrinks,
+/// then figures are dropped from the end.
 /// @param figures  separated by ", "
 std::string bar_line(std::string_view what, double done, std::string_view to_go,
                      std::string_view figures, std::size_t columns);

@@ -28,7 +28,7 @@
 namespace mh::cli {
 namespace {
 
-/// States where a page comes from, so that it is not edited by hand.
+/// A heading and a note on how the page is generated, so that nobody edits it by hand.
 std::string heading(const char* title, const char* what) {
   return fmt::format(
       "# {}\n\nMade by `modelhouse reference {}`; a test checks this page against the code.\n\n",
@@ -112,7 +112,7 @@ std::string robot() {
   return text;
 }
 
-/// A table for each section of settings, from the lists of their fields.
+/// A table for each section of settings, made from the lists of their fields.
 class SettingsTables {
  public:
   void section(const char* name) {
@@ -150,7 +150,7 @@ class SettingsTables {
   std::string text_;
 };
 
-/// Sets `enabled` in every section, as in a level that has the section.
+/// Sets `enabled` in every section, since a level that has a section enables it.
 struct SwitchOn {
   void section(const char*) const {}
   template <class T>
@@ -196,7 +196,7 @@ std::string protocol() {
          tables.text();
 }
 
-/// A table of the sources that a record of a suite names.
+/// A table of the sources that a record in a suite can name.
 template <class Record>
 std::string source_table(const char* title, const Record& record) {
   std::string text = fmt::format("\n## {}\n\n| key | value | meaning |\n|---|---|---|\n", title);

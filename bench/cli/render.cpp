@@ -60,8 +60,9 @@ std::string digest_of(const std::vector<InputDigest>& inputs, std::string_view n
   return input == inputs.end() ? "" : hex(input->digest);
 }
 
-/// Everything that determines the images: a folder is resumed only if none of it changed.
-/// @param inputs  what was read for robot (with its URDF), level, pedestrian and detector
+/// Everything that determines the images: a folder is resumed only if all of this is unchanged.
+/// @param inputs  digests of what was read for robot (with its URDF), level, pedestrian and
+/// detector
 std::string settings_of(const RenderArguments& o, const Scene& scene, const Trajectory& path,
                         const std::vector<InputDigest>& inputs) {
   nlohmann::ordered_json json = {{"scene", o.scene},
@@ -92,7 +93,7 @@ std::string settings_of(const RenderArguments& o, const Scene& scene, const Traj
   return json.dump(2) + "\n";
 }
 
-/// The first part of a sequence that a folder holds; empty if it holds none.
+/// The first file or folder that shows that a folder holds a sequence; empty if it holds none.
 fs::path part_of_sequence(const fs::path& folder) {
   for (const char* part : {"rgb", "rgb.txt", "color", "intrinsic", "mav0"})
     if (fs::exists(folder / part)) return folder / part;
@@ -102,7 +103,8 @@ fs::path part_of_sequence(const fs::path& folder) {
   return {};
 }
 
-/// Images of two tours in one folder would look like one sequence.
+/// Refuses a folder with an older sequence: images of two tours in one folder would look like one
+/// sequence.
 void refuse_older_sequence(const fs::path& folder) {
   if (!is_folder(folder) || fs::exists(folder / "render.json"))
     return;  // compared later, when all settings are known
@@ -148,7 +150,7 @@ const MountedCamera* find_camera(const RenderArguments& options, const Robot& ro
       fmt::format("--camera {}: robot '{}' has no such camera", options.camera, robot.name));
 }
 
-/// Poses of a camera along the robot's path.
+/// Poses of a camera while the robot drives along its path.
 Trajectory path_of(const MountedCamera& mounted, const Equipment& e, const DrivenPath& path) {
   Trajectory camera = path.camera;
   for (std::size_t i = 0; i < path.base.size(); ++i) {
@@ -161,7 +163,7 @@ Trajectory path_of(const MountedCamera& mounted, const Equipment& e, const Drive
   return camera;
 }
 
-/// The path of a second camera beside the first.
+/// The path of a second camera, to the right of the first.
 Trajectory beside(Trajectory path, double right_m) {
   const SE3 first_from_second(Eigen::Matrix3d::Identity(), {right_m, 0, 0});
   for (TimedPose& pose : path) pose.world_from_camera = pose.world_from_camera * first_from_second;
@@ -189,7 +191,7 @@ void run(RenderArguments options) {
   if (options.stereo_m > 0 && options.format != "euroc")
     throw InputError(fmt::format("--stereo {:g}: only --format euroc has a second camera, not {}",
                                  options.stereo_m, options.format));
-  make_renderer(options.renderer, Scene{});  // fails at once if the machine lacks it
+  make_renderer(options.renderer, Scene{});  // fails at once if the machine lacks this renderer
   const OutputFolder folder(out, "render", names_written(out));
   options.motion.read();
   std::vector<InputDigest> inputs;
@@ -275,7 +277,7 @@ void run(RenderArguments options) {
   };
   const Shutter shutter = shutter_along(path);
   const Camera reported_camera = recorded_camera(shutter.camera(), options.sequence);
-  if (options.format == "scannet") {  // one file for all: frames in order, one by one
+  if (options.format == "scannet") {  // one file: frames are added in order
     const std::vector<std::size_t> wanted = moments(shutter, sensors, options.sequence);
     using Clock = std::chrono::steady_clock;
     const auto seconds_since = [](Clock::time_point start) {

@@ -15,7 +15,7 @@
 namespace mh::cli {
 namespace {
 
-/// What may be wrong with poses that are rendered as they are.
+/// Reasons to doubt poses that are rendered exactly as given.
 std::vector<std::string> doubts(const Scene& scene, const Trajectory& camera, bool of_camera) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& p : scene.positions_m) box.extend(p.cast<double>());

@@ -16,19 +16,20 @@ namespace mh::cli {
 class RenderMotion {
  public:
   void add_to(CLI::App& command);
-  /// Reads what can be read without a scene. @throws InputError unless either a motion or poses
-  /// were given, not both.
+  /// Reads what can be read without a scene. @throws InputError unless exactly one of a motion and
+  /// a file of poses was given.
   void read();
 
-  /// The text for render.json.
+  /// The text that describes the motion in render.json.
   std::string text() const;
   bool is_driven() const { return !has_poses() && mh::is_driven(motion_); }
-  /// Whether the poses are those of the camera that is rendered, whichever camera that is.
+  /// Whether the file's poses are those of the rendered camera (whichever camera that is) rather
+  /// than those of the robot.
   bool is_of_camera() const { return has_poses() && poses_of_ == "camera"; }
 
   /// @pre read()
   /// @param say  receives messages: how the camera moves, whether poses were changed, and what may
-  /// be wrong
+  /// be wrong with them
   DrivenPath path(const Scene& scene, const Robot& robot, const std::vector<MovingObstacle>& others,
                   const SensorConfig& level,
                   const std::function<void(std::string_view)>& say) const;

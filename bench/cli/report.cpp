@@ -24,8 +24,9 @@ struct ReportArguments {
   std::string out, cache;
 };
 
-/// Repeats the runs whose replay is requested: by name, `failed` (runs with a query that was not
-/// answered correctly) or `all`. @throws InputError if no results contain a run of that name.
+/// Repeats the runs whose replay is requested: a run by its name, `failed` (every run with a query
+/// that was not answered correctly) or `all`. @throws InputError if no results contain a run of
+/// that name.
 void add_replays(std::vector<PagesSource>& sources, const ReportArguments& options) {
   const ReplayTools tools{
       .cache = usual_cache(options.cache), .threads = 1, .say = [](std::string_view stage) {
@@ -65,7 +66,7 @@ void add_replays(std::vector<PagesSource>& sources, const ReportArguments& optio
       throw InputError(fmt::format("--replay: no run is named '{}'{}", word, hint(word, names)));
 }
 
-/// Labels folders of the same name with as much of their paths as distinguishes them.
+/// Labels folders of the same name with as much of their paths as is needed to tell them apart.
 void name_apart(std::vector<PagesSource>& sources) {
   const auto tail = [](const PagesSource& source, std::size_t parts) {
     const auto whole = std::filesystem::absolute(source.folder).lexically_normal();

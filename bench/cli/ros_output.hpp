@@ -11,7 +11,8 @@
 
 namespace mh::cli {
 
-/// Options of commands that write ROS messages: which file, and how its chunks are compressed.
+/// Options of commands that write ROS messages: which file to write, and how to compress its
+/// chunks.
 struct RosOption {
   std::string compression = "none";
 

@@ -17,8 +17,8 @@ namespace mh::cli {
 
 namespace {
 
-/// Reports from the process of a run to the one that started it, on standard output, as RunProcess
-/// reads them.
+/// Reports progress from the process of a run to the process that started it, on standard output in
+/// the form that RunProcess reads.
 class ToParent {
  public:
   void say(std::string_view stage) {
@@ -26,7 +26,7 @@ class ToParent {
     std::fflush(stdout);
   }
 
-  /// Sent in steps of half a percent.
+  /// Sends the share of the work that is done, in steps of half a percent.
   void share(double share) {
     const int step = static_cast<int>(200 * share);
     if (step == last_step_) return;
@@ -35,8 +35,8 @@ class ToParent {
     std::fflush(stdout);
   }
 
-  /// Sent at most every 0.5 s, since frames pass faster than anyone can read; a status with a
-  /// different first word is sent at once.
+  /// Sends a status. At most one is sent every 0.5 s, since frames pass faster than anyone can
+  /// read, but a status with a different first word is sent at once.
   void status(std::string_view status) {
     constexpr auto kBetween = std::chrono::milliseconds(500);
     const auto now = std::chrono::steady_clock::now();
@@ -67,7 +67,7 @@ void add_run_one(CLI::App& app) {
   auto file = std::make_shared<std::string>();
   CLI::App* command =
       app.add_subcommand("run-one", "One run of a suite: what `bench` starts for each.");
-  command->group("");  // only for bench, so not listed
+  command->group("");  // used only by `bench`, so not listed
   command->add_option("order", *file)->required();
   command->callback([file] {
     const RunOrder order = read_order(*file);

@@ -45,10 +45,10 @@ constexpr int kThreads = 2;  // for baking light; does not change the result
 struct SceneArguments {
   std::string scene, out, format;
   SceneFrameOption frame;
-  std::vector<std::string> scenes;  ///< preview
-  bool scan_look = false;           ///< make
-  int each = 0;                     ///< preview: scenes of each category
-  int per_room = 2;                 ///< preview: rows of one scene's sheet
+  std::vector<std::string> scenes;  ///< for `preview`
+  bool scan_look = false;           ///< for `make`
+  int each = 0;                     ///< for `preview`: scenes of each category
+  int per_room = 2;                 ///< for `preview`: rows of one scene's sheet
   bool no_captions = false;
   std::uint64_t seed = 0;
   bool json = false, suggest_labels = false;
@@ -66,7 +66,7 @@ double slope_deg(const Floor& floor) {
   return std::acos(std::min(1.0, floor.up.z())) * 180 / std::numbers::pi;
 }
 
-/// Prints how much of the surface has a class, and the largest parts without one.
+/// Prints how much of the surface has a class, and which parts without a class are the largest.
 void print_labeled(const LabeledSurface& surface) {
   constexpr std::size_t kTold = 5;
   fmt::print("  labeled   {:.1f} % of {:.1f} m2 of surface\n", 100 * surface.share(),
@@ -134,8 +134,8 @@ void keep_of_each_room(std::vector<View>& views, int count) {
   std::erase_if(views, [&](const View& view) { return ++kept[view.caption] > count; });
 }
 
-/// Returns a scene's name and views of it with its light baked; the scene is freed once they are
-/// rendered.
+/// Bakes a scene's light and returns the scene's name with views of it. The scene is freed once
+/// they are rendered.
 std::pair<std::string, std::vector<View>> see(const std::string& name,
                                               const SceneArguments& options,
                                               const BakeWatch& baked) {
@@ -178,7 +178,7 @@ void preview(const SceneArguments& options) {
   write_image(options.out, draw_gallery(gallery, kColumns, !options.no_captions));
 }
 
-/// Also checks the labels that are written next to a PLY: they must not replace any other file.
+/// Also checks the labels that are written next to a PLY, since they must not replace other files.
 void require_mesh_writable(const fs::path& out, const std::vector<fs::path>& read) {
   require_writable(out, read);
   const fs::path labels = labels_path(out);
@@ -286,7 +286,7 @@ void make(const SceneArguments& options) {
   write_mesh(build_house(with_detail(plan), plan.name), options.out, options.scan_look);
 }
 
-/// Lists every environment of every category, and how many are in each group of the paper's Figure
+/// Lists every environment of every category, and counts those in each group of the paper's Figure
 /// 3.
 void list(const SceneArguments& options) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();

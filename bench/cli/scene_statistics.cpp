@@ -41,7 +41,8 @@ std::vector<std::string> names_of(const SceneStatisticsArguments& options) {
   return options.scenes.empty() ? generated_rooms(options.per_category) : options.scenes;
 }
 
-/// Measures evenly spaced frames of a handheld scan of the scene, as the level's sensors see them.
+/// Measures evenly spaced frames of a handheld scan of the scene, with the effects of the level's
+/// sensors.
 MeasuredPlace measure_scene(const std::string& name, std::size_t frames,
                             const SceneStatisticsArguments& options, const Robot& robot,
                             const SensorConfig& sensors) {
@@ -138,7 +139,7 @@ void run(SceneStatisticsArguments options) {
   Progress progress("statistics");
   std::vector<MeasuredPlace> places;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    // Together they add up to the requested frames.
+    // Over all places, these add up to the requested number of frames.
     const std::size_t frames =
         (i + 1) * options.frames / names.size() - i * options.frames / names.size();
     if (frames > 0) places.push_back(measure_scene(names[i], frames, options, robot, sensors));

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kUsualRobot = "pepper";
 
-/// Settings for a source with its own camera and image scale.
+/// Settings for a source with its own camera, which replaces the camera of a settings file.
 Settings settings_beside(const SourceOptions& options, const Sequence& frames,
                          std::vector<std::string> notes) {
   Settings settings;

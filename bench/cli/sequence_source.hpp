@@ -16,7 +16,7 @@
 
 namespace mh::cli {
 
-/// Prefix of a source that is a scene.
+/// The prefix that marks a source as a scene.
 inline constexpr std::string_view kSceneSource = "scene:";
 
 /// A recording, or a scene with a tour, as named by a command's options.
@@ -25,10 +25,10 @@ struct SourceOptions {
   SceneFrameOption frame;
   std::string tour, robot, level;
   std::uint64_t seed = 0;
-  bool labels = true;  ///< false: a recording's own labels are not read
+  bool labels = true;  ///< whether to read a recording's own labels
 
   bool is_scene() const { return source.starts_with(kSceneSource); }
-  /// The robot of a scene. @throws InputError if there is none.
+  /// The file of a scene's robot. @throws InputError if there is none.
   std::filesystem::path robot_file() const;
   void add_to(CLI::App& command);
   /// @throws InputError if an option does not fit the kind of source.
@@ -40,8 +40,9 @@ struct Source {
   std::unique_ptr<Sequence> frames;
 };
 
-/// Why a sequence gave no map, with the depth of its first image, which reveals a wrong unit.
-/// @param first, offered  the frames that were given
+/// Explains why a sequence gave no map. The depth of its first image is included, since it reveals
+/// a wrong unit.
+/// @param first, offered  index of the first frame that was given, and number of given frames
 std::string nothing_mapped(const std::string& source, const Sequence& frames, std::size_t first,
                            std::size_t offered);
 

@@ -13,7 +13,7 @@
 
 namespace mh::cli {
 
-/// Words NAME=VALUE of an option that may be given several times.
+/// The values of an option that may be given several times as NAME=VALUE.
 /// @throws InputError if one is not NAME=VALUE, or if a name is given twice.
 inline std::map<std::string, std::string> named_values(const std::string& option,
                                                        const std::vector<std::string>& given) {
@@ -28,7 +28,7 @@ inline std::map<std::string, std::string> named_values(const std::string& option
   return values;
 }
 
-/// The command line's values for `${NAME}` in a suite: --set NAME=VALUE.
+/// Values from the command line for `${NAME}` in a suite: --set NAME=VALUE.
 struct SetOption {
   std::vector<std::string> given;
 
@@ -45,8 +45,8 @@ struct SetOption {
     namespace fs = std::filesystem;
     std::map<std::string, std::string> values = named_values("--set", given);
     std::error_code error;
-    // The suite's paths are relative to its folder; the user's are relative to the working
-    // directory.
+    // Paths in the suite are relative to its folder, but paths from the user are relative to the
+    // working directory.
     for (auto& [name, value] : values)
       if (!value.empty() && fs::exists(value, error))
         value = fs::absolute(value).lexically_normal().string();

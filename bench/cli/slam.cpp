@@ -36,8 +36,9 @@ struct SlamArguments : SourceOptions {
   std::size_t frames = SIZE_MAX;
 };
 
-/// Applies what --settings may change for a loaded map: the settings of relocalization. The others
-/// shaped the map, so the map's values are kept, and a note lists those that the file would change.
+/// Applies the settings that --settings may change for a loaded map: those of relocalization. All
+/// other settings shaped the map, so the map's values are kept, and a note lists those that the
+/// file would have changed.
 void apply_settings(const SlamArguments& options, SlamConfig& of_map,
                     std::vector<std::string>& notes) {
   const SlamConfig asked = load_settings(options.settings, of_map).slam;
@@ -53,7 +54,7 @@ void apply_settings(const SlamArguments& options, SlamConfig& of_map,
     notes.push_back(fmt::format("{}: the map's own settings are used: {}", options.settings, list));
 }
 
-/// Returns a new state, or that of the map file.
+/// Returns a new state, or the state in the map file.
 SlamState first_state(const SlamArguments& options,
                       const std::shared_ptr<const Vocabulary>& vocabulary, Settings& settings) {
   SlamState state;
@@ -66,7 +67,7 @@ SlamState first_state(const SlamArguments& options,
     if (made_by != settings.camera)
       throw InputError(fmt::format("{}: was made with a different camera", options.map));
     if (!options.settings.empty()) apply_settings(options, state.config, settings.notes);
-    if (!options.resume) {  // the map's frames are from another sequence
+    if (!options.resume) {  // the map's frames are from a different sequence
       rewind(state);
       state.tracked_frames.clear();
     }
@@ -90,7 +91,7 @@ void check(const SlamArguments& options) {
     throw InputError("--protocol and --resume: held-out frames need a whole run");
 }
 
-/// Returns the first frame that the map has not received yet.
+/// Returns the index of the first frame that the map has not received yet.
 /// @throws InputError if none is left
 std::size_t first_frame(const SlamArguments& options, const SlamState& state,
                         const Sequence& frames) {
@@ -122,8 +123,8 @@ void require_no_other_file(const fs::path& map) {
 RunResult run_sequence(const SlamArguments& options, const World& world, SlamState& state,
                        std::size_t first, const StepObservers& observers,
                        const MappingObserver& watch) {
-  // The map size up to which the original ORB-SLAM2 resets; under the bench's protocol, the feed
-  // rewinds instead.
+  // As in the original ORB-SLAM2, a map of at most this many keyframes is reset when tracking is
+  // lost. Under the bench's protocol, the feed rewinds instead.
   constexpr int kSmallMap = 5;
   RunSpec spec;
   spec.environment.sequence = options.source;
@@ -157,9 +158,9 @@ void run(SlamArguments options) {
   const ReadScope reading;
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
   const auto spec = options.detector.spec();
-  options.labels = !options.plain && !spec;  // they would not be used
+  options.labels = !options.plain && !spec;  // unused labels are not read
   Source source = open_source(options);
-  // Before the work, so that a mistake costs no time.
+  // Checked before the work, so that a mistake costs no time.
   if (spec) {
     const std::shared_ptr<const Detector> detector = open_detector(*spec);
     fmt::print(stderr, "slam: labels from {}\n", detector->description());

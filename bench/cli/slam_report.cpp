@@ -102,9 +102,9 @@ void write_slam_files(const std::filesystem::path& folder, const SlamReport& rep
                                                             keyframes_json(report.state.map),
                                                             format_settings(settings),
                                                             summary_json(report).dump(2) + "\n"};
-  // First write all files to a temporary folder, so that a full disk leaves an earlier run's files
-  // intact. Then the old summary is removed first and the new one added last: a folder without a
-  // summary is incomplete.
+  // First, all files are written to a temporary folder, so that a full disk leaves an earlier run's
+  // files intact. Then the old summary is removed before the other files are replaced, and the new
+  // summary is added last: a folder without a summary is incomplete.
   const TemporaryFolder fresh(folder);
   for (std::size_t i = 0; i < contents.size(); ++i)
     write_atomically(fresh.path() / kSlamFiles[i], contents[i]);

@@ -23,7 +23,7 @@ struct SlamReport {
   const FrameLog& log;
   const StageClock& clock;
   std::vector<double> frame_ms;          ///< of each processed frame, excluding the time to read it
-  std::optional<Evaluation> evaluation;  ///< if the truth is known
+  std::optional<Evaluation> evaluation;  ///< absent if the truth is unknown
   std::string frames_csv, source;
 
   int lost() const {
@@ -32,12 +32,12 @@ struct SlamReport {
   double completeness() const { return log.tracked / static_cast<double>(run.mapping.offered); }
 };
 
-/// Files that write_slam_files() writes; the last one exists only if all do.
+/// The files that write_slam_files() writes. The last one exists only if all others do.
 inline constexpr std::array<const char*, 8> kSlamFiles{
     "estimate.tum",  "estimate.kitti", "frames.csv",    "landmarks.ply",
     "keyframes.ply", "keyframes.json", "settings.yaml", "summary.json"};
 
-/// @throws DiskFullError; the files of an earlier run are then still in the folder
+/// @throws DiskFullError, in which case the files of an earlier run are still in the folder
 void write_slam_files(const std::filesystem::path& folder, const SlamReport& report,
                       const Settings& settings);
 void print_slam_report(const SlamReport& report);

@@ -47,12 +47,13 @@ struct TwinArguments {
   std::size_t frames = SIZE_MAX, every = 5;
   std::uint64_t seed = 0;
   int threads = 2;
-  bool plain_comparison = false;  ///< no maps
+  bool plain_comparison = false;  ///< compare only images, without maps
   SceneFrameOption frame;
 };
 
-/// Transform from the frame of the recording's poses to that of the scene: the one given, else
-/// ScanNet's alignment, which the scene's loader applies and the recording's poses lack.
+/// Transform from the frame of the recording's poses to the frame of the scene. If it is not given,
+/// it is ScanNet's alignment, which the scene's loader applies to the scene but not to the
+/// recording's poses.
 SE3 scene_from_recording(const TwinArguments& options) {
   if (!options.scene_from_recording.empty()) {
     const std::vector<double>& v = options.scene_from_recording;
@@ -143,7 +144,7 @@ void print(const std::vector<TwinFrame>& frames, const std::vector<TwinRow>& row
                fmt::format("{} of {}", percent(rendered->correct), rendered->queries));
 }
 
-/// Up to six frames, evenly spaced, each recorded image beside its rendering.
+/// Up to six evenly spaced frames, with each recorded image beside its rendering.
 cv::Mat draw_pairs(const Sequence& recorded, const Sequence& twin) {
   constexpr std::size_t kPairs = 6;
   std::vector<View> views;

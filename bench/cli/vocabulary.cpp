@@ -23,7 +23,7 @@ namespace {
 
 struct VocabularyArguments {
   std::string file, list, out;
-  std::string frames, queries, settings;  ///< of `info`
+  std::string frames, queries, settings;  ///< for `info`
   VocabularyTraining training;
   VocabularyScoreConfig score;
 };

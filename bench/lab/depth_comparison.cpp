@@ -14,10 +14,10 @@
 namespace mh {
 namespace {
 
-/// Where the camera's image shows undistorted keypoints.
+/// Where keypoints, given at undistorted positions, are in the camera's (distorted) image.
 std::vector<Eigen::Vector2d> distorted(const Camera& camera,
                                        const std::vector<Keypoint>& keypoints) {
-  constexpr int kRounds = 4;  // each leaves a fraction of the previous error
+  constexpr int kRounds = 4;  // each round leaves a fraction of the previous error
   std::vector<Eigen::Vector2d> wanted;
   for (const Keypoint& k : keypoints) wanted.emplace_back(k.u_px, k.v_px);
   std::vector<Eigen::Vector2d> at = wanted;
@@ -30,10 +30,10 @@ std::vector<Eigen::Vector2d> distorted(const Camera& camera,
   return at;
 }
 
-/// Whether the wanted depth is found at a pixel or next to it: a keypoint on an edge may have a
-/// neighbor's depth.
+/// Whether the wanted depth is found at a pixel or next to it. The neighbors count because a
+/// keypoint on an edge may have a neighbor's depth.
 bool shows(const Grid2d<float>& depth_m, int x, int y, float wanted_m) {
-  constexpr float kSame = 0.05F;  // of the depth: the noise may differ from that in mapping
+  constexpr float kSame = 0.05F;  // share of the depth; noise may differ from that in the map
   for (int v = y - 1; v <= y + 1; ++v)
     for (int u = x - 1; u <= x + 1; ++u)
       if (depth_m.contains(u, v) && std::abs(depth_m(u, v) - wanted_m) <= kSame * wanted_m)

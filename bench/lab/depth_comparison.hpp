@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// Tells whether a map was made from a sequence, by comparing the depth of its keyframes' keypoints
-/// with the frames of the same stamps.
+/// Tells whether a map was made from a sequence, by comparing the depths of its keyframes'
+/// keypoints with those in the frames of the same stamps.
 class DepthComparison {
  public:
   /// @param map     must outlive this

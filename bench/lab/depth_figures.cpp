@@ -11,7 +11,7 @@ namespace {
 
 using namespace figure;
 
-/// A wall that intersects the axis at a distance and leans back by an angle.
+/// A wall that intersects the optical axis at a distance and leans back by an angle.
 RenderedFrame leaning(double distance_m, double angle_rad) {
   RenderedFrame frame = blank(0.0F);
   for (int y = 0; y < kCamera.height_px; ++y) {
@@ -23,7 +23,7 @@ RenderedFrame leaning(double distance_m, double angle_rad) {
   return frame;
 }
 
-/// Depth faults one at a time: everything off except what the caller switches on.
+/// A configuration without any depth faults: the caller switches on one at a time.
 SensorConfig depth_only() {
   SensorConfig config;
   config.color_noise.enabled = false;
@@ -31,7 +31,8 @@ SensorConfig depth_only() {
   return config;
 }
 
-/// Standard deviation of depth around the image center, where the angle is the nominal one.
+/// Standard deviation of depth around the image center, where the wall is seen at the nominal
+/// angle.
 double axial_sigma(double distance_m, double angle_rad) {
   SensorConfig config = depth_only();
   config.depth_noise.axial = true;
@@ -43,10 +44,10 @@ double axial_sigma(double distance_m, double angle_rad) {
   return spread.sigma();
 }
 
-/// Lateral standard deviation (px), from how often the last pixel before a wall's edge misses the
-/// wall: it strays by more than half a pixel with probability erfc(0.5 / sigma / sqrt 2) / 2. The
-/// wall is a fence around the image center, where the angle is the nominal one; each angle has its
-/// own random numbers.
+/// Lateral standard deviation (px), computed from how often the last pixel before a wall's edge
+/// misses the wall: the ray strays by more than half a pixel with probability erfc(0.5 / sigma /
+/// sqrt 2) / 2. The wall is a fence around the image center, where it is seen at the nominal angle.
+/// Each angle has its own random numbers.
 double lateral_sigma(double angle_rad) {
   constexpr int kBoard = 8, kFirst = 256, kEnd = 384;  // px; boards and gaps of equal width
   SensorConfig config = depth_only();
@@ -107,7 +108,7 @@ Plot step_over_distance() {
     SensorConfig config = depth_only();
     config.depth_noise.quantization = true;
     const RgbdFrame frame = sensed(leaning(z, 0.9), config);
-    // The two values that bracket the distance.
+    // The two depth values that bracket the distance.
     float below = 0.0F, above = 1e6F;
     for (const float depth : frame.depth_m) {
       if (depth < z) below = std::max(below, depth);

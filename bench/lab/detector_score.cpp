@@ -22,7 +22,7 @@ std::size_t size_class(const VisibleObject& object) {
   return object.pixels < kMediumPixels ? 0 : object.pixels < kLargePixels ? 1 : 2;
 }
 
-/// The class of most pixels in a box.
+/// The most frequent class among the pixels of a box.
 ClassId usual_class(const RenderedFrame& exact, const DetectedBox& box) {
   std::array<int, 256> count{};
   const int right = std::min(exact.classes.width(), static_cast<int>(std::ceil(box.right))),
@@ -101,7 +101,8 @@ std::vector<VisibleObject> DetectorJudge::add_outcomes(const RenderedFrame& exac
     }
     taken[best] = true;
     const VisibleObject& object = objects[best];
-    // A class that we do not have is wrong: it is counted as background.
+    // An object found with a class that we do not have is wrong: its class is counted as
+    // background.
     ++outcomes_[{object.class_id, id == kVoid ? kBackground : id}];
     ++found_of_size_[size_class(object)];
     const ImageBox truth = image_box(object, 0);

@@ -13,9 +13,10 @@
 
 namespace mh {
 
-/// The outcome of an object, or of a detection, at the detector's own threshold: `truth` is void
-/// for a detection of nothing, `found` for an object that was missed. A detection belongs to the
-/// unassigned object that it overlaps most, by at least 0.5; objects of its own class go first.
+/// What became of an object or a detection, at the detector's own threshold. `truth` is void for a
+/// false detection (no object), and `found` is void for an object that was missed. A detection
+/// belongs to the unassigned object that it overlaps most, by at least 0.5; objects of the
+/// detection's own class take precedence.
 struct Outcome {
   ClassId truth = kVoid, found = kVoid;
   friend auto operator<=>(const Outcome&, const Outcome&) = default;
@@ -25,41 +26,43 @@ struct Outcome {
 struct ClassScore {
   ClassId class_id = kVoid;
   AveragePrecision precision;
-  std::size_t objects = 0, right = 0, wrong_class = 0;  ///< at the detector's own least score
+  std::size_t objects = 0, right = 0, wrong_class = 0;  ///< at the detector's own threshold
 };
 
 /// How labels made of boxes agree with the exact classes of the pixels.
 struct LabelScore {
-  double right_share = 0;  ///< share of the pixels with a label whose label is right
-  double found_share = 0;  ///< share of the pixels of COCO's objects that got their class
+  double right_share = 0;  ///< share of the labeled pixels whose label is right
+  double found_share = 0;  ///< share of the pixels of COCO's objects with the right label
 };
 
 struct DetectorScore {
   std::size_t images = 0;
-  std::vector<ClassScore> classes;  ///< that occur, by id
-  /// Means over the classes that occur (for a size: that occur in that size).
+  std::vector<ClassScore> classes;  ///< classes that occur, by id
+  /// Means over the classes that occur; the mean of a size is over the classes that occur in that
+  /// size.
   AveragePrecision mean;
   std::map<Outcome, std::size_t> outcomes;
-  /// False alarms, by their class and the most frequent class of pixels in their box.
+  /// Number of false alarms, by their class and by the most frequent class among the pixels of
+  /// their box.
   std::map<std::pair<ClassId, ClassId>, std::size_t> false_alarms;
-  std::size_t badly_placed =
-      0;                       ///< overlap an object of their class by 0.1 to 0.5; not false alarms
-  DetectorConfig dials;        ///< settings of the simulated detector; NaN if not measured
-  LabelScore box, foreground;  ///< by BoxFill; NaN if not measured
+  /// Detections, not counted as false alarms, that overlap an object of their class by 0.1 to 0.5.
+  std::size_t badly_placed = 0;
+  DetectorConfig dials;        ///< settings to simulate this detector; NaN if not measured
+  LabelScore box, foreground;  ///< one for each BoxFill; NaN if not measured
 };
 
-/// `dials`, with those that were measured replaced (see DetectorScore::dials).
+/// Returns `dials` with the settings that were measured (see DetectorScore::dials) replaced.
 DetectorConfig with_measured(DetectorConfig dials, const DetectorConfig& measured);
 
-/// Judges a detector by exact images. Objects are the visible parts of instances of COCO's classes;
-/// those with fewer than kMinBoxPixels pixels are ignored.
+/// Judges a detector against exact images. Objects are the visible parts of instances of COCO's
+/// classes; objects with fewer than kMinBoxPixels pixels are ignored.
 class DetectorJudge {
  public:
-  /// @param confidence  least score for a box to count, except in average precision
+  /// @param confidence  least score for a box to count; average precision uses boxes of all scores
   explicit DetectorJudge(double confidence) : confidence_(confidence) {}
 
-  /// @param found    in pixels of the exact image, best first
-  /// @param depth_m  as sensed, for the labels; may be empty
+  /// @param found    boxes in pixels of the exact image, best first
+  /// @param depth_m  the sensed depth, from which labels are made; may be empty
   /// @returns the objects that were missed
   std::vector<VisibleObject> add(const RenderedFrame& exact, const std::vector<DetectedBox>& found,
                                  const Grid2d<float>& depth_m = {});
@@ -92,7 +95,7 @@ class DetectorJudge {
   Pixels box_, foreground_;
 };
 
-/// The boxes of the simulated detector, as a real one would give them.
+/// The boxes of the simulated detector, in the form in which a real detector returns them.
 std::vector<DetectedBox> as_detected(const std::vector<Detection>& detections);
 
 }  // namespace mh

@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// A box with its name on a plate of the same color.
+/// A box and its name, which is drawn on a plate of the same color.
 struct NamedBox {
   ImageBox box;
   std::string text;
@@ -36,8 +36,9 @@ void outline(Canvas& canvas, const ImageBox& box, Rgb8 color, double thickness) 
   canvas.line({box.left, bottom}, {box.left, box.top}, color, thickness);
 }
 
-/// Draws boxes with an edge that is visible on dark and bright ground, then their names: above the
-/// box, below it or inside, wherever there is no name yet, in their order.
+/// Draws boxes with an edge that is visible on dark and bright ground, then their names in the
+/// given order. A name is drawn above its box, below it or inside, wherever there is no other name
+/// yet.
 void draw_boxes(Canvas& canvas, const std::vector<NamedBox>& boxes) {
   for (const NamedBox& b : boxes)
     outline(canvas, b.box, is_bright(b.color) ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255}, 4);

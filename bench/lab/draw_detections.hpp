@@ -12,12 +12,13 @@
 
 namespace mh {
 
-/// A frame with its boxes, each with the detector's own class name and score; beside it, if
-/// `labels` has any, the frame's labels in the colors of classes.
+/// Draws a frame with its boxes, each with the detector's own class name and score. If `labels` has
+/// any, the frame's labels are drawn beside it in class colors.
 cv::Mat draw_detections(const Grid2d<Rgb8>& color, const std::vector<DetectedBox>& boxes,
                         const ClassNames& names, const SemanticImage& labels = {});
 
-/// A frame with the objects that a detector missed, in red, and what it found, in white.
+/// Draws a frame with the objects that a detector missed (in red) and the boxes that it found (in
+/// white).
 cv::Mat draw_missed(const Grid2d<Rgb8>& color, const std::vector<VisibleObject>& missed,
                     const std::vector<DetectedBox>& found, const ClassNames& names);
 

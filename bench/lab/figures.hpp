@@ -8,7 +8,7 @@
 namespace mh {
 
 // Figures of the sensor models: each source's published curve (lines) with measurements of our
-// model (dots). A few seconds in all.
+// model (dots). All of them together take a few seconds.
 std::vector<Plot> depth_figures();
 std::vector<Plot> light_figures();
 std::vector<Plot> label_figures();

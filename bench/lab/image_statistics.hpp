@@ -13,8 +13,8 @@
 
 namespace mh {
 
-/// Measures of how hard an image is for features: texture, blankness, sharpness. In the order of
-/// kImageQuantities.
+/// Measures of how hard an image is for feature extraction (texture, blankness, sharpness), in the
+/// order of kImageQuantities.
 inline constexpr std::size_t kImageQuantityCount = 8;
 using ImageStatistics = std::array<double, kImageQuantityCount>;
 
@@ -44,10 +44,11 @@ inline constexpr std::array<ImageQuantity, kImageQuantityCount> kImageQuantities
 ImageStatistics measure_image(const cv::Mat& gray);
 ImageStatistics measure_image(const Grid2d<Rgb8>& color);
 
-/// A quantity as tables show it: three digits, integers from 1000 up.
+/// A quantity as text for tables: three digits, or an integer from 1000 on.
 std::string shown(double quantity);
 
-/// The value below which that share of a list falls, interpolated between neighbors; NaN if empty.
+/// The value below which the given share of a list falls, interpolated between neighbors; NaN if
+/// the list is empty.
 double percentile(std::vector<double> values, double share);
 
 }  // namespace mh

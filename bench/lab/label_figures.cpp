@@ -12,7 +12,7 @@ namespace {
 
 using namespace figure;
 
-/// Square chairs of one size in a grid, and their number.
+/// A frame with square chairs of one size in a grid, and the number of chairs.
 std::pair<RenderedFrame, int> chairs(int size) {
   constexpr ClassId kChair = 5;
   RenderedFrame frame = blank(2.0F);

@@ -48,8 +48,8 @@ Grid2d<Rgb8> passing_the_edge(double speed_m_per_s, const SensorConfig& config, 
   return Shutter(std::make_shared<Edge>(), narrow_camera(), path, config).expose(2).seen.color;
 }
 
-/// The width of the smeared edge, from the variance of its slope; the edge's subpixel position is
-/// averaged out (see tests/sim/sensors/shutter_test.cpp).
+/// The width of a smeared edge, computed from the variance of its slope. The edge's subpixel
+/// position is averaged out (see tests/sim/sensors/shutter_test.cpp).
 double smear_px(double speed_m_per_s, double exposure_ms) {
   SensorConfig config = exact_sensors();
   config.motion_blur = {.enabled = true, .exposure_ms = exposure_ms};
@@ -144,7 +144,7 @@ Plot fall_off_over_angle() {
            measured("measured", {0, 5, 10, 15, 20, 25, 30}, share)}};
 }
 
-/// A gray wall that is three times as bright once the camera has passed x = 0.
+/// A gray wall that becomes three times as bright once the camera has passed x = 0.
 class Lamp : public Renderer {
  public:
   RenderedFrame render(const Camera& camera, const SE3& world_from_camera) const override {

@@ -24,7 +24,7 @@ std::vector<Factor> color_factors() {
     return [=](SensorConfig& c) { c.color_noise.enabled = true, c.color_noise.sigma = sigma; };
   };
   const auto read = [](double share) {
-    // So large a full well that its own noise, the shot noise, is small compared with the read
+    // The full well is so large that its own noise, the shot noise, is small compared with the read
     // noise.
     return [=](SensorConfig& c) { c.shot_noise = {true, 1e6, 1e6 * share, 1.0}; };
   };

@@ -10,21 +10,21 @@
 
 namespace mh {
 
-/// How the view changes, for a model without a strength setting.
+/// How a row's view changes to strengthen the effect of a model without a strength setting.
 struct Look {
   double baseline = 1;      ///< factor on the sensor's baseline
   double far = 1;           ///< factor on the scene's size
   int pixel = 1;            ///< factor on the pixel width
-  double eye_m = 0;         ///< above the floor; 0 = the view's own height
-  bool over_color = false;  ///< edges of the depth over the color image
+  double eye_m = 0;         ///< above the floor; 0: the view's own height
+  bool over_color = false;  ///< draws edges of the depth over the color image
 };
 
-/// One factor: its name, and its mild and strong settings.
+/// One factor with its name and three settings: off, mild, strong.
 struct Factor {
   std::string name;
   std::array<std::string, 3> captions;
   std::array<std::function<void(SensorConfig&)>, 3> settings;
-  int crop_px = 640;  ///< width of the central part that is shown
+  int crop_px = 640;  ///< width of the central part of the image that is shown
   std::array<Look, 3> looks = {};
 };
 
@@ -33,12 +33,12 @@ std::vector<Factor> color_factors();
 std::vector<Factor> depth_factors();
 std::vector<Factor> frame_factors();
 std::vector<Factor> label_factors();
-/// Exact boxes, one network and another, distinguished by the seed of their labels; kExactBoxes
-/// means no network.
+/// Three settings: exact boxes, one network, another network. They differ in the seed of their
+/// labels; kExactBoxes means no network.
 Factor detector_factor();
 inline constexpr std::uint64_t kExactBoxes = 100;
 
-/// The configuration that each setting starts from.
+/// The configuration that each setting is applied to.
 SensorConfig everything_off();
 
 }  // namespace mh

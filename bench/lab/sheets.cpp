@@ -25,11 +25,11 @@ namespace {
 
 constexpr double kTileWidth = 400, kTileHeight = 300, kGap = 10, kMargin = 24, kCaption = 20;
 constexpr double kHeader = 70;
-constexpr std::size_t kMiddle = 30;  // of the path's frames
+constexpr std::size_t kMiddle = 30;  // index of the middle frame of the path
 constexpr Rgb8 kInk = {40, 43, 50}, kGray = {110, 115, 125};
 
-/// The view at the height of a robot's camera that shows the most objects: from the rooms' centers,
-/// in eight directions.
+/// The view that shows the most objects, among eight directions from the center of each room at the
+/// height of a robot's camera.
 SE3 busiest_view(const Scene& scene, const Renderer& renderer, const Camera& camera) {
   std::vector<Eigen::Vector3d> eyes;
   for (const Room& room : scene.rooms) {
@@ -61,10 +61,10 @@ SE3 busiest_view(const Scene& scene, const Renderer& renderer, const Camera& cam
   return best;
 }
 
-/// Two seconds of walking and turning, the given pose in the middle.
+/// Two seconds of walking and turning, with the given pose in the middle.
 Trajectory motion_through(const SE3& pose) {
   Vector6d twist;
-  twist << 0, 0, 0.4, 0, 1.0, 0;  // m/s, rad/s, of the camera
+  twist << 0, 0, 0.4, 0, 1.0, 0;  // m/s and rad/s, in the camera's frame
   Trajectory path;
   for (std::size_t i = 0; i <= 2 * kMiddle; ++i) {
     const double t = (static_cast<double>(i) - static_cast<double>(kMiddle)) / 30.0;
@@ -73,8 +73,8 @@ Trajectory motion_through(const SE3& pose) {
   return path;
 }
 
-/// False colors for the distance, shaded as if lit from the left, so that noise is visible; black
-/// for no return.
+/// Draws distances in false colors, shaded as if lit from the left so that noise is visible; black
+/// means no return.
 cv::Mat depth_image(const Grid2d<float>& depth_m, const Camera& camera) {
   const int w = depth_m.width(), h = depth_m.height();
   cv::Mat image = depth_colors(depth_m, 0.5F, 6.0F);
@@ -90,8 +90,8 @@ cv::Mat depth_image(const Grid2d<float>& depth_m, const Camera& camera) {
   return image;
 }
 
-/// The color image in gray with the depth's edges in red: they coincide with the objects' edges if
-/// both were taken at the same time.
+/// Draws edges of the depth in red over the color image in gray. They coincide with the objects'
+/// edges if both images were taken at the same time.
 cv::Mat edges_over_color(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& color) {
   constexpr double kJump = 0.08;  // share of the distance
   constexpr int kReach_px = 2;
@@ -111,7 +111,7 @@ cv::Mat edges_over_color(const Grid2d<float>& depth_m, const Grid2d<Rgb8>& color
   return image;
 }
 
-/// Class colors over the gray image; void shows the image itself.
+/// Draws class colors over the gray image; where the label is void, the image itself is visible.
 cv::Mat label_image(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
   cv::Mat image = color_image(color);
   for (int y = 0; y < image.rows; ++y)
@@ -129,7 +129,7 @@ cv::Mat label_image(const SemanticImage& labels, const Grid2d<Rgb8>& color) {
   return image;
 }
 
-/// Draws the rows of one sheet; `show` makes the image of one setting.
+/// Draws the rows of one sheet; `show` returns the image for one setting.
 cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
              const std::function<cv::Mat(const SensorConfig&, const Look&)>& show) {
   const double row = kTileHeight + 2 * kCaption + kGap;
@@ -158,7 +158,7 @@ cv::Mat draw(const std::string& title, const std::vector<Factor>& factors,
   return canvas.finish();
 }
 
-/// Draws successive frames, one row for each strength of each factor; lost frames are marked.
+/// Draws successive frames, one row for each strength of each factor. Lost frames are marked.
 cv::Mat draw_frames(const std::function<cv::Mat(std::size_t frame, const SensorConfig&)>& show,
                     RandomStream stream) {
   constexpr std::size_t kFrames = 10;
@@ -240,7 +240,7 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
         const RenderedFrame seen = renderer->render(camera, path[i].world_from_camera);
         return color_image(sense(seen, camera, c, stream.fork(i), 0).color);
       },
-      RandomStream(6));  // with this seed, some of the ten frames are lost at either share
+      RandomStream(6));  // with this seed, both shares lose some of the ten frames
 
   const RenderedFrame truth = renderer->render(camera, pose);
   std::vector<Factor> factors = label_factors();
@@ -248,7 +248,7 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
       draw("Labels: class colors over the image", factors, [&](const SensorConfig& c, const Look&) {
         return label_image(sense_labels(truth, LabelMode::kExact, c, pose, stream), truth.color);
       });
-  // The detector's rows come below: exact boxes, one network and another.
+  // Below, the rows of the detector: exact boxes, one network, another network.
   const Factor detectors = detector_factor();
   const cv::Mat more = draw("", {detectors}, [&](const SensorConfig& c, const Look&) {
     const LabelMode mode = c.labels.seed == kExactBoxes ? LabelMode::kBoxes : LabelMode::kDetector;

@@ -10,10 +10,10 @@
 
 namespace mh {
 
-/// Contact sheets of the sensor factors, one row per factor: off, mild, strong, all from the same
-/// pose and motion (forward at 0.4 m/s while turning at 1 rad/s), where the scene shows the most
-/// objects. A factor without a strength setting is made stronger by a larger room, larger pixels or
-/// a lower viewpoint, as its caption states.
+/// Contact sheets of the sensor factors, with one row per factor: off, mild, strong. All use the
+/// same motion (forward at 0.4 m/s while turning at 1 rad/s) through the pose where the scene shows
+/// the most objects. The effect of a factor without a strength setting is made stronger by a larger
+/// room, larger pixels or a lower viewpoint, as its caption states.
 struct SensorSheets {
   cv::Mat color, depth, frames, labels;
 };

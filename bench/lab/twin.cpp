@@ -51,7 +51,7 @@ PosedFrames::PosedFrames(std::unique_ptr<Sequence> all, const SE3& scene_from_re
     : all_(std::move(all)) {
   for (std::size_t i = 0; i < all_->size() && index_.size() < at_most; ++i) {
     const QueryMoment moment = moment_of(all_->stamp_ns(i), all_->truth());
-    // A shutter's path is a motion: its stamps increase.
+    // The path of a shutter is a motion, so its stamps must increase.
     if (!moment.true_world_from_camera ||
         (!poses_.empty() && moment.stamp_ns <= poses_.back().stamp_ns)) {
       ++left_out_;
@@ -98,7 +98,7 @@ std::vector<TwinFrame> compare_twins(const Sequence& recorded, const Sequence& t
     try {
       real = recorded.frame(i, draws(0, i));
     } catch (const InputError&) {
-      continue;  // an image that cannot be read
+      continue;  // the image cannot be read
     }
     if (real.color.width() != recorded.camera().width_px ||
         real.color.height() != recorded.camera().height_px)
@@ -147,7 +147,8 @@ std::vector<TwinRow> summarize(const std::vector<TwinFrame>& frames) {
     }
     return all > 0 ? hits / all : std::numeric_limits<double>::quiet_NaN();
   };
-  // Recorded keypoints in the rendering; as a bound, rendered ones in a rendering with other noise.
+  // Agreement of recorded keypoints with the rendering and, as an upper bound, of rendered
+  // keypoints with a rendering with different noise.
   for (const auto& [key, name, part] :
        {std::tuple{"repeated", "keypoints repeated in the rendering, share",
                    &KeypointAgreement::repeated},

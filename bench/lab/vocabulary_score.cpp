@@ -33,13 +33,13 @@ AugmentedVector describe(const PlacedView& view, const Vocabulary& vocabulary, d
                           [&](WordId word) { return static_cast<double>(vocabulary.idf(word)); });
 }
 
-/// Result of one query: whether its first answer is true, and the quality of its ranking.
+/// Result of one query: whether its first candidate is true, and the quality of its ranking.
 struct Ranking {
   bool first_is_true = false;
   double average_precision = 0, chance = 0;
 };
 
-/// @param is_true  whether each candidate is true, most similar first
+/// @param is_true  for each candidate, most similar first, whether it shows the same place
 /// @returns nullopt if no candidate is true.
 std::optional<Ranking> judge(const std::vector<bool>& is_true) {
   Ranking ranking;

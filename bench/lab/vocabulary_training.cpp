@@ -50,7 +50,8 @@ std::vector<Descriptor> describe_image(Grid2d<Rgb8> image, const VocabularyTrain
   return extract(frame, camera, config.features).descriptors;
 }
 
-/// Gaussian noise, the same on all channels of a pixel: features are found in gray.
+/// Adds Gaussian noise that is the same on all channels of a pixel, since features are found in
+/// gray.
 void add_noise(Grid2d<Rgb8>& image, double sigma, RandomStream random) {
   std::uint64_t pixel = 0;
   for (int y = 0; y < image.height(); ++y)
@@ -95,7 +96,7 @@ Images describe_file(const VocabularyTraining& config, const std::filesystem::pa
   return {describe_image(std::move(image), config)};
 }
 
-/// Runs jobs in any order; their results are in job order.
+/// Runs jobs in any order. Their results are returned in the order of the jobs.
 template <class Job>
 Images collect(int count, int threads, const std::function<void(int, int)>& progress,
                const Job& job) {

@@ -22,10 +22,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kTicksPerFrame = 2;          // ticks of the camera's 30 Hz
-constexpr int kStepsWithoutDriver = 8;     // half a second
-constexpr int kDarkSteps = 15;             // a kidnapping takes a second
-constexpr std::size_t kMostPoints = 4000;  // of the map, in one message
+constexpr int kTicksPerFrame = 2;          // camera ticks (30 Hz) per frame
+constexpr int kStepsWithoutDriver = 8;     // half a second until the robot stops
+constexpr int kDarkSteps = 15;             // a kidnapping takes one second
+constexpr std::size_t kMostPoints = 4000;  // most points of the map in one message
 constexpr std::uint64_t kStepsPerMap = 15;
 constexpr int kJpegQuality = 80;
 constexpr double kMaxSpeed_m_per_s = 5, kMaxTurn_rad_per_s = 10;
@@ -34,7 +34,7 @@ double rounded(double value) {
   return std::round(1000 * value) / 1000;
 }
 
-/// x, y and heading of a camera, seen from above.
+/// Position (x, y) and heading of a camera, seen from above.
 Json from_above(const SE3& world_from_camera) {
   const Eigen::Vector3d& at = world_from_camera.translation();
   const Eigen::Vector3d ahead = world_from_camera.rotation().col(2);
@@ -93,7 +93,7 @@ std::string LiveDrive::greeting() const {
   }
   for (const Instance& thing : scene_.scene->instances) {
     const std::string_view name = classes()[thing.class_id].name;
-    constexpr float kHall_m2 = 12;  // walls, floors and what else surrounds a room
+    constexpr float kHall_m2 = 12;  // larger instances surround rooms, like walls and floors
     const Eigen::Vector3f size_m = thing.max_m - thing.min_m;
     if (name == "floor" || name == "wall" || name == "ceiling" ||
         size_m.x() * size_m.y() > kHall_m2)

@@ -13,8 +13,8 @@
 namespace mh {
 
 /// What the page of `modelhouse live` shows and steers: a robot in a scene and the SLAM system that
-/// maps it, stepped together. Messages are JSON objects (docs/live.md). The same commands before
-/// the same steps give the same bits.
+/// maps it, which are stepped together. Messages are JSON objects (docs/live.md). If the same
+/// commands arrive before the same steps, the results are the same to the bit.
 class LiveDrive {
  public:
   static constexpr double kStep_s = 1.0 / 15;
@@ -27,7 +27,7 @@ class LiveDrive {
   /// thread.
   std::string greeting() const;
   /// Takes a viewer's message, which acts from the next step on. Safe to call from another thread.
-  /// @returns why it was not understood; empty if it was
+  /// @returns why the message was not understood; empty if it was understood
   std::string take(const std::string& message);
 
   /// What to show after a step; empty if there is no viewer.
@@ -41,7 +41,7 @@ class LiveDrive {
  private:
   struct Asked {
     Twist2d velocity;
-    int steps_left = 0;  ///< at 0 the robot stops: its driver is gone
+    int steps_left = 0;  ///< at 0, the robot stops since its driver is gone
     bool kidnap = false, restart = false;
     std::optional<bool> light, wheels;
     std::optional<double> gamma, xi;
@@ -58,10 +58,11 @@ class LiveDrive {
   SlamState slam_;
   std::optional<SE3> world_from_map_;  ///< known from the first tracked frame on
   std::uint64_t frames_ = 0, carried_ = 0;
-  int dark_steps_ = 0;  ///< until the light is on again
+  int dark_steps_ = 0;  ///< number of steps until the light is on again
   bool light_ = true;
-  bool wheels_ = true;  ///< whether SLAM is given their odometry
-  /// Carried away and not yet relocalized: the odometry of wheels in the air is useless.
+  bool wheels_ = true;  ///< whether SLAM is given the odometry of the wheels
+  /// The robot was carried away and is not relocalized yet: its wheels were in the air, so their
+  /// odometry is useless.
   bool lifted_ = false;
   std::mutex mutex_;
   Asked asked_;  ///< guarded by mutex_

@@ -46,7 +46,7 @@ constexpr std::array<PageFile, 3> kPage = {{{"/", "index.html", "text/html; char
                                             {"/live.js", "live.js", "text/javascript"},
                                             {"/live.css", "live.css", "text/css"}}};
 
-/// Compares in a time that does not reveal how much of a guess is right.
+/// Compares two texts in a time that does not reveal how much of a guess is right.
 bool is_same(std::string_view a, std::string_view b) {
   unsigned differs = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -59,7 +59,7 @@ struct Outgoing {
   bool is_image = false;
 };
 
-/// The value of a key in a target's query; "" if it has none.
+/// The value of a key in a target's query; empty if the query lacks the key.
 std::string query_value(const std::string& target, const std::string& key) {
   for (auto at = target.find('?'); at != std::string::npos; at = target.find('&', at + 1)) {
     const std::string part = target.substr(at + 1, target.find('&', at + 1) - at - 1);
@@ -90,7 +90,7 @@ struct LiveServer::Impl {
 
   void accept();
   void send(Outgoing message);
-  /// Why a request is refused; empty if it is not.
+  /// The reason for refusing a request; empty if it is not refused.
   std::string refusal(const http::request<http::string_body>& request) const;
 };
 
@@ -204,7 +204,7 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
   http::request_parser<http::string_body> parser_;
   http::response<http::string_body> response_;
   std::unique_ptr<websocket::stream<beast::tcp_stream>> socket_;
-  std::deque<Outgoing> queue_;  // the first one is being written
+  std::deque<Outgoing> queue_;  // the first message is being written
 };
 
 void LiveServer::Impl::accept() {
@@ -226,7 +226,7 @@ std::string LiveServer::Impl::refusal(const http::request<http::string_body>& re
   const std::string host = text_of(request[http::field::host]);
   const int port = acceptor.local_endpoint().port();
   if (address.token.empty()) {
-    // A foreign name that resolves to this machine would let its owner's page in.
+    // The owner of a foreign host name that resolves to this machine could let a page of theirs in.
     const bool is_ours = host == fmt::format("127.0.0.1:{}", port) ||
                          host == fmt::format("localhost:{}", port) ||
                          host == fmt::format("[::1]:{}", port);

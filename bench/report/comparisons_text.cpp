@@ -18,7 +18,7 @@ struct PairNames {
       : first(suite.systems[pair.first].name), second(suite.systems[pair.second].name) {}
 };
 
-/// "0.0488" or "< 0.0001": no p is 0.
+/// "0.0488" or "< 0.0001", since no p is 0.
 std::string p_text(double p) {
   return p < 0.00005 ? "< 0.0001" : fmt::format("{:.4f}", p);
 }
@@ -43,8 +43,9 @@ std::string comparison_line(const PairNames& names, const Comparison& c) {
                      p.starts_with('<') ? "" : "= ", p, corrected);
 }
 
-/// The line below a comparison by the suite's measure, for a suite that states a margin; otherwise
-/// empty.
+/// The line to print below a comparison by the suite's measure: whether the first system is shown
+/// not to be worse by more than the suite's margin. Empty for other comparisons, or if the suite
+/// states no margin.
 std::string margin_line(const Suite& suite, const PairNames& names, const Comparison& c) {
   if (!suite.non_inferiority_margin || c.pairs == 0 || c.what.measure != name(suite.measure))
     return "";
@@ -57,8 +58,8 @@ std::string margin_line(const Suite& suite, const PairNames& names, const Compar
                      margin);
 }
 
-/// "semantic minus plain, level pepper: HOW, 95 % intervals, Holm over 4 comparisons of correct"
-/// followed by `what`
+/// "semantic minus plain, level pepper: HOW, Holm over 4 comparisons of correct", with the text
+/// `how` for HOW and followed by `what`.
 std::string heading(const Suite& suite, const SystemPair& systems, std::size_t level,
                     std::span<const Comparison> comparisons, const char* how, const char* what) {
   const PairNames names(suite, systems);

@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// "[-0.0123, +0.0456]"; "-" if there are too few pairs to bound it.
+/// "[-0.0123, +0.0456]"; "-" if there are too few pairs for an interval.
 std::string interval(const Comparison& comparison);
 
 /// Reports the differences between two systems, line by line, in one place or over scenes.

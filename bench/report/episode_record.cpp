@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 constexpr int kShots = 8;
 constexpr double kShotWidth = 236, kShotHeight = 177, kGap = 8, kMargin = 16, kTitle = 46;
 constexpr double kMapHeight = 660, kLegendWidth = 430;
-constexpr double kEvery_s = 0.5;  // a shot is kept this often
+constexpr double kEvery_s = 0.5;  // interval between shots while nothing is reported
 constexpr double kApart_px = 14;  // marks nearer than this would cover each other
 
 constexpr Rgb8 kDark{35, 38, 45}, kPale{120, 126, 136}, kOccupied{86, 94, 108},
@@ -30,7 +30,7 @@ double degrees(double rad) {
   return rad * 180 / std::numbers::pi;
 }
 
-/// From the robot's map to pixels of the image.
+/// Converts places in the robot's map to pixels of the image.
 struct MapView {
   Vector2d low_m, high_m;
   double x_px, y_px, scale;
@@ -39,7 +39,7 @@ struct MapView {
   }
 };
 
-/// The part of a grid that is known.
+/// A view that shows the known part of a grid.
 MapView view_of(const OccupancyGrid& grid, double x_px, double y_px, double width, double height) {
   MapView view{Vector2d::Constant(1e9), Vector2d::Constant(-1e9), x_px, y_px, 1};
   for (int y = 0; y < grid.cells.height(); ++y)
@@ -248,7 +248,7 @@ cv::Mat EpisodeRecord::strip(const std::string& title, const EpisodeScore& score
        score.collisions > 0 ? kWrong : kDark);
   y += 10;
   for (const std::string& said : lines_) {
-    if (said.size() > 11 && said.compare(9, 4, "    ") == 0) continue;  // one per second
+    if (said.size() > 11 && said.compare(9, 4, "    ") == 0) continue;  // a once-per-second line
     if (y > map_top + kMapHeight - 10) break;
     line(said.size() > 100 ? said.substr(0, 99) + "..." : said, kPale);
   }

@@ -17,17 +17,18 @@ class EpisodeRecord {
   EpisodeRecord(RobotMap map, EpisodeStart start)
       : map_(std::move(map)), start_(std::move(start)) {}
 
-  /// An EpisodeObserver.
+  /// An EpisodeObserver: called at each step of the episode.
   void add(const EpisodeMoment& moment);
 
-  /// A line for each decision, and one per second in between: time, state, true and believed pose,
-  /// what the SLAM system answered.
-  /// Places are in the world's frame, except what the robot itself reports in its map.
+  /// A line for each decision, and one line per second in between: time, state, true and believed
+  /// pose, and what the SLAM system answered. Places are in the world's frame, except those that
+  /// the robot itself reports, which are in its map's frame.
   std::string log(const EpisodeScore& score) const;
   /// The same for an episode that did not finish.
   std::string log_so_far() const;
-  /// A strip of frames in order, and below it the robot's own map with where it was put, where it
-  /// drove, where it believed it was, and the paths that it planned; in its map's frame.
+  /// A strip of frames in order and, below it, the robot's own map. The map shows, in its own
+  /// frame, where the robot was put, where it drove, where it believed it was, and the paths that
+  /// it planned.
   /// @param title  "semantic, start 3"
   cv::Mat strip(const std::string& title, const EpisodeScore& score) const;
 

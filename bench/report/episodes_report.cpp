@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Failures by their reason.
+/// Counts failures by their reason.
 std::map<std::string, std::size_t> reasons_of(const std::vector<EpisodeScore>& episodes) {
   std::map<std::string, std::size_t> reasons;
   for (const EpisodeScore& e : episodes)
@@ -28,13 +28,13 @@ std::map<std::string, std::size_t> reasons_of(const std::vector<EpisodeScore>& e
   return reasons;
 }
 
-/// The number of episodes that a share of a summary stands for.
+/// The number of episodes that corresponds to a share in a summary.
 long number(const EpisodeSummary& s, double share) {
   return std::lround(share * s.count);
 }
 
-/// Paired differences of two systems in one variant: over scenes as clusters if there are several,
-/// else over the starts of one place.
+/// Paired differences of two systems in one variant. Starts are paired; with several scenes, scenes
+/// are the clusters.
 std::vector<Comparison> comparisons_of(const Suite& suite, std::span<const RunResult> runs,
                                        const SystemPair& pair, const std::string& variant) {
   const std::string& first = suite.systems[pair.first].name;

@@ -54,7 +54,7 @@ std::string latex_cell(std::string_view text) {
   return safe;
 }
 
-/// "& ATE m & RPE m/fr": the figures of an overview.
+/// "& ATE m & RPE m/fr": the headings of the figures in an overview.
 template <class Score>
 std::string latex_overview_headings() {
   std::string text;
@@ -88,8 +88,8 @@ nlohmann::ordered_json to_json(const Store::Value& value) {
 
 }  // namespace
 
-/// Appends a column for each setting that a sweep varies to rows of runs and points, the first of
-/// which holds the names; cells are empty for a system that ignores settings.
+/// Appends a column to a table of runs and points for each setting that a sweep varies. The table's
+/// first row contains the column names. Cells are empty for a system that ignores settings.
 void add_varied(const Suite& suite, Rows& rows) {
   const std::vector<std::string>& varied = suite.sweep.varied;
   std::map<std::string, RunSpec> spec_of;
@@ -151,7 +151,7 @@ std::string export_json(const Store& store) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::size_t r = 1; r < rows.size(); ++r) {
       nlohmann::ordered_json object;
-      for (std::size_t c = 0; c + 1 < rows[r].size(); ++c)  // the digest is last
+      for (std::size_t c = 0; c + 1 < rows[r].size(); ++c)  // the last column is the digest
         object[std::get<std::string>(rows[0][c])] = to_json(rows[r][c]);
       list.push_back(std::move(object));
     }
@@ -186,7 +186,7 @@ std::string export_latex(const Store& store) {
     const SystemSpec& system = suite.systems[row.system];
     const SlamConfig seen = settings_of(system, points[row.parameters]);
     const auto same = [&](const SlamConfig& point) { return settings_of(system, point) == seen; };
-    // Parameters that a system ignores get no rows of their own.
+    // Parameter points that a system ignores get no rows of their own.
     if (std::any_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(row.parameters),
                     same))
       continue;

@@ -7,8 +7,8 @@
 
 namespace mh {
 
-// Exports of a store's results for the suite that was planned last. They are a function of the
-// results: times and claims are excluded, and the order is that of the plan.
+// Exports of a store's results for the suite that was planned last. They depend on nothing but the
+// results: times and workers' claims are excluded, and the order is that of the plan.
 
 /// One line per finished run and parameter point: its identity, parameters and metrics.
 std::string export_csv(const Store& store);

@@ -124,7 +124,7 @@ std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> 
          ++end) {
       Plot plot{title(*end), end->unit, "success, %", {}};
       const double range = end->bins.back().high - end->bins.front().low;
-      // The range of all bins and shares, so that panels and pages can be compared.
+      // The range covers all bins and all shares, so that panels and pages can be compared.
       plot.x_range = {end->bins.front().low, end->bins.back().high};
       plot.y_range = {0.0, 100.0};
       for (std::size_t s = 0; s < suite.systems.size(); ++s) {
@@ -132,7 +132,7 @@ std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> 
         for (const GradedBin& bin : end->bins) {
           const auto& share = bin.systems[s];
           if (!share) continue;
-          // Shifted aside, so that no interval hides another.
+          // Shifted sideways, so that no interval hides another.
           const double aside =
               0.012 * range *
               (static_cast<double>(s) - 0.5 * static_cast<double>(suite.systems.size() - 1));

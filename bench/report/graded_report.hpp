@@ -13,10 +13,10 @@
 
 namespace mh {
 
-/// Tables of success by each graded quantity; "" without graded queries.
+/// Tables of success by each graded quantity; empty without graded queries.
 std::string graded_table(const Suite& suite, std::span<const Row> rows);
 
-/// The same curves for programs; an empty list without graded queries.
+/// The same curves as JSON; an empty list without graded queries.
 nlohmann::ordered_json graded_json(const Suite& suite, std::span<const Row> rows);
 
 /// "graded-exact-pepper.png"

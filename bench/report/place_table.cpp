@@ -20,9 +20,9 @@ namespace {
 /// Rows that differ only in the system.
 struct Block {
   const Suite& suite;
-  std::span<const Row> all;  ///< of the whole table
+  std::span<const Row> all;  ///< rows of the whole table
   std::vector<const Row*> rows;
-  std::vector<const Row*> detailed;  ///< those that were not already shown with other labels
+  std::vector<const Row*> detailed;  ///< rows that were not already shown with other labels
   const SystemSpec& system(const Row* row) const { return suite.systems[row->system]; }
 };
 
@@ -30,7 +30,7 @@ std::string meters(const std::optional<double>& value) {
   return value ? fmt::format("{:.4f}", *value) : std::string("-");
 }
 
-/// The number of queries of the system with the most.
+/// The number of queries of a set; if systems differ, that of the system with the most queries.
 double most_queries(const Block& block, QuerySet set) {
   double most = 0;
   for (const Row* row : block.rows) most = std::max(most, summary(*row, set).queries);
@@ -43,7 +43,7 @@ std::string title(QuerySet set) {
                                         : "graded by distance and angle";
 }
 
-/// A row of Table 2 in text: value(column) for each of its columns.
+/// A row of Table 2 as text, with value(column) in each of its columns.
 template <class Value>
 std::vector<std::string> paper_row(std::string_view title, const Value& value) {
   std::vector<std::string> cells{fmt::format("  {}", title)};
@@ -64,8 +64,8 @@ std::vector<std::string> paper_headings() {
   return headings;
 }
 
-/// Table in the form of the paper's Table 2. Empty if there were no queries, as in a suite of
-/// outside trajectories.
+/// The table in the form of the paper's Table 2. Empty if there were no queries, as in a suite that
+/// only scores trajectories of outside programs.
 std::string paper_table(const Block& block) {
   const std::span<const PublishedRow> published = published_rows(block.suite);
   const auto asked = [&](QuerySet set) { return most_queries(block, set) > 0; };
@@ -103,7 +103,7 @@ std::string paper_table(const Block& block) {
   return rule + table.text() + rule;
 }
 
-/// A title, followed by the headings of the scores' figures.
+/// A title, followed by the headings of the figures that these scores have.
 template <class... Scores>
 std::vector<std::string> headings(std::string title) {
   std::vector<std::string> all{std::move(title)};
@@ -132,7 +132,7 @@ std::string query_details(const Block& block, QuerySet set) {
   return table.text();
 }
 
-/// Keyframes left after the steps of Algorithm 1, as counts and as shares of the map; "-" if a
+/// Keyframes left after each step of Algorithm 1, as counts and as shares of the map; "-" if a
 /// program did not report them.
 std::string candidate_details(const Block& block, QuerySet set) {
   TextTable table({std::string(short_title(set)), "keyframes", "after eq. 3", "after eq. 4",
@@ -188,7 +188,7 @@ std::string mapping_details(const Block& block) {
   return table.text();
 }
 
-/// Effect of xi, by matcher.
+/// The effect of xi, for each matcher.
 std::string penalties(const Block& block) {
   std::string text;
   for (const Row* row : block.rows) {

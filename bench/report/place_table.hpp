@@ -9,8 +9,9 @@
 
 namespace mh {
 
-/// Table of a suite of one place: a block for each level and kind of labels, then how the systems
-/// differ. On a screen, each block has only the table in the form of the paper's, and the mapping.
+/// The table of a suite of one place: a block for each level and kind of labels, then how the
+/// systems differ. On a screen, a block contains only the table in the form of the paper's Table 2,
+/// and the mapping.
 std::string place_table(const Suite& suite, std::span<const Row> rows,
                         Extent extent = Extent::kWhole);
 

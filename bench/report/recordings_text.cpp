@@ -63,8 +63,8 @@ std::string notes_text(const RunResult& run) {
   return text;
 }
 
-/// Warns about a second recording whose queries were answered several times, over all systems, and
-/// never correctly.
+/// Warns about a second recording if its queries were answered several times (by all systems
+/// together) but never correctly.
 std::string other_frame_text(const Runs& runs) {
   constexpr std::size_t kFewest = 3;
   std::vector<double> distances_m;

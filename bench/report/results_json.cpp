@@ -27,8 +27,8 @@ Json place_json(const PlaceFacts& place) {
   return json;
 }
 
-/// A query as JSON, from its list of fields except those that are reported for the whole run:
-/// digests, chained, and counts of matches, summed.
+/// A query as JSON, made from its list of fields. The fields that are reported for the whole run
+/// are left out: digests, which are chained, and counts of matches, which are summed.
 Json query_json(const QueryScore& query) {
   Json json = Json::object();
   const auto add = [&](const char* name, const auto& value) {
@@ -53,7 +53,7 @@ Json digests_json(const RunResult& run) {
       {"images", hex(images)}, {"poses", hex(poses)}, {"trajectory", hex(digest(run.estimate))}};
 }
 
-/// Settings that an outside program does not have.
+/// The settings as JSON; null for an outside program, which has none of ours.
 Json settings_json(const RunSpec& spec, Json settings) {
   return spec.system.takes_settings() ? std::move(settings) : Json();
 }
@@ -81,7 +81,7 @@ Json loops_json(const LoopAudit& loops) {
 }
 
 Json summary_json(const QuerySummary& summary) {
-  if (summary.queries == 0) return nullptr;  // no queries
+  if (summary.queries == 0) return nullptr;
   return figures_json(figures_of(summary));
 }
 

@@ -24,7 +24,7 @@ nlohmann::ordered_json results_json(const Suite& suite, std::span<const RunResul
 nlohmann::ordered_json run_json(const RunResult& run);
 nlohmann::ordered_json run_json(const FailedRun& run);
 
-/// The figures of a score by their names; dots in a name are objects within objects.
+/// The figures of a score by their names; a name with dots becomes nested objects.
 nlohmann::ordered_json figures_json(std::span<const Figure> figures);
 
 /// Counts by matcher; null if unknown.

@@ -23,7 +23,7 @@
 namespace mh {
 namespace {
 
-/// The warning, above all tables, that tours were cut.
+/// The warning that tours were cut, which is printed above all tables.
 std::string warning_of_cut(const Suite& suite, std::span<const RunResult> runs) {
   const auto cut = std::ranges::find_if(runs, [](const RunResult& run) { return run.place.cut; });
   if (cut == runs.end()) return "";
@@ -40,7 +40,7 @@ std::string base_text(const Suite& suite) {
   return lines.empty() ? "" : fmt::format("\n{}\n", fmt::join(lines, "\n"));
 }
 
-/// Why runs are missing from the table above.
+/// Lists the failed runs, which the table above does not include, with their errors.
 std::string failures_text(std::span<const FailedRun> failed) {
   if (failed.empty()) return "";
   std::string text = fmt::format("\nfailed, so the figures above do not include {}:\n",
@@ -49,7 +49,7 @@ std::string failures_text(std::span<const FailedRun> failed) {
   return text;
 }
 
-/// Which runs of the suite have not been made yet.
+/// Lists runs of the suite that have not been made yet.
 std::string missing_text(std::span<const std::string> missing) {
   if (missing.empty()) return "";
   constexpr std::size_t kMost = 10;
@@ -91,7 +91,7 @@ std::vector<std::string> base_lines(const Suite& suite) {
 
 namespace {
 
-/// Empty unless the suite states published figures.
+/// The table of ATE beside published ATE; empty unless the suite states published values.
 std::string published_text(const AteBesidePublished& table) {
   if (table.environments.empty()) return "";
   std::vector<std::string> headings{"ATE m"};

@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-/// Rows of one level and kind of labels.
+/// The rows of the table for one level and one kind of labels.
 std::string categories_text(const Suite& suite, std::span<const CategoryRow> rows,
                             std::span<const CategoryRow> all) {
   std::vector<std::string> headings{"environments", "system", "scenes"};

@@ -9,8 +9,9 @@
 
 namespace mh {
 
-/// Table of a suite of many places, in the form of the paper's Table 1: a row per category and
-/// system, then how the systems differ over scenes. On a screen, only the rows over all categories.
+/// The table of a suite of many places, in the form of the paper's Table 1: a row per category and
+/// system, then how the systems differ over scenes. On a screen, it contains only the rows for all
+/// categories together.
 std::string scenes_table(const Suite& suite, std::span<const Row> rows,
                          Extent extent = Extent::kWhole);
 

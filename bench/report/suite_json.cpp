@@ -13,8 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A path relative to the suite's folder, however the suite itself was named; for shipped files
-/// that a suite elsewhere uses, relative to the shipped folder.
+/// A file's path relative to the suite's folder, however the path of the suite was given. If a
+/// suite outside the shipped folder uses a shipped file, the path is relative to the shipped
+/// folder.
 std::string from_suite(const Suite& suite, const std::filesystem::path& file) {
   const auto here = std::filesystem::current_path();
   const auto folder = (here / suite.file).parent_path().lexically_normal();
@@ -140,7 +141,7 @@ Json suite_json(const Suite& suite) {
       {"compare", compare_json(suite)},
       {"published_ate_m", suite.published_ate_m},
       {"protocol", json_of(suite.protocol)}};
-  json.update(json_of(suite));  // its single values
+  json.update(json_of(suite));  // the suite's single values
   return json;
 }
 

@@ -7,8 +7,8 @@
 
 namespace mh {
 
-/// Returns a suite with all its settings resolved; paths are relative to its folder, however it was
-/// named.
+/// Returns a suite with all its settings resolved. Paths are relative to the suite's folder,
+/// however the path of the suite was given.
 nlohmann::ordered_json suite_json(const Suite& suite);
 
 }  // namespace mh

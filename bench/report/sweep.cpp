@@ -20,7 +20,7 @@ struct Shades {
 };
 constexpr Shades kMoreIsBetter = {"#ecf3fb", "#084594"}, kLessIsBetter = {"#fdf3e7", "#a63603"};
 
-/// The measure that a panel shows for each point.
+/// A measure that a panel shows for each point.
 struct PanelMeasure {
   std::string title;
   Shades shades;
@@ -61,7 +61,7 @@ struct Values {
   }
 };
 
-/// The values that a setting takes in a sweep, and how they are written.
+/// The values that a setting takes in a sweep, with their text.
 std::map<double, std::string> distinct(const SweepResult& result, std::string_view name) {
   std::map<double, std::string> values;
   for (const SlamConfig& point : result.points)
@@ -69,9 +69,9 @@ std::map<double, std::string> distinct(const SweepResult& result, std::string_vi
   return values;
 }
 
-/// What labels weighed at each value of a setting, to be shown below it: the measured label mass
-/// or, where the mass itself is varied, the gamma that gave it. Empty for a setting that does not
-/// weigh labels.
+/// The weight of labels at each value of a setting, as text to be shown below the value: the
+/// measured label mass or, if the mass itself is varied, the gamma that resulted in it. Empty for a
+/// setting that does not affect the weight of labels.
 std::map<double, std::string> weights_of_labels(const SweepResult& result, std::string_view name) {
   if (!weighs_labels(name)) return {};
   std::map<double, std::vector<double>> masses, gammas;
@@ -98,7 +98,7 @@ struct Panel {
   std::optional<std::size_t> framed;  ///< the highlighted point
 };
 
-/// Names of a setting's values on an axis, with the weight of labels below.
+/// The values of a setting as text on an axis, with the weight of labels below each.
 ShadedField::Ticks ticks(const SweepResult& result, const std::string& name, bool cells) {
   if (name.empty()) return {};
   const auto below = weights_of_labels(result, name);
@@ -106,7 +106,7 @@ ShadedField::Ticks ticks(const SweepResult& result, const std::string& name, boo
   const auto values = distinct(result, name);
   for (const auto& [value, text] : values) {
     const auto more = below.find(value);
-    // Dots are placed by value, so only the values at the ends are written.
+    // Dots are placed by value, so only the lowest and the highest value are written on the axis.
     if (!cells && value != values.begin()->first && value != values.rbegin()->first) continue;
     list.emplace_back(cells ? static_cast<double>(list.size()) : value,
                       more == below.end() ? text : text + "\n" + more->second);
@@ -114,7 +114,7 @@ ShadedField::Ticks ticks(const SweepResult& result, const std::string& name, boo
   return list;
 }
 
-/// A cell per point in a grid, otherwise a dot per point over two of its settings.
+/// One panel: a grid with a cell per point, or a plane over two settings with a dot per point.
 Plot panel_plot(const Panel& panel, bool cells) {
   const auto& [result, across, up, title, measure, values, framed] = panel;
   ShadedField field{.cells = cells,
@@ -181,7 +181,7 @@ std::string sweep_image_name(const SystemSpec& system, const Labels& labels,
 PlotPage sweep_chart(const Suite& suite, std::span<const Row> rows, const SweepResult& result) {
   const std::vector<std::string>& varied = suite.sweep.varied;
   const bool grid = is_grid(result, varied);
-  std::vector<std::pair<std::string, std::string>> pairs;  // across, up
+  std::vector<std::pair<std::string, std::string>> pairs;  // settings (across, up) of each panel
   for (std::size_t i = 0; i < varied.size(); ++i)
     for (std::size_t j = i + 1; j < varied.size(); ++j) pairs.emplace_back(varied[j], varied[i]);
   const std::vector<PanelMeasure> all = panel_measures();

@@ -10,11 +10,11 @@
 
 namespace mh {
 
-/// The answers over a sweep: for each query set, the shares of correct and of false positive
-/// answers and the mean distance. A grid over one or two parameters is a heat map with its values;
-/// anything else shows each pair of parameters, with a dot per point. The point with the most
-/// correct answers is framed; its difference from the suite's own settings is printed below with
-/// its 95 % interval.
+/// The answers over a sweep: for each query set, the share of correct answers, the share of false
+/// positives, and the mean distance. A grid over one or two parameters is drawn as a heat map with
+/// the values written in its cells. Any other sweep is drawn as one panel of correct answers per
+/// pair of parameters, with a dot per point. The point with the most correct answers is framed; its
+/// difference from the suite's own settings is printed below with its 95 % interval.
 PlotPage sweep_chart(const Suite& suite, std::span<const Row> rows, const SweepResult& result);
 
 /// "sweep-semantic-exact-pepper.png"

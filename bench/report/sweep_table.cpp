@@ -45,12 +45,13 @@ std::string best_points(const Suite& suite, std::span<const Row> rows) {
   return text;
 }
 
-/// Whether the weight of labels is varied, as a factor or as a share.
+/// Whether the sweep varies the weight of labels, as a factor (gamma) or as a share (label mass).
 bool varies_weight_of_labels(const Sweep& sweep) {
   return std::ranges::any_of(sweep.varied, weighs_labels);
 }
 
-/// Headings of the gamma that gave a requested label mass, and of the mass that queries then had.
+/// Adds the headings of up to two columns: if the label mass is varied, the gamma that gives the
+/// requested mass; and the mass that labels then had in the queries.
 void add_weight_headings(const Sweep& sweep, std::vector<std::string>& headings) {
   if (!varies_weight_of_labels(sweep)) return;
   if (std::ranges::count(sweep.varied, kLabelMass) > 0) headings.emplace_back("gamma");
@@ -63,7 +64,7 @@ void add_weight_cells(const Sweep& sweep, const QuerySummary& s, std::vector<std
   cells.push_back(shown_mass(s));
 }
 
-/// Rows of one level and kind of labels.
+/// The rows of the table for one level and one kind of labels.
 std::string points_text(const Suite& suite, std::span<const CategoryRow> rows,
                         std::span<const CategoryRow> all) {
   std::vector<std::string> headings{"system"};

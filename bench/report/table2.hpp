@@ -9,16 +9,16 @@
 
 namespace mh {
 
-/// A column of Table 2, relocalization, wherever it is shown: text shows those with a heading for
-/// it; pages, their data and figures show all.
+/// A column of Table 2 (relocalization). Text shows only the columns that have a `text_heading`;
+/// pages, their data and figures show all columns.
 struct Table2Column {
   std::string_view key;
   std::string_view title;
   std::string_view unit;  ///< "m"; "%": a share, stored as 0 to 1 and printed times 100
   int decimals = 0;
   std::optional<double> (*measured)(const QuerySummary&);
-  double PublishedRow::*published = nullptr;  ///< null: the paper's table does not have it
-  std::string_view text_heading = {};         ///< the paper's words where it has the column
+  double PublishedRow::*published = nullptr;  ///< null if the paper's table lacks this column
+  std::string_view text_heading = {};         ///< the paper's words if its table has this column
 };
 
 inline constexpr Table2Column kTable2Columns[] = {

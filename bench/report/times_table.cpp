@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-/// Minimum and maximum of some numbers.
+/// The minimum and the maximum of some numbers.
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   void add(double value) {
@@ -29,7 +29,8 @@ struct Range {
   }
 };
 
-/// How the times were measured, since other work on the machine affects them.
+/// Describes the conditions under which the times were measured, since other work on the machine
+/// affects them.
 std::string circumstances(std::span<const RunResult> runs) {
   std::set<std::string> hosts, sessions;
   bool unknown = false;
@@ -69,10 +70,10 @@ std::string times_table(const Suite& suite, std::span<const RunResult> runs) {
   };
   TextTable table({"wall time, ms per call: median (p95)", "track", "relocalize"});
   for (const Row& row : rows) {
-    if (suite.sweep.map == SweepMap::kFixed && row.parameters != 0) continue;  // the same calls
+    if (suite.sweep.map == SweepMap::kFixed && row.parameters != 0) continue;  // same calls
     if (already_shown(suite, row)) continue;
     const auto cell = [](const TimeSummary& t) {
-      if (t.p95_ms == 0) return std::string("-");  // no calls: its map was cached
+      if (t.p95_ms == 0) return std::string("-");  // no calls: the map came from the cache
       return fmt::format("{:.1f} ({:.1f})", t.median_ms, t.p95_ms);
     };
     table.add({label(row), cell(row.track), cell(row.relocalize)});

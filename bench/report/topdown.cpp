@@ -20,7 +20,8 @@ constexpr int kWidth = 1200;
 constexpr double kMargin = 40, kHeader = 92, kFooter = 84;
 constexpr double kMaxPlanHeight = 1100;
 
-// Heights of the sections: above tables and below door heads; through seats and beds.
+// Heights at which the plan cuts the scene: walls above tables and below the tops of doors,
+// furniture through seats and beds.
 constexpr double kWallCut_m = 1.2, kFurnitureCut_m = 0.4;
 
 constexpr Rgb8 kInk{35, 38, 45}, kFaint{110, 115, 125}, kRoomName{140, 150, 165}, kWall{55, 58, 66},
@@ -99,7 +100,7 @@ void draw_slice(Canvas& canvas, const PlanView& view, const std::vector<SliceSeg
       canvas.line(view(s.from_m), view(s.to_m), color, thickness);
 }
 
-/// Marks that a room's name should not cover.
+/// The places that rooms' names should not cover: path, queries and furniture.
 std::vector<cv::Point2d> marks(const PlanView& view, const World& world, const RunResult& run,
                                QuerySet set, const std::vector<SliceSegment>& furniture) {
   std::vector<cv::Point2d> result;
@@ -112,8 +113,8 @@ std::vector<cv::Point2d> marks(const PlanView& view, const World& world, const R
   return result;
 }
 
-/// Draws each room's name as close to its middle as possible without covering marks; in the middle
-/// if that is impossible.
+/// Draws each room's name as close to the room's middle as possible without covering marks; if that
+/// is impossible, the name is drawn in the middle.
 void draw_room_names(Canvas& canvas, const PlanView& view, const Scene& scene,
                      const std::vector<cv::Point2d>& marks) {
   constexpr double kCapital = 14, kClear = 8, kStep = 10;
@@ -157,7 +158,8 @@ void draw_path(Canvas& canvas, const PlanView& view, const Trajectory& path, con
   }
 }
 
-/// Returns the end, within the plan, of the line from one point to another.
+/// Returns where the line from one point toward another ends: at the other point, or at the edge of
+/// the plan if that comes first.
 Eigen::Vector2d up_to_the_edge(const Bounds& bounds, const Eigen::Vector2d& from,
                                const Eigen::Vector2d& to) {
   double share = 1;
@@ -181,7 +183,7 @@ void draw_heading(Canvas& canvas, const cv::Point2d& at, const SE3& plan_from_ca
   canvas.line(at + inner * way, at + kHeading * way, color, kStroke);
 }
 
-/// An answer off the plan gets no ring, only the line toward it.
+/// Draws one query. An answer outside the plan gets no ring, only the line toward it.
 void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
                 const SE3& plan_from_estimate) {
   if (!q.true_world_from_camera) return;
@@ -202,8 +204,8 @@ void draw_query(Canvas& canvas, const PlanView& view, const QueryScore& q,
   canvas.cross(truth, kCross, color, kStroke);
 }
 
-/// Good answers first, failures over them: where many queries are in one place, the failures are
-/// what matters.
+/// Draws good answers first and failures on top: where many queries are in one place, the failures
+/// matter most.
 void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryScore>& queries,
                   const SE3& plan_from_estimate) {
   const auto rank = [](const QueryScore& q) { return !q.success ? 1 : q.false_positive ? 2 : 0; };
@@ -212,7 +214,7 @@ void draw_queries(Canvas& canvas, const PlanView& view, const std::vector<QueryS
       if (rank(q) == of) draw_query(canvas, view, q, plan_from_estimate);
 }
 
-/// Largest distance of the estimated path from the true one, m; nullopt if they share no stamp.
+/// Largest distance between the estimated and the true path, m; nullopt if they share no timestamp.
 std::optional<double> farthest_apart_m(const Trajectory& truth, const Trajectory& estimate,
                                        const SE3& plan_from_estimate) {
   std::map<Stamp, Eigen::Vector3d> true_place;

@@ -25,20 +25,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kMadeOf = "modelhouse";  ///< keyword of an image's key: what it was made from
+/// Keyword of the text in an image file that states what the image was made from.
+constexpr const char* kMadeOf = "modelhouse";
 
 void write_marked(const fs::path& file, const cv::Mat& image, const std::string& made_of) {
   write_atomically(file, with_text(encode_png(image), kMadeOf, made_of));
 }
 
-constexpr const char* kRunKey = "run.key";  ///< of a run without images: what it was made from
+/// File that states what a run was made from, if the run has no images.
+constexpr const char* kRunKey = "run.key";
 
 std::string mark_of(const fs::path& image) {
   return fs::is_regular_file(image) ? text_in(read_file(image), kMadeOf) : std::string();
 }
 
-/// Everything that determines a contact sheet. Levels share one, though they may drop different
-/// frames.
+/// Everything that determines a contact sheet. All levels share one sheet, though they may drop
+/// different frames.
 std::string identity_of_views(const World& world, const RunSpec& spec) {
   std::string text = fmt::format("{} {} {} ", code_of_run(), json_of(spec.environment.frame).dump(),
                                  spec.max_frames ? std::to_string(*spec.max_frames) : "all");
@@ -48,7 +50,8 @@ std::string identity_of_views(const World& world, const RunSpec& spec) {
   return text_key(text);
 }
 
-/// Without gnuplot, the results lack charts, which a report shows as well.
+/// Draws a chart. Without gnuplot, prints a warning: the results then lack charts, but pages show
+/// the same data.
 void draw_chart(const fs::path& file, const PlotPage& page) {
   try {
     write_plots(file, page);

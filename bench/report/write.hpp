@@ -22,8 +22,8 @@ void remove_run(const std::filesystem::path& folder);
 /// Whether a folder contains files of write_run() from a run other than the one with that key.
 bool shows_another_run(const std::filesystem::path& folder, const std::string& key);
 
-/// The contact sheet of a simulated environment, unless the existing one was made from the same
-/// scene, robot, path and code.
+/// Writes the contact sheet of a simulated environment, unless there is already one that was made
+/// from the same scene, robot, path and code.
 void write_views(const std::filesystem::path& file, const World& world, const RunSpec& spec);
 
 /// Writes the combined results of a suite's runs: results.json, times.json, reproduction.json,

@@ -16,7 +16,7 @@ struct Axis {
   std::vector<double> edges;
 };
 
-/// The rows of one level and kind of labels at the first parameter point: per system, per scene.
+/// The rows of one level and one kind of labels at the first parameter point, by system and scene.
 struct Block {
   std::size_t level = 0;
   Labels labels;
@@ -39,12 +39,12 @@ std::vector<Block> blocks_of(const Suite& suite, std::span<const Row> rows) {
   return blocks;
 }
 
-/// The answers to one query over the trials.
+/// The answers to one query, summed over the trials.
 struct Answers {
   double trials = 0, success = 0, correct = 0, false_positive = 0;
 };
 
-/// A row's answers in a bin, by query.
+/// A row's answers to the queries of a bin, by the query's index.
 std::map<std::size_t, Answers> answers_in(const Row& row, const Axis& axis, std::size_t bin) {
   std::map<std::size_t, Answers> found;
   for (const Trial& trial : row.trials)
@@ -117,7 +117,7 @@ GradedBin bin_in(const Suite& suite, const Block& block, const std::vector<std::
   return bin;
 }
 
-/// Bins around each of the speeds that were used; none if there is only one.
+/// The edges of bins around each speed that was used; none if there is only one speed.
 std::vector<double> edges_of_speeds(const std::vector<double>& speeds) {
   std::set<double> sorted(speeds.begin(), speeds.end());
   std::vector<double> edges;

@@ -47,7 +47,7 @@ Row fill_in(Row row) {
   return row;
 }
 
-/// The median of a value over trials, by the query's frame; absent if no trial has one.
+/// For each query frame, the median of a value over the trials; absent if no trial has the value.
 template <class Get>
 std::map<std::size_t, std::optional<double>> per_query(const Row& row, QuerySet set, Get get) {
   std::map<std::size_t, std::vector<std::optional<double>>> values;
@@ -58,8 +58,8 @@ std::map<std::size_t, std::optional<double>> per_query(const Row& row, QuerySet 
   return medians;
 }
 
-/// Differences over the queries made to both systems: some may have been skipped for a system that
-/// needs labels.
+/// Differences over the queries that both systems were given: for a system that needs labels, some
+/// queries may have been skipped.
 template <class Get>
 std::vector<PairedDifference> differences(const Row& first, const Row& second, QuerySet set,
                                           Get get) {
@@ -118,7 +118,7 @@ bool belongs(const RunSpec& spec, const Suite& suite, const Row& row) {
          (!system.sees_labels() || name(spec.labels) == name(row.labels));
 }
 
-/// Index of the pass over a run's queries that had these settings.
+/// Index of the parameter point of a run whose queries were answered with these settings.
 std::optional<std::size_t> find_point(const RunSpec& spec, const SlamConfig& settings) {
   SlamConfig at_point = spec.slam;
   at_point.semantics = settings.semantics;
@@ -203,7 +203,7 @@ std::array<std::optional<double>, 2> ate_over_common_frames(const Row& first, co
   for (const Trial& trial : first.trials) {
     const auto other = std::ranges::find_if(
         second.trials, [&](const Trial& t) { return t.run->spec.trial == trial.run->spec.trial; });
-    if (other == second.trials.end()) continue;  // that trial failed
+    if (other == second.trials.end()) continue;  // this trial of the second system failed
     const Trajectory& truth = trial.run->truth;
     const Trajectory& x = trial.run->estimate;
     const Trajectory& y = other->run->estimate;

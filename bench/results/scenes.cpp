@@ -28,7 +28,7 @@ bool has_result(const Row* row) {
 }
 
 /// @param scenes  at least one; a scene whose runs all failed is only counted
-/// @param of      scenes of the category in the suite
+/// @param of      number of scenes of the category in the suite
 CategoryRow together(std::string category, std::vector<const Row*> scenes, std::size_t of) {
   const Row& any = *scenes.front();
   CategoryRow c;
@@ -56,7 +56,7 @@ std::vector<std::string> categories(const Suite& suite) {
   return names;
 }
 
-/// Rows of one system, one per environment; null if it has none.
+/// One system's rows, by environment; null for an environment without one.
 std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows, std::size_t level,
                                   const Labels& labels, std::size_t parameters,
                                   std::size_t system) {
@@ -68,7 +68,7 @@ std::vector<const Row*> scenes_of(const Suite& suite, std::span<const Row> rows,
   return scenes;
 }
 
-/// First minus second in one scene.
+/// Returns first minus second in one scene.
 using Difference = PairedDifference (*)(const Row&, const Row&, QuerySet);
 
 template <auto QuerySummary::*kField>

@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-/// What is resampled as a whole: its known differences, summed and counted.
+/// The sum and the number of the known differences in a unit that is resampled as a whole.
 struct Unit {
   double sum = 0;
   std::size_t count = 0;
@@ -47,7 +47,7 @@ std::vector<std::size_t> draw_blocks(std::size_t n, std::size_t block, RandomStr
   return chosen;
 }
 
-constexpr std::size_t kFewestPairs = 4;  // with fewer, resampling is meaningless
+constexpr std::size_t kFewestPairs = 4;  // with fewer pairs, resampling is meaningless
 
 /// How resamples for the interval are drawn.
 struct Draws {
@@ -56,8 +56,10 @@ struct Draws {
   int resamples = 0;
 };
 
-/// Difference, interval and detectable difference by a circular block bootstrap.
-/// @param answers  yes-or-no observations behind the differences; 0: they are not shares
+/// Computes the difference, its interval and the detectable difference by a circular block
+/// bootstrap.
+/// @param answers  number of yes-or-no observations behind the differences; 0 if they are not of
+/// shares
 Comparison resample(std::span<const Unit> units, std::size_t answers, const Draws& draws) {
   const auto& [block, seed, resamples] = draws;
   Comparison c;
@@ -94,7 +96,8 @@ Comparison resample(std::span<const Unit> units, std::size_t answers, const Draw
   return c;
 }
 
-/// With `independent` signs, the smallest two-sided p is that of 2 of all sign patterns.
+/// With `independent` signs, two of all the sign patterns give the smallest possible two-sided p.
+/// If even that p is above 0.05, nothing is detectable.
 void note_least_p(Comparison& c, std::size_t independent) {
   if (std::ldexp(2.0, -static_cast<int>(independent)) > 0.05) c.detectable = INFINITY;
 }
@@ -115,7 +118,7 @@ Comparison compare_paired(std::span<const PairedDifference> queries, bool shares
   const auto known =
       static_cast<std::size_t>(std::ranges::count_if(queries, &PairedDifference::present));
   Comparison c = resample(one_by_one(queries), shares ? known : 0, {block, seed, resamples});
-  std::vector<double> sums;  // of blocks with any known difference
+  std::vector<double> sums;  // of the blocks that have a known difference
   for (std::size_t first = 0; first < queries.size(); first += block) {
     const auto part = queries.subspan(first, std::min(block, queries.size() - first));
     if (std::ranges::none_of(part, &PairedDifference::present)) continue;
@@ -135,11 +138,12 @@ double sign_flip(std::span<const double> sums, std::uint64_t seed) {
     total += sum;
     size += std::abs(sum);
   }
-  // Patterns with the same mean must count, regardless of rounding in their sums.
+  // Patterns with the same mean count as hits even if their sums differ by rounding.
   const double limit = std::abs(total) - 1e-12 * size;
   const bool exact = sums.size() <= kMostExact;
   const std::uint64_t patterns = exact ? std::uint64_t{1} << sums.size() : kDraws;
-  const RandomStream signs = RandomStream(seed).fork(0x51675);  // not the bootstrap's
+  const RandomStream signs =
+      RandomStream(seed).fork(0x51675);  // a stream different from the bootstrap's
   std::uint64_t hits = 0;
   for (std::uint64_t pattern = 0; pattern < patterns; ++pattern) {
     const RandomStream draw = signs.fork(pattern);
@@ -191,7 +195,7 @@ Comparison compare_clusters(std::span<const std::vector<PairedDifference>> clust
 }
 
 double wilcoxon_signed_rank(std::span<const double> differences) {
-  // Differences that are equal as fractions, such as 3/23 - 2/23 and 1/23, differ in their last
+  // Differences that are equal as fractions, such as 3/23 - 2/23 and 1/23, may differ in their last
   // bits.
   double largest = 0;
   for (const double difference : differences) largest = std::max(largest, std::abs(difference));
@@ -200,7 +204,7 @@ double wilcoxon_signed_rank(std::span<const double> differences) {
   for (const double difference : differences)
     if (std::abs(difference) > equal) d.push_back(difference);
   std::sort(d.begin(), d.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  // Ranks doubled, so that mid-ranks are integers.
+  // Ranks are doubled, so that mid-ranks are integers.
   std::vector<std::size_t> ranks(d.size());
   for (std::size_t first = 0; first < d.size();) {
     std::size_t end = first;
@@ -212,7 +216,8 @@ double wilcoxon_signed_rank(std::span<const double> differences) {
   std::size_t positive = 0;
   for (std::size_t i = 0; i < d.size(); ++i) positive += d[i] > 0 ? ranks[i] : 0;
 
-  // probability[s]: that the ranks of positive sign sum to s if each sign is a fair coin flip.
+  // probability[s] is the probability that the (doubled) ranks with a positive sign sum to s if
+  // each sign is a fair coin flip.
   std::vector<double> probability(all + 1, 0.0);
   probability[0] = 1.0;
   std::size_t reached = 0;

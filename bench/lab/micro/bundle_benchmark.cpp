@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our bundle adjustment against Ceres (DENSE_SCHUR, one thread, analytic Jacobians) on one problem:
-// 10 keyframes, 1500 points, 6000 observations with depth, Huber loss, 5 iterations. Also the pose
-// of one frame.
+// Our bundle adjustment against Ceres (DENSE_SCHUR, one thread, analytic Jacobians) on the same
+// problem: 10 keyframes, 1500 points, 6000 observations with depth, Huber loss, 5 iterations. Also
+// compares optimization of the pose of a single frame.
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
@@ -28,7 +28,7 @@ BundleConfig config() {
 }
 
 /// A pose as (quaternion x y z w, translation), perturbed from the left. The cost functions return
-/// their Jacobians in the tangent space, padded by a zero column: hence PlusJacobian is [I; 0].
+/// their Jacobians in the tangent space with an additional zero column, so PlusJacobian is [I; 0].
 class LeftPerturbation : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 7; }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// candidates_benchmark MAP [KEYFRAMES]: selection of keyframe candidates (Algorithm 1) in a large
-// map, 100,000 keyframes by default, against a literal scan, which compares the query with every
-// keyframe as the paper's equations read. MAP is a map file; each keyframe of the large map has
-// labels and words of two of that file's keyframes, so that words are as common as in the real map:
-// more common than in a map of many different places, where queries share less. Keyframes have no
-// neighbors here: equation 5 would add the same few sums to both. Both must choose the same, to the
-// bit. CPU time of this thread, medians over the queries. Run from the repository's root, or name
-// the vocabulary: MH_VOCABULARY=FILE.
+// candidates_benchmark MAP [KEYFRAMES]: times the selection of keyframe candidates (Algorithm 1) in
+// a large map (100,000 keyframes by default) against a literal scan, which follows the paper's
+// equations and compares the query with every keyframe. MAP is a map file. Each keyframe of the
+// large map gets labels and words from two of that file's keyframes, so words are as common as in
+// the file. In a real map of many different places, words would be less common, and queries would
+// share fewer of them. The keyframes have no neighbors: for equation 5, these would add the same
+// few sums to both methods. Both methods must choose the same candidates, to the bit. Times are CPU
+// time of this thread, as medians over the queries. Run it from the repository's root, or name the
+// vocabulary: MH_VOCABULARY=FILE.
 
 #include <algorithm>
 #include <cstdlib>
@@ -27,7 +28,7 @@ using namespace mh;
 
 constexpr std::uint64_t kQueries = 20;
 
-/// Appends each member of `from` with probability 1/2, with its weight.
+/// Appends each member of `from` with its weight, with probability 1/2.
 void add_half(std::vector<WeightedMember>& to, const std::vector<WeightedMember>& from,
               const RandomStream& random) {
   for (const WeightedMember& member : from)
@@ -41,7 +42,7 @@ void put_in_order(std::vector<WeightedMember>& members) {
   members.erase(repeated.begin(), repeated.end());
 }
 
-/// A view with labels and words of two of the real ones.
+/// A view with labels and words from two real views.
 AugmentedVector made_view(const std::vector<AugmentedVector>& real, const RandomStream& random) {
   AugmentedVector view;
   for (const std::uint64_t part : {0, 1}) {

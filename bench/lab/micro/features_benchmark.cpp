@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feature extraction against cv::ORB on one thread (1,000 features, 8 levels, 640x480), and its
-// parts.
+// Times feature extraction and its parts against cv::ORB on one thread (1,000 features, 8 levels,
+// 640x480).
 #include <benchmark/benchmark.h>
 #include <opencv2/features2d.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of a frame at a sensor level, stage by stage and as ratios to a plain textured render of the
-// same view: medians over frames spread along a motion, by the thread's CPU clock. The limits are
-// those of docs/measurements/cost_of_the_bench.md.
+// Cost of a frame at a sensor level, stage by stage, as a ratio to a plain textured render of the
+// same view. Figures are medians over frames spread along a motion, by the thread's CPU clock. The
+// limits are those of docs/measurements/cost_of_the_bench.md.
 // Usage: frame_benchmark SCENE MOTION ROBOT LEVEL [frames]
 #include <malloc.h>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of mapping space from the keyframes of a house: integration of one keyframe and of all that
-// a loop closure moved, the octree's memory, a plan over the floor; compared with OctoMap's own
-// insertPointCloud() of the same points in the same run. CPU time of the process.
+// Cost of mapping space from the keyframes of a house: integrating one keyframe, integrating all
+// keyframes that a loop closure moved, the octree's memory, and a plan over the floor. For
+// comparison, OctoMap's own insertPointCloud() gets the same points in the same run. CPU time of
+// the process.
 // Usage: occupancy_benchmark SCENE.yaml TOUR.yaml ROBOT.yaml LEVEL.yaml [every n-th frame = 15]
 
 #include <algorithm>
@@ -35,7 +36,7 @@ double time_ms(const Work& work) {
   return clock_ms(CLOCK_PROCESS_CPUTIME_ID) - before;
 }
 
-/// The points of a keyframe that a mapper uses, in the camera frame.
+/// The points of a keyframe that the mapper uses, in the camera frame.
 octomap::Pointcloud points_of(const OccupancyMapper& mapper, Stamp stamp_ns) {
   octomap::Pointcloud cloud;
   const Grid2d<float>& depth_m = *mapper.depth_of(stamp_ns);
@@ -58,7 +59,7 @@ octomap::pose6d pose_of(const SE3& pose) {
                                static_cast<float>(q.y()), static_cast<float>(q.z()))};
 }
 
-/// What a loop closure does to a path: a drift of 1 % of its length is spread over it.
+/// Changes a path like a loop closure: a drift of 1 % of its length is spread over it.
 Trajectory closed(const Trajectory& poses) {
   Trajectory moved = poses;
   for (std::size_t i = 0; i < moved.size(); ++i) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// physics_benchmark SCENE ROBOT [DRIVES]: random drives into furniture against the whole mesh of a
-// scene. Prints how much faster than real time the physics ran, the deepest penetration, the base's
-// peak motion outside contacts, and whether a second run gave the same bits.
+// physics_benchmark SCENE ROBOT [DRIVES]: the robot drives randomly into furniture, colliding with
+// the whole mesh of a scene. Prints how much faster than real time the physics ran, the deepest
+// penetration, the base's peak motion outside contacts, and whether a second run gave the same
+// bits.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

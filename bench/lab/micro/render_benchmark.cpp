@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time per 640x480 image, traced and with all outputs, and per sensed frame, of a generated room of
-// 330,000 triangles with textures of block noise (near the worst case for a texture cache).
+// Time per 640x480 image (only traced, and with all outputs) and per sensed frame, of a generated
+// room of 330,000 triangles with textures of block noise (near the worst case for a texture cache).
 #include <benchmark/benchmark.h>
 
 #include "bench/lab/micro/render_benchmark_room.hpp"

@@ -19,8 +19,8 @@
 namespace mh {
 namespace {
 
-/// Views from free places at a camera's height, in any direction except straight up or down, with
-/// roll, since vertical edges in level images make whole columns of ties.
+/// Views from free places at a camera's height, in any direction except straight up or down. The
+/// camera is rolled, since vertical edges in level images would make whole columns of ties.
 std::vector<SE3> random_views(const Scene& scene, std::uint64_t seed, int count) {
   std::vector<SE3> views;
   const RandomStream stream(seed);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ratios of rendering times at 640x480: medians over interleaved repeats of twelve views, with the
 // limits stated in docs/measurements/rendering.md. Single-threaded work is timed by its thread's
-// CPU clock, independent of the machine's load. Our renderer and OSMesa on two threads are judged
-// by wall time, which is what a user waits: quiet machines only (the load is printed). The CPU time
-// of all their threads is also printed. Usage: render_ratios [--portable] [repeats]
+// CPU clock, which does not depend on the machine's load. Our renderer and OSMesa on two threads
+// are judged by wall time, since that is how long a user waits. Use quiet machines only (the load
+// is printed). The CPU time of all their threads is also printed. Usage: render_ratios [--portable]
+// [repeats]
 #include <malloc.h>
 
 #include <algorithm>
@@ -39,7 +40,7 @@ struct Cost {
   }
 };
 
-/// Only the rays of a whole image, in the renderer's order.
+/// Traces only the rays of a whole image, in the renderer's order.
 class RayTracer {
  public:
   RayTracer(const Scene& scene, bool portable) : bvh_(scene, 2, portable), packets_(64) {}
@@ -67,7 +68,7 @@ class RayTracer {
   std::vector<Packet> packets_;
 };
 
-/// What is timed, and its time in each repeat.
+/// What is timed, with its cost in each repeat.
 struct Contestant {
   std::string name;
   std::function<void(const SE3&)> run;
@@ -185,7 +186,7 @@ int run(bool portable, int repeats) {
 }  // namespace mh
 
 int main(int argc, char** argv) {
-  // Times the rendering, not the system's memory allocation.
+  // Keeps freed memory, so that rendering is timed and not the system's memory allocation.
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
   bool portable = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loading of typical user data: a ScanNet folder of 5 million triangles with labels, segments and
-// objects; and one of 330,000 triangles, up to its first image.
+// Time to load typical user data: a ScanNet folder of 5 million triangles with labels, segments and
+// objects; and a folder of 330,000 triangles, including the time to its first image.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of each sensor effect per 640x480 frame, compared with a plain render of the same view: the
-// model house without baked light, seen from its living room by a camera that turns at 1 rad/s or
-// rests.
+// Cost of each sensor effect per 640x480 frame, compared with a plain render of the same view. The
+// model house is seen without baked light from its living room, by a camera that turns at up to 1
+// rad/s or is at rest.
 // usage: sensors_benchmark (from the repository's folder)
 #include <benchmark/benchmark.h>
 

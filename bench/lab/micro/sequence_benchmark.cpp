@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of writing a rendered sequence: each stage alone on the same threads, then all together, in
-// wall time and CPU time of all threads; and the process's memory.
+// Cost of writing a rendered sequence: each stage alone on the same threads, then all stages
+// together. Prints wall time and CPU time of all threads, and the memory of the process.
 // Usage: sequence_benchmark SCENE MOTION ROBOT LEVEL OUT [frames]
 #include <stdlib.h>
 #include <unistd.h>
@@ -31,9 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kThreads = 2;
-constexpr std::size_t kHeldFrames = 16;  // that are repeatedly encoded and written
+constexpr std::size_t kHeldFrames = 16;  // frames that are repeatedly encoded and written
 
-/// Frames per second of wall time, and per second of CPU time of each thread.
+/// Frames per second of wall time (wall_hz), and per second of CPU time of one thread (work_hz).
 struct Speed {
   double wall_hz, work_hz;
 };
@@ -97,7 +97,7 @@ int run(const std::vector<std::string>& given) {
       in_memory->add(k % kHeldFrames, frame);
     });
   });
-  std::vector<std::pair<fs::path, std::string>> files;  // of the frames in memory
+  std::vector<std::pair<fs::path, std::string>> files;  // encoded files of the held frames
   for (const auto& entry : fs::recursive_directory_iterator(memory))
     if (entry.is_regular_file())
       files.emplace_back(fs::relative(entry.path(), memory), read_file(entry.path()));

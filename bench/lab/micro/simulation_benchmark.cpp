@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // simulation_benchmark SCENE ROBOT LEVEL [SECONDS [TICKS_PER_FRAME]]: how much faster than real
-// time a robot is simulated on one core: physics, lasers, sonars, odometry and camera frames while
-// it turns and drives. Prints the share of each, in CPU time, and whether a second run gave the
-// same bits.
+// time a robot is simulated on one core, with physics, lasers, sonars, odometry and camera frames,
+// while it turns and drives. Prints the share of each in the CPU time, and whether a second run
+// gave the same bits.
 
 #include <cstdlib>
 #include <memory>
@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   const SensorConfig level = load_sensor_config(argv[3]);
   SimulatedScene place{std::make_shared<const Scene>(scene), make_scene_renderer(scene)};
   SimulationConfig config{.ticks_per_frame = argc > 5 ? std::atoi(argv[5]) : 3};
-  // The roomiest place.
+  // Start at the place with the most free space around it.
   const FloorGrid grid = make_floor_grid(scene, {.top_m = robot.height_m});
   float best_m = 0;
   for (int y = 0; y < grid.clearance_m.height(); ++y)

@@ -8,19 +8,19 @@
 
 namespace mh {
 
-/// The time of a system clock, ms: CLOCK_THREAD_CPUTIME_ID, CLOCK_MONOTONIC, ...
+/// The current time of a system clock, ms: CLOCK_THREAD_CPUTIME_ID, CLOCK_MONOTONIC, ...
 inline double clock_ms(clockid_t clock) {
   timespec time{};
   clock_gettime(clock, &time);
   return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-/// CPU time of this thread.
+/// CPU time of this thread, ms.
 inline double thread_ms() {
   return clock_ms(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/// The upper median. @pre not empty
+/// The median; for an even number of values, the upper one of the two in the middle. @pre not empty
 inline double median(std::vector<double> values) {
   std::ranges::sort(values);
   return values[values.size() / 2];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole system against cv::ORB::detectAndCompute with as many features on the frames of a
-// sequence in TUM's layout, interleaved frame by frame on one thread: the cost of feature
-// extraction, of tracking and of everything, as multiples of it. CPU time of this thread, so that
-// other work on the machine affects the figures only through the caches.
+// Times the whole system against cv::ORB::detectAndCompute with the same number of features. Both
+// process the frames of a sequence in TUM's layout, interleaved frame by frame on one thread.
+// Prints the cost of feature extraction, of tracking and of everything, as multiples of the cost of
+// cv::ORB. CPU time of this thread, so that other work on the machine affects the figures only
+// through the caches.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ struct Options {
   bool plain = false;
 };
 
-/// Runs work and appends its time.
+/// Does the work and appends the time that it took.
 template <class Work>
 void time_into(std::vector<double>& times_ms, Work work) {
   const double start = thread_ms();
@@ -91,7 +92,7 @@ void run(const Options& options) {
               [&] { orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors); });
     time_into(times.extraction,
               [&] { static_cast<void>(extract(frame, state.camera, config.features)); });
-    // Tracking alone is localization in the current map: step() does the same and then maps.
+    // Tracking alone is localization in the current map. step() does the same and then maps.
     if (!state.map.empty() && tracker.tracking())
       time_into(times.tracking,
                 [&] { static_cast<void>(localize(state, tracker, frame, stream)); });

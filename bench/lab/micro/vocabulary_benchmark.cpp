@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shipped vocabulary: time to load it, words of a frame of 1,000 features, candidates among 500
-// keyframes with and without the inverted index. For comparison, a tree of 10^6 words (k = 10, L =
-// 6, as large as the public ORBvoc.txt) in DBoW2's text format and in our own. Run from the
-// repository's root, or name the vocabulary: MH_VOCABULARY=FILE.
+// The shipped vocabulary: time to load it, to find the words of a frame of 1,000 features, and to
+// find candidates among 500 keyframes with and without the inverted index. For comparison, also a
+// tree of 10^6 words (k = 10, L = 6, as large as the public ORBvoc.txt) in DBoW2's text format and
+// in our own. Run it from the repository's root, or name the vocabulary: MH_VOCABULARY=FILE.
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -69,7 +69,7 @@ void words_of_frame(benchmark::State& state) {
 }
 BENCHMARK(words_of_frame)->Unit(benchmark::kMillisecond);
 
-/// A map of 500 views, each sharing half of its features with the one before.
+/// A map of 500 views, each of which shares half of its features with the view before it.
 struct Views {
   std::vector<AugmentedVector> vectors;
   InvertedIndex index;

@@ -24,7 +24,7 @@ namespace {
 constexpr double kSheetMargin = 30, kGap = 12, kCaption = 22, kSheetHeader = 92;
 constexpr double kTileWidth = 400;
 constexpr float kNear_m = 0.4F, kFar_m = 8.0F;  // range of the false colors
-constexpr double kSheetEye_m = 1.45;            // of a sitting person or a standing child
+constexpr double kSheetEye_m = 1.45;            // eyes of a sitting person or standing child
 
 cv::Mat class_image(const Grid2d<ClassId>& labels) {
   Grid2d<Rgb8> colors(labels.width(), labels.height());
@@ -71,11 +71,11 @@ View shoot(std::string caption, const Renderer& renderer, const Camera& camera, 
           std::move(frame.classes)};
 }
 
-/// A view from a corner of a room, with its quality.
+/// A view from a corner of a room, with measures of how good it is.
 struct CornerView {
   View view;
-  int objects = 0;   ///< that fill at least 1/100 of it, except walls, floor and ceiling
-  float near_m = 0;  ///< 9/10 of it are farther away; near 0 if something blocks the view
+  int objects = 0;   ///< that fill 1/100 of the view or more; not walls, floor, ceiling
+  float near_m = 0;  ///< 9/10 of the view is farther away; near 0 if something blocks it
 };
 
 CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& renderer,
@@ -104,7 +104,8 @@ CornerView shoot_corner(const Scene& scene, const Room& room, const Renderer& re
   return corner;
 }
 
-/// Above 0 if the outline, traversed counter-clockwise, turns left: at convex corners.
+/// Above 0 if the outline, traversed counter-clockwise, turns left at corner i, which is then
+/// convex.
 double turn_at(const Room& room, std::size_t i) {
   const auto& p = room.polygon_m;
   const Eigen::Vector2d before = p[i] - p[(i + p.size() - 1) % p.size()];
@@ -112,8 +113,8 @@ double turn_at(const Room& room, std::size_t i) {
   return before.x() * after.y() - before.y() * after.x();
 }
 
-/// Returns a place that is visible from all corners of a room: the middle of a rectangle or, for an
-/// L shape, of the part that both arms share.
+/// Returns a place that is visible from all corners of a room: the middle of a rectangular room;
+/// for an L-shaped room, the middle of the part that both arms share.
 Eigen::Vector2d heart(const Room& room) {
   const auto& p = room.polygon_m;
   Eigen::AlignedBox2d box;
@@ -177,7 +178,8 @@ std::vector<View> views_of(const Scene& scene, const Renderer& renderer) {
           shoot_corner(scene, room, renderer, camera,
                        look_at({eye.x(), eye.y(), kSheetEye_m}, {middle.x(), middle.y(), 0.75})));
     }
-    // The corners that show the most; those with a view blocked by furniture go last.
+    // Corners that show the most objects come first; those where furniture blocks the view come
+    // last.
     constexpr float kFree_m = 0.7F;
     std::ranges::stable_sort(corners, std::greater<>(), [](const CornerView& corner) {
       return std::tuple(corner.near_m > kFree_m, corner.objects, corner.near_m);

@@ -24,16 +24,16 @@ struct View {
 /// names of the classes seen.
 cv::Mat draw_contact_sheet(const std::string& title, const std::vector<View>& views);
 
-/// Draws the color images of many views, `columns` in a row, with or without their captions.
+/// Draws the color images of many views, `columns` per row, with or without their captions.
 cv::Mat draw_gallery(const std::vector<View>& views, int columns, bool captions);
 
 /// Renders exact images from a few poses spread evenly over a path.
 std::vector<View> views_along(const Trajectory& path, const Renderer& renderer,
                               const Camera& camera, std::size_t count);
 
-/// Renders exact images that show a scene to a person: each room from the two corners that, at eye
-/// height, show most of its contents; without a plan, from the most revealing viewpoints
-/// (viewpoints()).
+/// Renders exact images that show a scene to a person: each room from the two corners that show
+/// most of its contents at eye height. A scene without a plan is shown from the most revealing
+/// viewpoints (viewpoints()).
 std::vector<View> views_of(const Scene& scene, const Renderer& renderer);
 
 /// Returns the pose of an upright camera at `eye` that looks at `target`.

@@ -11,15 +11,16 @@
 namespace mh {
 namespace {
 
-// Range of Turbo, which runs from a nearly black blue to a dark red.
+// The part of Turbo that is used. The full scale runs from a nearly black blue to a dark red.
 constexpr double kFarthest = 0.1, kNearest = 0.95;
 
-constexpr std::uint8_t kNoReturn = 215;  // gray, which is not in Turbo; black is taken by void
+constexpr std::uint8_t kNoReturn = 215;  // a gray, since Turbo has none; black already means void
 
-// By class. Found by search for the property that tests/bench/report/drawing/class_colors_test.cpp
-// checks: for any two classes that touch in images of the model house, the four rooms or the 201
-// generated ones, the colors are at least 10 apart (CIEDE2000) for normal vision, protanopia,
-// deuteranopia and tritanopia; any two classes are 20 apart in L*a*b* (1976).
+// Colors by class. They were found by a search for the property that
+// tests/bench/report/drawing/class_colors_test.cpp checks: for any two classes that touch in images
+// of the model house, the four rooms or the 201 generated ones, the colors are at least 10 apart
+// (CIEDE2000) for normal vision, protanopia, deuteranopia and tritanopia; any two classes are 20
+// apart in L*a*b* (1976).
 constexpr std::array<Rgb8, 55> kClassColors = {{
     {0, 0, 0},       {174, 199, 232}, {140, 170, 120}, {181, 163, 255}, {203, 119, 61},
     {0, 0, 188},     {140, 83, 73},   {255, 147, 174}, {235, 69, 47},   {89, 70, 26},

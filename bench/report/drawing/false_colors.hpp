@@ -9,8 +9,8 @@
 
 namespace mh {
 
-/// Depth as 8-bit BGR: near is red, far is bright blue (Turbo without its dark ends); no return is
-/// light gray, which is unlike any color of the scale or of a class.
+/// Depth as 8-bit BGR: near is red and far is bright blue (Turbo without its dark ends). Pixels
+/// without a return are light gray, which differs from every color of the scale and of the classes.
 cv::Mat depth_colors(const Grid2d<float>& depth_m, float near_m, float far_m);
 /// The scale of depth_colors(), 256 x 1, near to far.
 cv::Mat depth_scale();

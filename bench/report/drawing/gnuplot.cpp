@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs gnuplot on a script, with its output and errors written to a file.
+/// Runs gnuplot on a script and writes its output and errors to the file `said`.
 bool ended_well(const fs::path& script, const fs::path& said) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);

@@ -17,8 +17,8 @@ std::string gnuplot_text(const std::string& text);
 /// embedded; else a PNG of 300 pixels per inch), and the path.
 std::string gnuplot_terminal(const std::filesystem::path& file, double width_cm, double height_cm);
 
-/// Draws a file; readers see the old one or the complete new one.
-/// @param script  makes the script; receives the path for gnuplot_terminal()
+/// Draws a chart into a file; readers see either the old file or the complete new one.
+/// @param script  returns the script; receives the path that gnuplot_terminal() needs
 /// @throws InputError naming the file if it is neither .pdf nor .png; MachineError if gnuplot is
 /// missing or fails.
 void draw_by_gnuplot(const std::filesystem::path& file,

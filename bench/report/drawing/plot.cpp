@@ -23,7 +23,7 @@ struct Extent {
     least = std::min(least, value);
     most = std::max(most, value);
   }
-  /// From zero if the least value is below half of the greatest.
+  /// The axis starts at zero if the smallest value is below half of the largest.
   std::string range() const { return least > 0 && least < 0.5 * most ? "[0:*]" : "[*:*]"; }
 };
 

@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// A line segment of a horizontal section through a scene.
+/// A line segment of a horizontal cut through a scene.
 struct SliceSegment {
   Eigen::Vector2d from_m, to_m;
   ClassId class_id = kVoid;

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kEye_m = 1.45;  // of a sitting person or a standing child
+constexpr double kEye_m = 1.45;  // eyes of a sitting person or standing child
 constexpr double kHead_m = 1.9;
 constexpr std::size_t kTargets = 24;
 constexpr std::size_t kPlaces = 10;
@@ -119,12 +119,12 @@ std::vector<SE3> walking_around(const Scene& level) {
   return views;
 }
 
-/// What a view shows, as keys that two views share if they show the same things.
+/// What a view shows, as sets of keys: two views that show the same thing have the same key for it.
 struct Seen {
   SE3 pose;
   std::set<InstanceId> objects;
   std::set<std::array<int, 3>> surface, ground;  ///< cubes of 0.5 m
-  double share = 1;  ///< of the image that is neither empty nor right in front of the lens
+  double share = 1;  ///< of the image that is neither empty nor too close to the lens
 };
 
 Seen look(const Scene& scene, const Renderer& renderer, const Camera& camera, const SE3& pose) {
@@ -167,7 +167,8 @@ std::vector<SE3> viewpoints(const Scene& scene, const Renderer& renderer, const 
   for (const SE3& pose : candidates)
     views.push_back(look(scene, renderer, small, level.world_from_level() * pose));
 
-  constexpr double kObject = 10, kGround = 0.01;  // value of one, in cubes of other surface
+  // The value of one object and of one cube of ground; a cube of other surface has value 1.
+  constexpr double kObject = 10, kGround = 0.01;
   std::vector<SE3> chosen;
   std::set<InstanceId> objects;
   std::set<std::array<int, 3>> surface, ground;

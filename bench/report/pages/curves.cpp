@@ -30,9 +30,9 @@ struct Sum {
   double mean() const { return sum / static_cast<double>(count); }
 };
 
-/// The frame of the tour that each pose of a run's estimate belongs to: from the calls that mapped
-/// it; else (for a program that returned only a trajectory) from the frames of a simulated truth;
-/// else by counting poses.
+/// The frame of the tour that each pose of a run's estimate belongs to. It is found from the calls
+/// that mapped the pose; for a program that returned only a trajectory, from the frames of a
+/// simulated truth; otherwise, by counting poses.
 std::vector<std::size_t> frames_of_estimate(const RunResult& run) {
   std::map<Stamp, std::size_t> frame_at;
   for (const MappedFrame& call : run.mapping.calls) frame_at.emplace(call.stamp_ns, call.index);
@@ -46,8 +46,8 @@ std::vector<std::size_t> frames_of_estimate(const RunResult& run) {
   return frames;
 }
 
-/// Mean position error of a run per window of frames; a window without a tracked frame has no
-/// count. A recording's truth is interpolated to the frames.
+/// Mean position error of a run for each window of frames; a window without a tracked frame has a
+/// count of 0. The truth of a recording is interpolated to the frames.
 std::vector<Sum> window_errors(const RunResult& run) {
   std::vector<Sum> windows;
   const std::vector<std::size_t> frames = frames_of_estimate(run);
@@ -71,8 +71,8 @@ double student_t(double degrees_of_freedom) {
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
 
-/// Each curve starts as a mean over all environments; a mean over fewer than this is not comparable
-/// with that.
+/// Each curve starts as a mean over all environments. Where fewer environments than this are left,
+/// the mean is not comparable with the start of the curve.
 constexpr std::size_t kFewestCounted = 5;
 
 struct Curve {
@@ -84,7 +84,7 @@ struct Curve {
 }  // namespace
 
 Json error_by_frame_json(const Suite& suite, std::span<const Row> rows) {
-  // By curve, window and environment: sums over trials.
+  // Sums over trials, by curve, window and environment.
   std::map<Curve, std::vector<std::map<std::size_t, Sum>>> all;
   for (const Row& row : rows) {
     if (row.parameters != 0 || !is_own_row(suite, row.system, row.labels)) continue;

@@ -33,7 +33,8 @@ std::string set_text(const std::string& of) {
                                              : " to graded queries";
 }
 
-/// By how much the better system is better: "12.4 points more correct answers on the second tour".
+/// By how much the better system is better, as "12.4 points more correct answers on the second
+/// tour".
 std::string gain_text(const Suite& suite, const Comparison& c) {
   const double size = std::abs(c.difference);
   const std::string labels =
@@ -61,8 +62,8 @@ bool is_of_labels(const SystemSpec& first, const SystemSpec& second) {
          first.settings.empty() && second.settings.empty();
 }
 
-/// For a single environment, whose ATE has no p: " The ATE of slow is 5.2 times that of plain:
-/// ...".
+/// A sentence about ATE for a suite of a single environment, where ATE has no p: " The ATE of slow
+/// is 5.2 times that of plain: ...". Empty if there is nothing to mention.
 std::string ate_text(const Suite& suite, std::span<const Row> rows, const SystemPair& pair,
                      std::size_t level) {
   if (suite.environments.size() > 1) return "";
@@ -118,8 +119,8 @@ Json headline(const Suite& suite, std::span<const Row> rows, const SystemPair& s
     if (v == Verdict::kSecondBetter) for_second.push_back(j);
   }
   const bool decided = !for_first.empty() || !for_second.empty();
-  // The leader is better by the suite's measure; if neither or both are, the first leads if it is
-  // better in anything.
+  // The system that is better by the suite's measure leads. If neither or both are better by it,
+  // the first system leads, provided that it is better in anything.
   const auto by_measure = [&](const Found& gains) {
     return std::ranges::any_of(
         gains, [&](const Judged* j) { return j->comparison.what.measure == name(suite.measure); });
@@ -140,7 +141,7 @@ Json headline(const Suite& suite, std::span<const Row> rows, const SystemPair& s
   if (!other.empty()) text += fmt::format("; {} has {}", follower, gains_text(suite, other));
   if (decided) text += ".";
   const Judged* shown = decided ? lead.front() : nullptr;
-  if (shown == nullptr && !family.empty()) {  // the comparison nearest to a finding
+  if (shown == nullptr && !family.empty()) {  // the comparison closest to a finding
     const auto told = [&](const Judged* j) {
       return std::tuple(j->comparison.what.measure == name(suite.measure), !j->saturated,
                         std::abs(j->comparison.difference));

@@ -13,21 +13,21 @@
 
 namespace mh {
 
-/// How a column of a table is headed and printed.
+/// How a column of a table is titled and printed.
 struct PageColumn {
-  std::string key;         ///< for pages to find it: "held_out.success"
+  std::string key;         ///< by which pages find the column: "held_out.success"
   std::string title;       ///< what a reader sees
   std::string unit{};      ///< "m"; "%": a share, stored as 0 to 1 and printed times 100
-  int decimals = 0;        ///< of numbers
-  bool is_hidden = false;  ///< for charts alone
+  int decimals = 0;        ///< digits after the decimal point
+  bool is_hidden = false;  ///< for charts only
 };
 
 /// The column that shows a metric.
 PageColumn column_of(const Metric& metric, std::string title = {});
 
-/// A table in columns, as pages read it: each word is written once and then referred to by number,
-/// unknown values are null, numbers have seven significant digits. A column exists once a row has a
-/// cell in it; rows without a cell are unknown there.
+/// A table stored by columns, as pages read it: each word is stored once and then referred to by
+/// number, unknown values are null, and numbers have seven significant digits. A column exists as
+/// soon as one row has a cell in it; it is null in the rows without a cell.
 class PageTable {
  public:
   explicit PageTable(std::string title, std::string note = {})
@@ -36,7 +36,7 @@ class PageTable {
   void begin_row() { ++rows_; }
   void text(const PageColumn& column, std::string_view value);
   void number(const PageColumn& column, const std::optional<double>& value);
-  /// All figures of a score; `prefix` goes before their keys and titles.
+  /// Adds all figures of a score; `prefix` goes before their keys and titles.
   void figures(const std::vector<Figure>& figures, const std::string& prefix = {},
                const std::string& title_prefix = {});
 
@@ -67,7 +67,7 @@ nlohmann::ordered_json page_number(const std::optional<double>& value);
 /// can end a script or begin a tag; invalid UTF-8 is replaced.
 std::string script_json(const nlohmann::ordered_json& json);
 
-/// A script file that puts a piece of data into the registry under its name.
+/// The text of a script file that adds a piece of data to the registry under its name.
 std::string script_of(const std::string& piece, const nlohmann::ordered_json& json);
 /// Whether a file is such a script.
 bool is_script_of_data(std::string_view content);

@@ -20,17 +20,17 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostPlans = 6;
-constexpr std::size_t kMoments = 600;  ///< of a path that is drawn small
+constexpr std::size_t kMoments = 600;  ///< poses of a path that is drawn small
 constexpr int kFrameWidth_px = 320;
 constexpr std::size_t kFrames = 4;
 
-/// A run's drawing with its queries (those of the second tour if it has one); "" if there is no
-/// drawing.
+/// A run's drawing with its queries (if it has a second tour, the queries of that tour); empty if
+/// there is no drawing.
 std::string plan_of(const PagesSource& source, const RunResult& run) {
   constexpr std::uintmax_t kLargest = 2'000'000;
   constexpr std::string_view kPng = "\x89PNG";
   if (source.folder.empty()) return "";
-  // The folder may hold another run's files.
+  // The folder may contain files of a different run.
   if (is_file(source.folder / run.spec.name / "map.yaml") && !grid_of(source, run)) return "";
   for (const char* name : {"topdown_second_tour.png", "topdown.png"}) {
     const fs::path file = source.folder / run.spec.name / name;
@@ -40,7 +40,7 @@ std::string plan_of(const PagesSource& source, const RunResult& run) {
   return "";
 }
 
-/// The first trial of each arm in the environment and at the level of `like`.
+/// For each arm (system and labels), its first trial in the environment and at the level of `like`.
 std::vector<const RunResult*> side_by_side(const Suite& suite, const std::vector<RunResult>& runs,
                                            const RunResult& like) {
   std::vector<const RunResult*> found;
@@ -56,7 +56,7 @@ std::vector<const RunResult*> side_by_side(const Suite& suite, const std::vector
   return found;
 }
 
-/// Whether an environment's runs used this input.
+/// Whether an input is still the one that the environment's runs used.
 bool is_of_results(const InputDigest& input, const std::string& environment,
                    const std::vector<RunResult>& runs) {
   return std::ranges::none_of(runs, [&](const RunResult& run) {

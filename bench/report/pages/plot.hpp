@@ -8,18 +8,18 @@
 
 namespace mh {
 
-/// What is drawn for a paper.
+/// Which figure or table to draw for a paper.
 struct PlotOrder {
-  int figure = 3;  ///< of the paper: 2 (a run from above), 3 (by density), 4 (by frames), 5 (a run
+  int figure = 3;  ///< in the paper: 2 (a run from above), 3 (by density), 4 (by frames), 5 (a run
                    ///< on the grid of its map)
-  int table = 0;   ///< of the paper, 1 or 2, instead of a figure
-  std::string run = {};                ///< of figures 2 and 5; empty: the first
-  std::string measure = "ate_rmse_m";  ///< of figure 3: the key of a column
-  double width_cm = 8.5;               ///< a column of a paper
+  int table = 0;   ///< 1 or 2, as in the paper: draws this table instead of a figure
+  std::string run = {};                ///< run that figures 2 and 5 show; empty: the first
+  std::string measure = "ate_rmse_m";  ///< key of the column that figure 3 shows
+  double width_cm = 8.5;               ///< the width of a column in a paper
 };
 
 /// The gnuplot script that draws a figure into a file; it contains the data.
-/// @throws InputError if the results do not hold what the figure shows, or a name is unknown.
+/// @throws InputError if the results lack the data that the figure shows, or a name is unknown.
 std::string plot_script(const PagesSource& source, const PlotOrder& order,
                         const std::filesystem::path& file);
 

@@ -15,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Whether the largest value is so far beyond most others that it would squeeze them against the
-/// axis.
+/// Whether the largest value is so far above most others that a linear axis would squeeze these
+/// together.
 bool needs_logarithm(std::vector<double> values) {
   constexpr double kFar = 10;
   if (values.empty() || std::ranges::min(values) <= 0) return false;
@@ -27,7 +27,7 @@ bool needs_logarithm(std::vector<double> values) {
 
 }  // namespace
 
-/// Figure 3: boxes by group and system, means as open diamonds.
+/// Figure 3: a box for each group and system, with means as open diamonds.
 std::string plot_by_density(const PagesSource& source, const PlotOrder& order,
                             const fs::path& file) {
   const std::vector<Row> rows =
@@ -46,7 +46,7 @@ std::string plot_by_density(const PagesSource& source, const PlotOrder& order,
   const double scale = column->at("unit") == "%" ? 100 : 1;
   const InkOfArms arms(*source.suite);
   std::map<std::pair<std::size_t, std::string>, std::string> data;  // by arm, group
-  std::map<std::string, std::size_t> most_in;                       // environments, by group
+  std::map<std::string, std::size_t> most_in;                       // environment counts, by group
   std::vector<double> values;
   for (std::size_t row = 0; row < table.rows(); ++row)
     if (const auto value = table.number(order.measure, row)) {

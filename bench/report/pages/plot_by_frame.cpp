@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A distance between ticks that leaves at most six of them: 1, 2 or 5 times a power of ten.
+/// The distance between ticks: the smallest of 1, 2, 5, 10, 20, ... with at most six ticks.
 double tick_step(double range) {
   double step = 1;
   for (std::size_t i = 0; range / step > 5; ++i) step *= i % 3 == 1 ? 2.5 : 2;
@@ -23,7 +23,7 @@ double tick_step(double range) {
 
 }  // namespace
 
-/// Figure 4: error against frames, and below it the number of environments still counted.
+/// Figure 4: error against frames and, below it, the number of environments that the mean is over.
 std::string plot_by_frame(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   const Json json = error_by_frame_json(
       *source.suite, make_rows(*source.suite, source.results.runs, source.results.failed));
@@ -57,7 +57,7 @@ std::string plot_by_frame(const PagesSource& source, const PlotOrder& order, con
         "0.2 noborder notitle, $a{1} using 1:2 with lines linewidth 2 dashtype {3} linecolor rgb "
         "'{2}' title {4}",
         errors.empty() ? "" : ", ", a, ink_of(a), a + 1, gnuplot_text(arms.name(a)));
-    // Lines that coincide are drawn beside one another.
+    // Lines that would coincide are drawn side by side.
     counts += fmt::format(
         "{}$a{} using 1:($5+{}) with steps linewidth 2 dashtype {} linecolor rgb '{}' "
         "notitle",

@@ -14,7 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Rectangles of cells in a state, by rows: middle and extent in each direction.
+/// The cells of a grid in a given state, merged along rows into rectangles: one line per rectangle
+/// with its middle and its extent along both axes.
 std::string cells_in(const OccupancyGrid& grid, std::int8_t state) {
   std::string text;
   const double half_m = 0.5 * grid.resolution_m;
@@ -32,8 +33,8 @@ std::string cells_in(const OccupancyGrid& grid, std::int8_t state) {
 
 }  // namespace
 
-/// Figure 2: true and estimated path, x and o of the queries. Figure 5: the same on the grid of the
-/// run's map.
+/// Figure 2: true and estimated path, with an x and an o for each query. Figure 5: the same drawn
+/// on the grid of the run's map.
 std::string plot_from_above(const PagesSource& source, const PlotOrder& order,
                             const fs::path& file) {
   const std::vector<RunResult>& runs = source.results.runs;

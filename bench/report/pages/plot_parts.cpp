@@ -9,7 +9,7 @@ namespace mh {
 
 namespace {
 
-// They differ in lightness, so that they can be told apart in gray and by the color-blind.
+// The inks differ in lightness, so that they can be told apart in gray and by the color-blind.
 constexpr const char* kInks[] = {"#0065a3", "#d98a00", "#00805d", "#b4568c", "#3a9bd9", "#a33f00"};
 
 }  // namespace

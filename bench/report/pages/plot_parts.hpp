@@ -13,13 +13,14 @@
 
 namespace mh {
 
-// What the figures for papers share, and the figures: each is a script for gnuplot, made in a
-// source file of its own.
+// Helpers that the figures for papers share, and the figures themselves. Each figure is a gnuplot
+// script, made in a source file of its own.
 
 /// The color of the i-th arm.
 const char* ink_of(std::size_t i);
 
-/// The arms of a suite in its order; an arm's place in that order determines its ink.
+/// The arms (systems with labels) of a suite, in its order. An arm's place in this order determines
+/// its ink.
 class InkOfArms {
  public:
   explicit InkOfArms(const Suite& suite) : suite_(suite), arms_(arms_of(suite)) {}
@@ -37,7 +38,7 @@ class InkOfArms {
   std::vector<Arm> arms_;
 };
 
-/// A table that was written for pages.
+/// Reads a table that was written for pages (PageTable).
 class PlotTable {
  public:
   explicit PlotTable(const nlohmann::ordered_json& json) : json_(json) {}
@@ -62,7 +63,7 @@ class PlotTable {
   const nlohmann::ordered_json& json_;
 };
 
-/// The beginning of a script: terminal, key above, axes left and below, a faint grid.
+/// The first part of a script: terminal, key above, axes to the left and below, a faint grid.
 std::string beginning(const PlotOrder& order, const std::filesystem::path& file, double height_cm);
 
 std::string plot_by_density(const PagesSource& source, const PlotOrder& order,

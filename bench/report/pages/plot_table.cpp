@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A cell as a reader sees it.
+/// The text of a cell as a reader sees it.
 std::string cell_of(const Json& column, std::size_t row) {
   const Json& value = column.at("values").at(row);
   if (value.is_null()) return "";
@@ -26,8 +26,8 @@ std::string cell_of(const Json& column, std::size_t row) {
 
 }  // namespace
 
-/// A table: for Table 1 the columns of the paper's, for Table 2 all; columns without a value are
-/// left out. It is as wide as it needs to be.
+/// Draws a table: Table 1 with the paper's columns, Table 2 with all columns. Columns without a
+/// value are left out. The image is as wide as the table needs.
 std::string plot_table(const PagesSource& source, const PlotOrder& order, const fs::path& file) {
   const std::vector<CategoryRow> rows = make_category_rows(
       *source.suite, make_rows(*source.suite, source.results.runs, source.results.failed));
@@ -67,7 +67,7 @@ std::string plot_table(const PagesSource& source, const PlotOrder& order, const 
     if (std::ranges::all_of(cells, &std::string::empty)) continue;
     const std::string unit = column.value("unit", "");
     std::string title = column.at("title");
-    const std::string last_word = title.substr(title.rfind(' ') + 1);  // "RPE m/s" has its unit
+    const std::string last_word = title.substr(title.rfind(' ') + 1);  // "RPE m/s" names its unit
     if (!unit.empty() && last_word != unit && !last_word.starts_with(unit + "/"))
       title += ", " + unit;
     std::size_t longest = title.size() + title.size() / 5;  // bold letters are wider

@@ -11,9 +11,9 @@ namespace mh {
 /// `budget` bytes.
 std::size_t moments_for(std::size_t runs, std::size_t budget);
 
-/// What the page of one run shows beyond the tables: the true and the estimated path in the frame
-/// of the dock (positions in mm, orientations in 1/10,000), thinned to about `moments` poses;
-/// tracking by call; the occupancy grid; digests and settings. What is unknown is null.
+/// What the page of one run shows in addition to the tables: the true and the estimated path in the
+/// frame of the dock (positions in mm, quaternions in 1/10,000), thinned to about `moments` poses;
+/// tracking by call; the occupancy grid; digests and settings. Unknown values are null.
 nlohmann::ordered_json run_page_json(const PagesSource& source, const RunResult& run,
                                      std::size_t moments);
 

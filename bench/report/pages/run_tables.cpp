@@ -29,8 +29,7 @@ void identify(PageTable& table, const RunSpec& spec, const std::string& status) 
   table.number({"trial", "trial"}, spec.trial);
 }
 
-/// The title of a run's metric: for queries with the short name of their set, for episodes with
-/// that word.
+/// The title of a run's metric, preceded by the short name of its query set or by "episodes".
 std::string metric_title(const Metric& metric) {
   std::string title = metric.heading.empty() ? metric.name : std::string(metric.heading);
   if (metric.name.starts_with("episodes.")) return "episodes: " + title;
@@ -69,7 +68,8 @@ void put_cost(PageTable& table, const PagesSource& source, const RunResult& run)
     table.number({"jobs", "runs side by side"}, run.circumstances.jobs);
 }
 
-/// The first cause that an audit states (at the first point), by run, query set and frame.
+/// For each query (by run, query set and frame), the first cause of failure that an audit states at
+/// the first point.
 using Causes = std::map<std::tuple<std::string, std::string, std::string>, std::string>;
 
 /// Cells of a line of CSV; quotes around a cell are removed.

@@ -17,8 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A JSON file of the folder; null if it is missing or damaged; a damaged one is noted.
-/// @param keys  what it must hold
+/// A JSON file of the folder; null if it is missing or damaged. A damaged file is noted in
+/// `source`.
+/// @param keys  keys that the file must contain
 Json json_file(PagesSource& source, const std::string& name,
                std::initializer_list<const char*> keys) {
   const fs::path file = source.folder / name;
@@ -37,7 +38,7 @@ double number_in(const Store::Value& value) {
   return 0;
 }
 
-/// What each run cost, from the table of times.
+/// Reads from the table of times what each run cost.
 void read_costs(const Store& store, PagesSource& source) {
   const auto rows = store.values(
       "SELECT plan.name, wall_s, cpu_s, slam_s, frames_s, products_s, max_rss_mb, host FROM times "
@@ -82,7 +83,7 @@ PagesSource read_source(const fs::path& path) {
     const Store store = Store::open_to_read(file);
     source.suite = store.planned_suite();
     source.results = load_results(store, *source.suite);
-    // A store holds no alignments: they follow from both paths.
+    // A store contains no alignments: they are recomputed from the true and the estimated path.
     for (RunResult& run : source.results.runs)
       if (!run.truth.empty() && !run.estimate.empty())
         run.alignment = align_estimate(run.estimate, run.truth);
@@ -101,7 +102,7 @@ std::optional<OccupancyGrid> grid_of(const PagesSource& source, const RunResult&
   if (source.folder.empty() || !is_file(file)) return std::nullopt;
   try {
     OccupancyGrid grid = load_map_server(file);
-    // The folder may hold another run's files.
+    // The folder may contain files of a different run.
     if (digest_bytes(grid.cells.data(), grid.cells.size(), digest(run.estimate)) != run.map_digest)
       return std::nullopt;
     return grid;

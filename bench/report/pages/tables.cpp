@@ -26,7 +26,7 @@ PageColumn page_column(const Table2Column& column) {
           .decimals = column.decimals};
 }
 
-/// Begins a row of the paper's own figures.
+/// Begins a row with figures that the paper published.
 void begin_published(PageTable& table, std::string_view system) {
   table.begin_row();
   table.text(kSystem, system);
@@ -45,7 +45,7 @@ bool is_whole_suite(const Suite& suite, const CategoryRow& row) {
          is_own_row(suite, row.system, row.labels);
 }
 
-/// A caveat on a row's figures; "" if they need none.
+/// A remark that qualifies a row's figures; empty if they need none.
 std::string remark_on(const Suite& suite, const CategoryRow& row, const QuerySummary& queries) {
   std::string missing = incomplete(row);
   if (!missing.empty() || !is_saturated(suite.systems[row.system], queries)) return missing;
@@ -129,7 +129,7 @@ Json table2_json(const Suite& suite, std::span<const CategoryRow> rows) {
         table.number(page_column(column), column.measured(s));
       table.text({"remark", "remark"}, remark_on(suite, row, s));
     }
-  if (table.rows() == 0) return nullptr;  // no queries were asked
+  if (table.rows() == 0) return nullptr;  // no queries
   for (const PublishedRow& row : published) {
     begin_published(table, row.system);
     for (const Table2Column& column : kTable2Columns)

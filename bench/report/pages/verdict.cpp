@@ -22,7 +22,7 @@ bool is_share(const Comparison& c) {
   return c.what.unit.empty();
 }
 
-/// A value as it is shown: in percentage points or mm.
+/// A value in the unit in which it is shown: percentage points or mm.
 double shown(const Comparison& c, double value) {
   return (is_share(c) ? 100 : 1000) * value;
 }
@@ -36,7 +36,7 @@ std::string amount(const Comparison& c, double value, bool with_unit = true) {
   return fmt::format("{:+.2f}{}", scaled, unit);
 }
 
-/// What the pairs are: "149 queries", "12 environments".
+/// The number of pairs and what they are: "149 queries", "12 environments".
 std::string pairs_text(const Comparison& c, bool over_scenes) {
   if (c.clusters > 0)
     return fmt::format("{} in {}", counted(c.pairs, "query", "queries"),
@@ -62,7 +62,7 @@ std::string needed_text(const Comparison& c, bool over_scenes) {
                      needed_pairs(c, *needed, over_scenes));
 }
 
-/// Whether both systems do so well that no difference could show.
+/// Whether both systems do so well that no difference could be detected.
 bool both_answer_all(std::span<const Row> rows, const Judged& j, const Suite& suite) {
   if (j.comparison.what.measure != name(suite.measure)) return false;
   const auto share = [&](std::size_t system) {
@@ -82,8 +82,8 @@ bool both_answer_all(std::span<const Row> rows, const Judged& j, const Suite& su
   return share(j.systems.first) > kSaturated && share(j.systems.second) > kSaturated;
 }
 
-/// What is compared, without a kind of labels that neither system sees, and without the unit that
-/// the amount has.
+/// What is compared, as text. The kind of labels is left out if neither system sees labels. The
+/// unit is left out because the amount already has it.
 std::string compared(const Suite& suite, const SystemPair& systems, const Comparison& c) {
   Compared what = c.what;
   what.unit.clear();
@@ -109,8 +109,8 @@ std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows) {
             {family.systems, family.level, suite.environments[family.environment].name, c});
   }
   for (Judged& j : all) j.saturated = both_answer_all(rows, j, suite);
-  // First the family, led by the suite's measure; then what is shown alongside; last what has no
-  // pairs.
+  // The family comes first, led by the suite's measure; then the comparisons that are shown
+  // alongside; and last those without pairs.
   std::ranges::stable_sort(all, {}, [&](const Judged& j) {
     const Comparison& c = j.comparison;
     return std::array{c.pairs == 0, !c.in_family, c.what.measure != name(suite.measure)};

@@ -12,29 +12,31 @@
 
 namespace mh {
 
-/// How many pairs (queries, scenes or clusters) would decide a comparison with 80 % power at the
-/// 5 % level if the true difference is the observed one: the detectable difference shrinks with the
-/// square root of their number. Absent if no difference was observed or nothing can be detected.
+/// How many pairs (queries, scenes or clusters) would decide a comparison with 80 % power at the 5
+/// % level if the true difference is the observed one: the detectable difference shrinks with the
+/// square root of the number of pairs. Absent if no difference was observed or nothing can be
+/// detected.
 std::optional<double> pairs_to_decide(const Comparison& comparison);
 
-/// A comparison, with the systems, level and environment that it is about.
+/// A comparison with its systems, level and environment.
 struct Judged {
   SystemPair systems;
   std::size_t level = 0;
-  std::string environment = {};  ///< empty: over all of them
+  std::string environment = {};  ///< empty: over all environments
   Comparison comparison;
-  bool saturated = false;  ///< both systems do so well that no difference can show
+  bool saturated = false;  ///< both systems do so well that no difference can be detected
 };
 
-/// Every comparison of a suite at its first parameter point, over scenes where it has several;
-/// those by the suite's measure first.
+/// Every comparison of a suite at its first parameter point, over scenes if the suite has several.
+/// Comparisons by the suite's measure come first.
 std::vector<Judged> judged(const Suite& suite, std::span<const Row> rows);
 
-/// A comparison in figures: the difference with its interval, the pairs that it is over and, if no
-/// difference was shown, how many pairs would decide it.
+/// The figures of a comparison as text: the difference with its interval, the number of pairs and,
+/// if no difference was shown, how many pairs would decide it.
 std::string finding(const Suite& suite, const Judged& judged);
 
-/// Headlines (headlines.hpp), and every comparison: as a list for charts, and as a table.
+/// The headlines (headlines.hpp), and every comparison, once as a list for charts and once as a
+/// table.
 nlohmann::ordered_json verdicts_json(const Suite& suite, std::span<const Row> rows);
 
 }  // namespace mh

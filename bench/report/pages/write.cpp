@@ -29,9 +29,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kBundle[] = {"index.html", "app.js", "app.css", "replay.js", "LICENSES.txt"};
-constexpr std::size_t kRunsOfFile = 40;  ///< runs whose paths share a file
+constexpr std::size_t kRunsOfFile = 40;  ///< number of runs whose paths share a file
 
-/// Writes pieces of data and counts them.
+/// Writes pieces of data into files and counts them.
 class Pieces {
  public:
   explicit Pieces(const fs::path& folder) : folder_(folder) { make_output_folder(folder); }
@@ -61,7 +61,7 @@ void remove_earlier_data(const fs::path& folder) {
       fs::remove(entry.path(), error);
 }
 
-/// Why the figures are not those of the whole suite: a reader must know this first.
+/// Reasons why the figures may not be those of the whole suite, which a reader must know first.
 Json warnings_json(const PagesSource& source) {
   Json warnings = Json::array();
   if (!source.problem.empty()) warnings.push_back(source.problem);
@@ -92,7 +92,7 @@ Json warnings_json(const PagesSource& source) {
   return warnings;
 }
 
-/// How the figures were made, for those who want to know.
+/// Notes on how the figures were made, for readers who want to know.
 Json notes_json(const Suite& suite) {
   Json notes = Json::array();
   if (suite.trials == 1)
@@ -248,7 +248,7 @@ WrittenPages write_pages(const fs::path& out, std::span<const PagesSource> sourc
   WrittenPages written{out / "index.html", pieces.files(), pieces.bytes()};
   for (const char* file : kBundle) {
     const std::string content = read_file(bundle_folder() / file);
-    write_atomically(out / file, content);  // after the data that index.html needs
+    write_atomically(out / file, content);  // after the data, which index.html needs
     written.bytes += content.size();
     ++written.files;
   }

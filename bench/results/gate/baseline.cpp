@@ -56,7 +56,7 @@ std::vector<std::string> changed_settings(const Baseline& before, const Baseline
     return all.contains(key) ? all.at(key).dump() : std::string("none");
   };
   const auto note = [&](const std::string& key) {
-    std::string path = key.substr(1);  // of a JSON pointer, in which ~1 is a slash and ~0 a tilde
+    std::string path = key.substr(1);  // a JSON pointer: ~1 stands for a slash, ~0 for a tilde
     for (const auto& [escape, meant] : {std::pair("~1", "/"), std::pair("~0", "~")})
       for (auto at = path.find(escape); at != std::string::npos; at = path.find(escape, at + 1))
         path.replace(at, 2, meant);

@@ -16,8 +16,9 @@ inline constexpr std::string_view kBaselineFormat = "modelhouse-baseline-1";
 /// The committed figures that later runs are compared with.
 struct Baseline {
   std::string suite;         ///< its name
-  std::string suite_digest;  ///< of its runs' scenes, tours, systems, seeds, protocol
-  /// Program and machine that produced the figures: if all of it is equal, the bits must be too.
+  std::string suite_digest;  ///< digest of its runs' scenes, tours, systems, seeds, protocol
+  /// Program and machine that produced the figures. If both are the same in a later run, its
+  /// results must be equal to the bit.
   nlohmann::ordered_json origin;
   /// Settings that a change may alter along with the program (see gate_settings). Null in a
   /// baseline written by an older program.
@@ -39,8 +40,8 @@ bool is_baseline(const std::string& text);
 /// format.
 Baseline load_baseline(const std::filesystem::path& file);
 
-/// @throws InputError if the baseline was made from another suite, or under the same name from
-/// other scenes, tours, systems, seeds or protocol.
+/// @throws InputError if the baseline was made from a suite with a different name, or with the same
+/// name but different scenes, tours, systems, seeds or protocol.
 void check_suite(const Baseline& baseline, const std::filesystem::path& file,
                  const std::string& suite, const std::string& suite_digest);
 

@@ -14,8 +14,8 @@ struct RunFigures {
   std::string system;  ///< system, labels and level: "semantic-exact-pepper"
   std::uint64_t seed = 0;
   std::string digest;  ///< of images, poses and trajectory: equal bits, equal digest
-  std::map<std::string, std::optional<double>, std::less<>> values = {};  ///< by metric's name
-  bool repeatable = true;  ///< whether its system is; not stored in a baseline
+  std::map<std::string, std::optional<double>, std::less<>> values = {};  ///< by the metric's name
+  bool repeatable = true;  ///< whether its system is repeatable; not stored in a baseline
 };
 
 }  // namespace mh

@@ -30,8 +30,8 @@ std::string run_digest(const RunResult& run) {
   return hex(sum);
 }
 
-/// "what=digest of content" for something that a run reads and for every file that it names; moving
-/// a file changes nothing.
+/// "what=digest of content" for an input of a run and for every file that the input refers to. File
+/// locations are left out, so moving a file changes nothing.
 std::string content(std::string_view what, const std::filesystem::path& source,
                     const InputDigest& input) {
   if (is_generated(source)) {
@@ -48,7 +48,7 @@ std::string content(std::string_view what, const std::filesystem::path& source,
 
 /// The contents of the sources of an environment or variant. An absent source adds nothing, so that
 /// suites keep their baselines when a new kind of source is introduced.
-/// @param input_of  returns a source's name among the inputs
+/// @param input_of  returns the name that a source has among the inputs
 template <class Of, class InputOf>
 std::string contents(const Of& of, const std::vector<InputDigest>& inputs,
                      const InputOf& input_of) {
@@ -61,7 +61,7 @@ std::string contents(const Of& of, const std::vector<InputDigest>& inputs,
   return text;
 }
 
-/// Settings of episodes, and what their variants are made of.
+/// The settings of episodes, and the contents of the sources of their variants.
 std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
   nlohmann::ordered_json json = json_of(episodes);
   json.erase("variants");
@@ -75,7 +75,7 @@ std::string episodes_text(const EpisodesSpec& episodes, InputReader& reader) {
   return text;
 }
 
-/// Everything that determines labels; only the name of a kind without settings.
+/// Everything that determines labels; for a kind of labels without settings, just its name.
 std::string labels_text(const Labels& labels, InputReader& reader) {
   std::string text = fmt::format("labels={};", name(labels));
   if (labels.dials) text += fmt::format("dials={};", json_of(*labels.dials).dump());

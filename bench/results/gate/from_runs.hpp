@@ -20,8 +20,8 @@ std::vector<RunFigures> figures(std::span<const RunResult> runs);
 /// Digest of what the runs of a suite consist of: places (by the content of all files read for
 /// them), systems, labels, seeds and protocol. What a change under test may alter (the method's
 /// settings, the vocabulary, tolerances) is excluded.
-/// @param inputs  reads those files, or has already read them for the same runs, so that all are
-/// consistent
+/// @param inputs  reads the files, or has already read them for the same runs, so that the digest
+/// and the runs use the same contents
 std::string gate_suite_digest(const Suite& suite, InputReader& inputs);
 
 /// Settings that may change in the same commit as the program: the section `slam`, systems' own
@@ -29,8 +29,8 @@ std::string gate_suite_digest(const Suite& suite, InputReader& inputs);
 /// different bits are expected.
 nlohmann::ordered_json gate_settings(const Suite& suite, InputReader& inputs);
 
-/// Program and machine: digest of the executable, processor and the CPU features by which libraries
-/// choose their instructions.
+/// Program and machine: digest of the executable, processor model, and the CPU features by which
+/// libraries choose their instructions.
 nlohmann::ordered_json gate_origin();
 
 }  // namespace mh

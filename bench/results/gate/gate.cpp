@@ -15,12 +15,13 @@ namespace mh {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kPower80 = 0.84;           // normal quantile of 80 % power
-constexpr double kSure95 = 1.86;            // Student's t, one-sided, for two sets of kFewestRuns
+constexpr double kPower80 = 0.84;  // normal quantile of 80 % power
+constexpr double kSure95 = 1.86;   // Student's t, one-sided 95 %, for two sets of kFewestRuns
 constexpr double kMedianOverMean = 1.2533;  // ratio of standard errors: sqrt(pi / 2)
-constexpr double kRounding = 1e-12;         // sums of shares are equal to within this
+constexpr double kRounding = 1e-12;  // sums of shares may differ by this much due to rounding
 
-/// Runs of one scenario and system: before paired with after, by seed.
+/// The runs of one scenario and system: each earlier run is paired with the later run of the same
+/// seed.
 struct Pairing {
   std::string scenario, system;
   std::vector<std::pair<const RunFigures*, const RunFigures*>> runs;
@@ -135,7 +136,8 @@ const Tolerance* tolerance_for(const GateConfig& config, std::string_view scenar
   return found == config.tolerances.end() ? nullptr : &found->second;
 }
 
-/// Whether this measure applies: a scenario without a second tour has no queries of that set.
+/// Whether the measure applies to a scenario: without a second tour, for example, there are no
+/// queries of that set.
 bool is_asked(const Pairing& pairing, const Metric& measure) {
   return std::ranges::any_of(pairing.runs, [&](const auto& pair) {
     return pair.first->values.contains(measure.name) || pair.second->values.contains(measure.name);

@@ -12,7 +12,7 @@
 
 namespace mh {
 
-/// Trials needed if a system is not repeatable.
+/// Number of trials needed if a system is not repeatable.
 inline constexpr int kFewestRuns = 5;
 
 /// How one measure of one system changed in one scenario.
@@ -22,31 +22,32 @@ std::string_view name(ChangeVerdict verdict);
 struct Change {
   std::string scenario, system;
   const Metric* measure = nullptr;
-  std::size_t pairs = 0;                          ///< seeds
+  std::size_t pairs = 0;                          ///< number of seeds
   std::optional<double> before = {}, after = {};  ///< medians over the seeds that have the figure
-  /// Median over the seeds of after - before. Infinite if the figure disappeared or appeared in
+  /// Median of after - before over the seeds. Infinite if the figure disappeared or appeared for
   /// most seeds: a missing figure is treated as the worst possible.
   double change = 0;
   double tolerance = 0;
   /// A true worsening of this size is detected with 80 % power: tolerance + 0.84 standard errors of
-  /// the median paired change. The standard error is that of chance alone for a different but no
-  /// worse program: before and after are drawn independently, with the spread over the baseline's
-  /// seeds, so it is 1.2533 sqrt(2) s / sqrt(seeds). For shares, at least the next step of 1 /
-  /// queries above the tolerance. If a system is not repeatable, the spread is that over the runs
-  /// of both, and the change must also exceed the tolerance by 1.86 standard errors to be more than
-  /// chance; `detectable` includes that.
+  /// the median paired change. The standard error assumes a program that is different but no worse:
+  /// before and after then differ by chance alone, as independent draws with the spread s over the
+  /// baseline's seeds, so it is 1.2533 sqrt(2) s / sqrt(seeds). For shares, `detectable` is at
+  /// least the next multiple of 1 / queries above the tolerance. If a system is not repeatable, the
+  /// spread is computed from the runs of both, and the change must also exceed the tolerance by
+  /// 1.86 standard errors to count as more than chance; `detectable` includes this.
   double detectable = 0;
   bool repeatable = true;
   ChangeVerdict verdict = ChangeVerdict::kSame;
 };
 
 struct GateResult {
-  std::vector<Change> changes;  ///< by scenario and system in the baseline's order, then measure
+  std::vector<Change> changes;  ///< in the baseline's order of scenario and system, then by measure
   std::size_t runs = 0;
   std::size_t identical = 0;              ///< runs whose digest equals the baseline's
-  std::vector<std::string> unrepeatable;  ///< runs that differ on the same program and machine,
-                                          ///< of systems that should repeat
-  /// Measures with a tolerance but no figure, before or now: "corridor, plain-pepper: ate_rmse_m".
+  std::vector<std::string> unrepeatable;  ///< runs of repeatable systems that differ although
+                                          ///< program and machine are the same
+  /// Measures with a tolerance for which neither the baseline nor the current runs have a figure:
+  /// "corridor, plain-pepper: ate_rmse_m".
   std::vector<std::string> not_measured = {};
   bool same_origin = false;  ///< program, machine and settings are those of the baseline
   std::vector<std::string> changed_settings = {};  ///< settings that differ from the baseline's

@@ -12,7 +12,8 @@
 
 namespace mh {
 
-/// How our JUnit XML begins: files of other programs are left alone.
+/// The beginning of our JUnit XML; files that begin differently belong to other programs and are
+/// left alone.
 inline constexpr std::string_view kJunitHead =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- modelhouse check -->\n";
 
