@@ -94,7 +94,7 @@ std::uint64_t bytes_per_pixel(std::string_view bytes) {
 
 /// Decodes a JPEG or PNG; empty if the bytes are neither, or if decode_image() refuses them.
 cv::Mat decode(std::string_view bytes) {
-  if (!announced_size(bytes)) return {};
+  if (!declared_size(bytes)) return {};
   try {
     return decode_image(bytes);
   } catch (const InputError&) {
@@ -110,7 +110,7 @@ std::string encode(const char* ending, const cv::Mat& image, const std::vector<i
 
 }  // namespace
 
-std::optional<ImageSize> announced_size(std::string_view bytes) {
+std::optional<ImageSize> declared_size(std::string_view bytes) {
   if (bytes.size() > std::numeric_limits<int>::max()) return std::nullopt;
   if (bytes.starts_with("\xff\xd8")) return jpeg_size(bytes);
   if (bytes.starts_with("\x89PNG\r\n\x1a\n") && bytes.size() >= 24)
@@ -148,7 +148,7 @@ bool claims_too_much(std::string_view bytes) {
   // An image of one color is the extreme case: a byte of deflate expands to at most 1032 bytes, and
   // a JPEG's block of 256 pixels takes a few bytes.
   constexpr std::uint64_t kMostPixels = 1U << 28, kMostPixelsPerByte = 2048, kMostBytes = 1U << 30;
-  const auto size = announced_size(bytes);
+  const auto size = declared_size(bytes);
   if (!size) return false;
   const std::uint64_t pixels = std::uint64_t{size->width} * size->height;
   return pixels > kMostPixels || pixels / kMostPixelsPerByte > bytes.size() ||
@@ -161,7 +161,7 @@ cv::Mat decode_image(std::string_view bytes, ImageForm form) {
                                                 : cv::IMREAD_GRAYSCALE;
   if (const char* fault = image_fault(bytes)) throw InputError(fault);
   if (claims_too_much(bytes)) {
-    const auto size = announced_size(bytes);
+    const auto size = declared_size(bytes);
     throw InputError(
         fmt::format("declares {} x {} pixels, more than its {} bytes can hold or the limit allows",
                     size->width, size->height, bytes.size()));

@@ -22,7 +22,7 @@ struct ImageSize {
 
 /// The size that a JPEG or PNG header declares, without decoding it; nullopt if the bytes are
 /// neither.
-std::optional<ImageSize> announced_size(std::string_view bytes);
+std::optional<ImageSize> declared_size(std::string_view bytes);
 
 /// What is wrong with a JPEG or PNG as a file, found without decoding it: "is truncated", a PNG's
 /// wrong checksum, or the kind of the image if it is not supported; nullptr if nothing is wrong.

@@ -59,20 +59,20 @@ bool is_version_2(const Json& gltf) {
 }
 
 /// @returns the content of the additional buffer; empty if there is none
-std::string mend(Json& gltf, const std::filesystem::path& file, std::string_view body,
-                 std::vector<std::string>& warnings) {
+std::string repair(Json& gltf, const std::filesystem::path& file, std::string_view body,
+                   std::vector<std::string>& warnings) {
   gltf::drop_movement(gltf);
   if (!is_version_2(gltf)) return {};
   gltf::check_extensions(gltf, file, warnings);
   gltf::decode_uris(gltf, file.parent_path());
   gltf::choose_images(gltf);
-  gltf::mend_materials(gltf);
+  gltf::repair_materials(gltf);
   gltf::drop_hidden(gltf);
   gltf::Data data(gltf, file, body);
   data.decompress_views();
   gltf::decompress_primitives(gltf, data);
   gltf::place_instances(gltf, data);
-  gltf::mend_primitives(gltf, data, gltf::take_uv_placements(gltf, file, warnings), warnings);
+  gltf::repair_primitives(gltf, data, gltf::take_uv_placements(gltf, file, warnings), warnings);
   return data.finish();
 }
 
@@ -113,7 +113,7 @@ std::optional<RepairedGltf> repaired_gltf(std::string_view bytes, const std::fil
   RepairedGltf repaired;
   std::vector<std::string> lines;
   try {
-    repaired.decoded = mend(gltf, file, body_of(chunks), lines);
+    repaired.decoded = repair(gltf, file, body_of(chunks), lines);
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: is not valid glTF: {}", file.string(), error.what()));
   }

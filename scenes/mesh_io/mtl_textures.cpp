@@ -13,7 +13,7 @@
 namespace mh {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kWhitespace = " \t\r";
 
 struct Option {
   std::string_view name;
@@ -38,8 +38,8 @@ constexpr std::array<Option, 14> kOptions = {{{"-blendu", 1, false},
 
 std::vector<std::string_view> words_of(std::string_view text) {
   std::vector<std::string_view> words;
-  for (std::size_t at = 0; (at = text.find_first_not_of(kBlanks, at)) != text.npos;) {
-    const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+  for (std::size_t at = 0; (at = text.find_first_not_of(kWhitespace, at)) != text.npos;) {
+    const std::size_t end = std::min(text.find_first_of(kWhitespace, at), text.size());
     words.push_back(text.substr(at, end - at));
     at = end;
   }
@@ -117,7 +117,7 @@ class Reader {
     const std::string_view rest =
         line.substr(static_cast<std::size_t>(words[1].data() - line.data()));
     if (key == "newmtl") {
-      material_ = rest.substr(0, rest.find_last_not_of(kBlanks) + 1);
+      material_ = rest.substr(0, rest.find_last_not_of(kWhitespace) + 1);
       base_.reset();
     }
     const bool is_base = key == "map_kd";

@@ -103,7 +103,7 @@ cv::Mat read_frame_image(const fs::path& file, std::initializer_list<int> types,
       throw InputError(fmt::format("{}: is {} x {}, the camera has {} x {}", file.string(), width,
                                    height, camera.width_px, camera.height_px));
   };
-  if (const auto size = announced_size(bytes)) check_size(size->width, size->height);
+  if (const auto size = declared_size(bytes)) check_size(size->width, size->height);
   cv::Mat image;
   try {
     image = decode_image(bytes);

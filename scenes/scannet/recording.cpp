@@ -107,7 +107,7 @@ class ExtractedFolder : public Recording {
 
   ImageSize announced(const NumberedFiles& files) const {
     const fs::path file = files.file(numbers_.front());
-    const auto size = announced_size(read_file(file));
+    const auto size = declared_size(read_file(file));
     constexpr std::uint32_t kLongestSide_px = 16384;
     if (!size || size->width == 0 || size->height == 0 || size->width > kLongestSide_px ||
         size->height > kLongestSide_px)

@@ -94,7 +94,7 @@ class SensFile : public Recording {
     const std::uint64_t frames = read_header(cursor);
     read_frames(cursor, frames);
     if (frames_.empty()) throw InputError(fmt::format("{}: holds no frame", name_));
-    mend_stamps();
+    repair_stamps();
     note_faulty_poses();
     note_bytes_left(cursor);
     add_lost(frames);
@@ -205,7 +205,7 @@ class SensFile : public Recording {
   }
 
   /// Some recordings have no stamps, or stamps that do not increase: 30 Hz is assumed for them.
-  void mend_stamps() {
+  void repair_stamps() {
     const auto back = std::ranges::adjacent_find(
         frames_, [](Stamp a, Stamp b) { return a >= b; }, &FrameRecord::stamp_ns);
     if (back == frames_.end()) return;
@@ -247,7 +247,7 @@ class SensFile : public Recording {
       std::memcpy(static_cast<void*>(image.data()), record.color.data(), record.color.size());
       return image;
     }
-    const auto size = announced_size(record.color);
+    const auto size = declared_size(record.color);
     if (!size) fail(index, "the color image is neither JPEG nor PNG");
     if (size->width != static_cast<std::uint32_t>(lens.width_px) ||
         size->height != static_cast<std::uint32_t>(lens.height_px))

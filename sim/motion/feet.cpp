@@ -11,7 +11,7 @@
 #include "sim/motion/signal.hpp"
 #include "slam/io/error.hpp"
 
-namespace mh::by_hand {
+namespace mh::handheld {
 namespace {
 
 using Eigen::Vector2d;
@@ -118,4 +118,4 @@ Feet feet_on(const Ground& ground, const HandheldConfig& config, std::size_t fra
   return feet;
 }
 
-}  // namespace mh::by_hand
+}  // namespace mh::handheld

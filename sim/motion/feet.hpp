@@ -6,11 +6,11 @@
 
 #include <Eigen/Core>
 
-#include "sim/motion/by_hand.hpp"
 #include "sim/motion/floor_grid.hpp"
+#include "sim/motion/handheld_scan.hpp"
 #include "slam/core/random.hpp"
 
-namespace mh::by_hand {
+namespace mh::handheld {
 
 inline constexpr double kHead_m = 1.9;  ///< anything that hangs higher is not in the way
 
@@ -37,4 +37,4 @@ struct Feet {
 Feet feet_on(const Ground& ground, const HandheldConfig& config, std::size_t frames, double rate_hz,
              RandomStream bouts, std::uint64_t places);
 
-}  // namespace mh::by_hand
+}  // namespace mh::handheld

@@ -10,7 +10,7 @@
 #include "sim/motion/signal.hpp"
 #include "slam/core/angles.hpp"
 
-namespace mh::by_hand {
+namespace mh::handheld {
 namespace {
 
 using Eigen::Vector2d;
@@ -222,4 +222,4 @@ Looks looks_along(const Scene& scene, const std::vector<Vector2d>& feet_m, const
   return looks;
 }
 
-}  // namespace mh::by_hand
+}  // namespace mh::handheld

@@ -6,12 +6,12 @@
 #include <Eigen/Core>
 
 #include "scenes/scene.hpp"
-#include "sim/motion/by_hand.hpp"
 #include "sim/motion/feet.hpp"
+#include "sim/motion/handheld_scan.hpp"
 #include "slam/core/camera.hpp"
 #include "slam/core/random.hpp"
 
-namespace mh::by_hand {
+namespace mh::handheld {
 
 /// Where the camera looks in each frame.
 struct Looks {
@@ -22,4 +22,4 @@ Looks looks_along(const Scene& scene, const std::vector<Eigen::Vector2d>& feet_m
                   const Ground& ground, const Camera& camera, const HandheldConfig& config,
                   RandomStream stream);
 
-}  // namespace mh::by_hand
+}  // namespace mh::handheld

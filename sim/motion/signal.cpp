@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mh::by_hand {
+namespace mh::handheld {
 
 BandNoise::BandNoise(RandomStream stream, double rms, double low_hz, double high_hz) {
   for (std::size_t i = 0; i < sines_.size(); ++i) {
@@ -41,4 +41,4 @@ std::vector<double> smoothed(const std::vector<double>& values, double sigma_fra
   return result;
 }
 
-}  // namespace mh::by_hand
+}  // namespace mh::handheld

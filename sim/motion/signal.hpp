@@ -7,7 +7,7 @@
 
 #include "slam/core/random.hpp"
 
-namespace mh::by_hand {
+namespace mh::handheld {
 
 /// A signal of a given root mean square with its power spread evenly over a band: 16 sines of
 /// seeded frequency and phase.
@@ -24,4 +24,4 @@ class BandNoise {
 /// Smooths with a Gaussian window; the end values are repeated beyond the ends.
 std::vector<double> smoothed(const std::vector<double>& values, double sigma_frames);
 
-}  // namespace mh::by_hand
+}  // namespace mh::handheld

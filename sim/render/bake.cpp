@@ -11,8 +11,8 @@
 
 #include <xxhash.h>
 
-#include "sim/render/bake_mend.hpp"
 #include "sim/render/bake_points.hpp"
+#include "sim/render/bake_repair.hpp"
 #include "sim/render/color.hpp"
 #include "sim/render/embree_scene.hpp"
 #include "sim/render/parallel.hpp"
@@ -132,7 +132,7 @@ class Baker {
         inside[v] = gathered.inside;
       });
       indirect = std::move(next);
-      mend(inside, {points_, neighbors_}, config_.smoothing, direct, indirect);
+      repair(inside, {points_, neighbors_}, config_.smoothing, direct, indirect);
     }
     leaving_ = light_leaving(direct, indirect);
     Colors light(count);

@@ -17,8 +17,8 @@
 #include "scenes/floor.hpp"
 #include "scenes/generate/generate.hpp"
 #include "sim/motion/automatic.hpp"
-#include "sim/motion/by_hand.hpp"
 #include "sim/motion/commands.hpp"
+#include "sim/motion/handheld_scan.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/interpolate.hpp"
 #include "slam/core/path_length.hpp"
@@ -58,16 +58,16 @@ Motion parse(const std::string& motion) {
     if (colon == std::string_view::npos) break;
     rest.remove_prefix(colon + 1);
   }
-  const bool by_hand = parts[0] == "handheld", survey = parts[0] == "survey";
-  if (!by_hand && !survey && parts[0] != "auto") {
+  const bool handheld = parts[0] == "handheld", survey = parts[0] == "survey";
+  if (!handheld && !survey && parts[0] != "auto") {
     if (text.size() != motion.size())
       throw InputError(fmt::format("motion '{}': '{}' is neither 'auto', 'survey' nor 'handheld'",
                                    motion, parts[0]));
     return {.file = motion};
   }
-  if (parts.size() > (by_hand ? 3U : 2U))
+  if (parts.size() > (handheld ? 3U : 2U))
     throw InputError(fmt::format("motion '{}': unexpected part '{}'", motion, parts.back()));
-  Motion result{.kind = by_hand ? Motion::Kind::kHandheld : Motion::Kind::kAuto, .survey = survey};
+  Motion result{.kind = handheld ? Motion::Kind::kHandheld : Motion::Kind::kAuto, .survey = survey};
   if (parts.size() > 1) result.seed = number(motion, parts[1], "seed");
   if (parts.size() > 2) {
     result.frames = number(motion, parts[2], "number of frames");
@@ -93,7 +93,7 @@ DrivenPath travel_on_level(const Scene& scene, const Robot& robot, const Motion&
                    automatic_tour(scene, robot, {.seed = motion.seed, .survey = motion.survey}),
                    others);
     case Motion::Kind::kHandheld:
-      return scan_by_hand(scene, robot.camera, {.seed = motion.seed, .frames = motion.frames});
+      return handheld_scan(scene, robot.camera, {.seed = motion.seed, .frames = motion.frames});
     case Motion::Kind::kReplay: {
       std::vector<std::string> told_by_note_on;
       return replay(scene, robot.camera, read_trajectory(motion.file, &told_by_note_on),

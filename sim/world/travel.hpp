@@ -22,7 +22,7 @@ inline constexpr std::array<const char*, 3> kMadeMotions{"auto", "survey", "hand
 /// - a file: the tour in it (load_tour);
 /// - `auto[:SEED]`: a tour through all of the floor (automatic_tour);
 /// - `survey[:SEED]`: the same, looking around at every place;
-/// - `handheld[:SEED[:FRAMES]]`: a handheld scan (scan_by_hand), 300 to 1,500 frames depending on
+/// - `handheld[:SEED[:FRAMES]]`: a handheld scan (handheld_scan), 300 to 1,500 frames depending on
 ///   the size of the place;
 /// - `replay:FILE`: a recorded trajectory in TUM's format (replay);
 /// - `commands:FILE`: a script of velocity commands (load_commands).

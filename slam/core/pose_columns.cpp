@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n\v\f";
+constexpr std::string_view kWhitespace = " \t\r\n\v\f";
 
 /// A column's name in lower case, and the unit after it in brackets.
 struct Name {
@@ -28,13 +28,13 @@ std::string_view trimmed(std::string_view text, std::string_view what) {
 }
 
 std::vector<Name> names_in(std::string_view line, char separator) {
-  line = trimmed(line, kBlanks);
+  line = trimmed(line, kWhitespace);
   if (line.starts_with('#') || line.starts_with('%')) line.remove_prefix(1);
   std::vector<Name> names;
   for (const std::string_view word : words_of_line(line, separator)) {
     const std::size_t bracket = std::min(word.find_first_of("[("), word.size());
     const std::string unit = lower_case(std::string(trimmed(word.substr(bracket), "[]() ")));
-    const std::string_view text = trimmed(word.substr(0, bracket), kBlanks);
+    const std::string_view text = trimmed(word.substr(0, bracket), kWhitespace);
     if (bracket == 0 && !word.empty()) {  // a unit after a space: "tx [m]"
       if (!names.empty()) names.back().unit = unit;
       continue;
@@ -139,13 +139,13 @@ std::string listed(std::span<const Name> names) {
 
 std::vector<std::string_view> words_of_line(std::string_view line, char separator) {
   std::vector<std::string_view> words;
-  line = trimmed(line, kBlanks);
+  line = trimmed(line, kWhitespace);
   while (!line.empty()) {
     const std::size_t end = std::min(
-        separator == ' ' ? line.find_first_of(kBlanks) : line.find(separator), line.size());
-    words.push_back(trimmed(trimmed(line.substr(0, end), kBlanks), "\""));
+        separator == ' ' ? line.find_first_of(kWhitespace) : line.find(separator), line.size());
+    words.push_back(trimmed(trimmed(line.substr(0, end), kWhitespace), "\""));
     line.remove_prefix(std::min(end + 1, line.size()));
-    line = trimmed(line, kBlanks);
+    line = trimmed(line, kWhitespace);
   }
   return words;
 }
@@ -153,7 +153,7 @@ std::vector<std::string_view> words_of_line(std::string_view line, char separato
 std::optional<PoseColumns> columns_named_by(std::string_view line, char separator,
                                             const PoseColumns& usual, std::size_t values) {
   std::vector<Name> names = names_in(line, separator);
-  const bool is_comment = trimmed(line, kBlanks).starts_with('#');
+  const bool is_comment = trimmed(line, kWhitespace).starts_with('#');
   auto pose = pose_in(names);
   if (const std::size_t words = names.size() - std::min(names.size(), values);
       pose && words > 0 && words < std::ranges::min(*pose)) {  // as in "# format: timestamp tx ..."

@@ -217,13 +217,13 @@ TEST_F(SensFile, AJpegThatClaimsAnotherSizeIsNotDecoded) {
   const std::size_t frame_header = jpeg.find("\xff\xc0");
   ASSERT_NE(frame_header, jpeg.npos);
   jpeg[frame_header + 5] = '\x7f';  // height: 32 thousand rows
-  const auto size = announced_size(jpeg);
+  const auto size = declared_size(jpeg);
   ASSERT_TRUE(size);
   EXPECT_GT(size->height, 32000U);
   jpeg[frame_header + 7] = '\x7f';
   EXPECT_FALSE(decode_color(jpeg));  // 10^9 pixels
-  EXPECT_FALSE(announced_size("GIF89a"));
-  EXPECT_FALSE(announced_size("\xff\xd8\xff"));
+  EXPECT_FALSE(declared_size("GIF89a"));
+  EXPECT_FALSE(declared_size("\xff\xd8\xff"));
 }
 
 TEST_F(SensFile, WithoutIncreasingStampsFramesCountAtThirtyHertz) {

@@ -12,8 +12,8 @@
 
 #include "bench/protocol/world/visible_surface.hpp"
 #include "scenes/floor.hpp"
-#include "sim/motion/by_hand.hpp"
 #include "sim/motion/floor_grid.hpp"
+#include "sim/motion/handheld_scan.hpp"
 #include "sim/world/simulated_sequence.hpp"
 #include "slam/core/random.hpp"
 #include "slam/io/error.hpp"
@@ -25,7 +25,7 @@ constexpr std::uint64_t kGraded = 0x677261646564;  // own random stream for grad
 enum StreamName : std::uint64_t { kPlaces = 1, kScans = 2, kOrder = 3 };
 constexpr double kApart = 0.1;               // m + rad between any two queries
 constexpr std::size_t kDrawsPerQuery = 500;  // cells that need more draws stay incomplete
-constexpr std::size_t kScansByHand = 8;
+constexpr std::size_t kHandheldScans = 8;
 constexpr double kLead_s = 2.0;     // after which the exposure control has settled
 constexpr std::size_t kBehind = 3;  // frames after the query, for its rolling shutter
 
@@ -86,9 +86,9 @@ class OfScans : public Source {
  public:
   OfScans(const GradedPlace& place, RandomStream stream) {
     const LevelScene level(place.queried);
-    for (std::size_t k = 0; k < kScansByHand; ++k) {
+    for (std::size_t k = 0; k < kHandheldScans; ++k) {
       DrivenPath path =
-          scan_by_hand(*level, place.robot.camera, {.seed = stream.fork(kScans).bits(k) >> 1U});
+          handheld_scan(*level, place.robot.camera, {.seed = stream.fork(kScans).bits(k) >> 1U});
       for (TimedPose& pose : path.camera)
         pose.world_from_camera = level.world_from_level() * pose.world_from_camera;
       scans_.push_back(std::move(path.camera));
@@ -112,7 +112,7 @@ class OfScans : public Source {
 
 std::unique_ptr<Source> source_of(const GradedSpec& spec, const GradedPlace& place) {
   const RandomStream stream = RandomStream(spec.seed).fork(kGraded);
-  if (place.by_hand) return std::make_unique<OfScans>(place, stream);
+  if (place.handheld) return std::make_unique<OfScans>(place, stream);
   return std::make_unique<OnFloor>(place, stream.fork(kPlaces));
 }
 

@@ -37,7 +37,7 @@ struct GradedPlace {
   std::shared_ptr<const Renderer> mapped_renderer, queried_renderer;
   const Robot& robot;
   const Trajectory& offered;  ///< true poses of the frames offered for mapping
-  bool by_hand = false;       ///< the mapping was a handheld scan, not a drive
+  bool handheld = false;      ///< the mapping was a handheld scan, not a drive
 };
 
 /// Draws queries until each cell is full, or until so many have been drawn that continuing is

@@ -186,7 +186,7 @@ GradedQueries graded_queries(const RunSpec& spec, const SimulatedPlace& world) {
        .queried_renderer = world.query_renderer ? world.query_renderer : world.renderer,
        .robot = world.robot,
        .offered = offered,
-       .by_hand = !is_driven(spec.environment.mapping_tour)});
+       .handheld = !is_driven(spec.environment.mapping_tour)});
 }
 
 /// Wheel odometry along a path, with the head's joints read without error.

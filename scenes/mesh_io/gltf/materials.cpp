@@ -110,7 +110,7 @@ void choose_images(Json& gltf) {
   }
 }
 
-void mend_materials(Json& gltf) {
+void repair_materials(Json& gltf) {
   for (Json& material : list_of(gltf, "materials")) {
     replace_specular(material);
     multiply_emission(material);

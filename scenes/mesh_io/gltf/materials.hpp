@@ -19,7 +19,7 @@ void choose_images(Json& gltf);
 
 /// Converts what extensions state about color and emission to plain materials:
 /// KHR_materials_pbrSpecularGlossiness and KHR_materials_emissive_strength.
-void mend_materials(Json& gltf);
+void repair_materials(Json& gltf);
 
 /// Removes the texture placement from each material. @returns for each material, the placement of
 /// its base color's texture or, if it has none, of its emission's texture

@@ -10,12 +10,13 @@
 namespace mh::gltf {
 namespace {
 
-class Mender {
+class Repairer {
  public:
-  Mender(Data& data, const std::vector<UvPlacement>& placements, std::vector<std::string>& warnings)
+  Repairer(Data& data, const std::vector<UvPlacement>& placements,
+           std::vector<std::string>& warnings)
       : data_(data), placements_(placements), warnings_(warnings) {}
 
-  void mend(Json& primitive, Json& mesh) {
+  void repair(Json& primitive, Json& mesh) {
     if (!primitive.is_object() || !primitive.contains("attributes")) return;
     Json& attributes = primitive["attributes"];
     apply_targets(primitive, mesh, attributes);
@@ -127,11 +128,11 @@ class Mender {
 
 }  // namespace
 
-void mend_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
-                     std::vector<std::string>& warnings) {
-  Mender mender(data, placements, warnings);
+void repair_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
+                       std::vector<std::string>& warnings) {
+  Repairer repairer(data, placements, warnings);
   for (Json& mesh : list_of(gltf, "meshes"))
-    for (Json& primitive : list_of(mesh, "primitives")) mender.mend(primitive, mesh);
+    for (Json& primitive : list_of(mesh, "primitives")) repairer.repair(primitive, mesh);
 }
 
 }  // namespace mh::gltf

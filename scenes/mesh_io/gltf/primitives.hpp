@@ -24,7 +24,7 @@ struct UvPlacement {
 /// @param placements  the placement for each material, see take_uv_placements
 /// @param warnings    receives a line for each mesh that lacks the set of coordinates its material
 /// uses
-void mend_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
-                     std::vector<std::string>& warnings);
+void repair_primitives(Json& gltf, Data& data, const std::vector<UvPlacement>& placements,
+                       std::vector<std::string>& warnings);
 
 }  // namespace mh::gltf

@@ -38,7 +38,7 @@ void write_image(const std::filesystem::path& file, const cv::Mat& image,
 bool is_whole_image(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return false;
   const std::string bytes = read_file(file);
-  return announced_size(bytes) && image_fault(bytes) == nullptr;
+  return declared_size(bytes) && image_fault(bytes) == nullptr;
 }
 
 }  // namespace mh

@@ -177,7 +177,7 @@ void RosTopics::add_image(const MessageChannel& channel, std::string_view messag
         topic.encoding = m.format;
         std::string_view image = m.data;
         if (is_compressed_depth(m.format)) image.remove_prefix(std::min(image.size(), kDepthHead));
-        if (const auto size = announced_size(image)) set_size(topic, size->width, size->height);
+        if (const auto size = declared_size(image)) set_size(topic, size->width, size->height);
       }
     } else {
       auto m = ros::parsed<ros::Image>(message, *channel.wire);

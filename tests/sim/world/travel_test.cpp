@@ -95,7 +95,7 @@ TEST(Travel, FloorThatLiesHigherLiftsThePathAndNothingElse) {
   }
 }
 
-TEST(Travel, AScanByHandMayStateItsFrames) {
+TEST(Travel, AHandheldScanMayStateItsFrames) {
   EXPECT_EQ(frames_stated("handheld:3:450"), 450u);
   EXPECT_EQ(frames_stated("generated:handheld:3:450"), 450u);
   for (const char* motion : {"handheld", "handheld:3", "auto:3", "replay:x.tum", "tour.yaml"})

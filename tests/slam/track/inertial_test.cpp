@@ -18,7 +18,7 @@ using testing_support::FeatureWorld;
 constexpr Stamp kStep_ns = 33'333'333;
 
 /// The path of a handheld camera at 30 Hz, in a world whose z is up.
-Trajectory by_hand(std::size_t frames) {
+Trajectory handheld(std::size_t frames) {
   Trajectory path;
   for (std::size_t i = 0; i < frames; ++i) {
     const double t = static_cast<double>(i) / 30;
@@ -32,7 +32,7 @@ Trajectory by_hand(std::size_t frames) {
 
 /// The filter, given true poses with errors of 2 mm and 2 mrad.
 struct Fed {
-  Trajectory path = by_hand(400);
+  Trajectory path = handheld(400);
   std::vector<ImuReading> imu = imu_along(path, {}, RandomStream(7)).readings;
   Matrix6d measured = Matrix6d::Identity() * 4e-6;
   InertialMotion motion = InertialMotion::begin(imu.front(), measured, camera_from_world(0), {});

@@ -9,7 +9,7 @@
 
 #include "bench/protocol/world/visible_surface.hpp"
 #include "scenes/load.hpp"
-#include "sim/motion/by_hand.hpp"
+#include "sim/motion/handheld_scan.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/world/lit_scene.hpp"
 #include "sim/world/travel.hpp"
@@ -31,13 +31,13 @@ struct Room {
     const Trajectory path = travel(scene, robot, kScenarios + "tours/room.yaml").camera;
     for (std::size_t i = 0; i < path.size(); i += 5) mapped.push_back(path[i]);
   }
-  GradedPlace place(bool by_hand = false) const {
+  GradedPlace place(bool handheld = false) const {
     return {.queried = scene,
             .mapped_renderer = renderer,
             .queried_renderer = renderer,
             .robot = robot,
             .offered = mapped,
-            .by_hand = by_hand};
+            .handheld = handheld};
   }
 };
 const Room& room() {
@@ -79,7 +79,7 @@ TEST(Graded, AreAFunctionOfTheSeed) {
   EXPECT_NE(first(0), first(1));
 }
 
-TEST(Graded, OfScansByHandAreTheSamePosesAtEachSpeed) {
+TEST(Graded, OfHandheldScansAreTheSamePosesAtEachSpeed) {
   GradedSpec spec = kSpec;
   spec.distance_m = {0, 2};
   spec.angle_deg = {0, 90};

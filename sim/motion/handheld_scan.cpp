@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/motion/by_hand.hpp"
+#include "sim/motion/handheld_scan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-using namespace by_hand;
+using namespace handheld;
 
 enum Stream : std::uint64_t { kPlaces, kBouts, kGaze, kRoll, kHeight, kBody, kHands, kTremor };
 
@@ -61,7 +61,7 @@ void validate(const HandheldConfig& config) {
   check("tremor_rms_rad", config.tremor_rms_rad, 0, 0.05);
 }
 
-DrivenPath scan_by_hand(const Scene& scene, const Camera& camera, const HandheldConfig& config) {
+DrivenPath handheld_scan(const Scene& scene, const Camera& camera, const HandheldConfig& config) {
   validate(config);
   const RandomStream stream = RandomStream(config.seed).fork(0x68616e64);  // for this motion only
   const Ground ground = ground_of(scene, config.height_m);

@@ -50,8 +50,8 @@ struct HandheldConfig {
 /// seed gives a different path through the same place. DrivenPath::base is the floor point below
 /// the camera, facing the same direction.
 /// @throws InputError if there is no floor, or no space on it for a person.
-DrivenPath scan_by_hand(const Scene& scene, const Camera& camera,
-                        const HandheldConfig& config = {});
+DrivenPath handheld_scan(const Scene& scene, const Camera& camera,
+                         const HandheldConfig& config = {});
 
 /// @throws InputError naming the field out of range.
 void validate(const HandheldConfig& config);

@@ -19,7 +19,7 @@ struct BakeSurface {
 /// Fills vertices inside solids from their neighbors and smooths the indirect light.
 /// @param inside     by vertex
 /// @param smoothing  iterations
-void mend(const std::vector<char>& inside, const BakeSurface& surface, int smoothing,
-          Colors& direct, Colors& indirect);
+void repair(const std::vector<char>& inside, const BakeSurface& surface, int smoothing,
+            Colors& direct, Colors& indirect);
 
 }  // namespace mh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/motion/by_hand.hpp"
+#include "sim/motion/handheld_scan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,11 +38,11 @@ void add_speeds(Speeds& speeds, const DrivenPath& path, double rate_hz) {
   }
 }
 
-TEST(ScanByHand, MovesAsRealCamerasDo) {
+TEST(HandheldScan, MovesAsRealCamerasDo) {
   const Camera camera = test::pepper().camera;
   Speeds speeds;
   for (std::uint64_t seed = 0; seed < 4; ++seed)
-    add_speeds(speeds, scan_by_hand(office(), camera, {.seed = seed, .frames = 1000}),
+    add_speeds(speeds, handheld_scan(office(), camera, {.seed = seed, .frames = 1000}),
                camera.rate_hz);
   // redkitchen of 7-Scenes at 30 Hz: 0.035 / 0.133 / 0.222 / 0.303 / 0.423 m/s and 1.8 / 8.1 / 13.4
   // / 18.7 / 26 deg/s. Recordings differ from each other by more than these bounds.
@@ -59,11 +59,11 @@ TEST(ScanByHand, MovesAsRealCamerasDo) {
   EXPECT_LT(top, 150);
 }
 
-TEST(ScanByHand, KeepsClearAndSeesTheWholeRoom) {
+TEST(HandheldScan, KeepsClearAndSeesTheWholeRoom) {
   const Camera camera = test::pepper().camera;
   const FloorGrid grid = make_floor_grid(office(), {.top_m = 1.9});
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    const DrivenPath path = scan_by_hand(office(), camera, {.seed = seed});
+    const DrivenPath path = handheld_scan(office(), camera, {.seed = seed});
     EXPECT_GE(path.camera.size(), 300U);
     EXPECT_LE(path.camera.size(), 1500U);
     ASSERT_EQ(path.base.size(), path.camera.size());
@@ -86,7 +86,7 @@ TEST(ScanByHand, KeepsClearAndSeesTheWholeRoom) {
 
 // In a bare hall with a table in its center, a camera with random headings would have the table's
 // center in view in a sixth of the frames (the field of view is 58 degrees).
-TEST(ScanByHand, LooksAtFurnitureRatherThanAtBareWalls) {
+TEST(HandheldScan, LooksAtFurnitureRatherThanAtBareWalls) {
   const Camera camera = test::pepper().camera;
   const double half_view_rad = std::atan(0.5 * camera.width_px / camera.fx_px);
   const auto frames_with_the_table = [&](const char* kind) {
@@ -95,7 +95,7 @@ TEST(ScanByHand, LooksAtFurnitureRatherThanAtBareWalls) {
     hall.instances.back().class_id = class_by_name(kind).value();
     double seen = 0, tilt_rad = 0, count = 0;
     for (std::uint64_t seed = 0; seed < 4; ++seed)
-      for (const TimedPose& pose : scan_by_hand(hall, camera, {.seed = seed}).camera) {
+      for (const TimedPose& pose : handheld_scan(hall, camera, {.seed = seed}).camera) {
         const Eigen::Vector3d ahead = pose.world_from_camera.rotation().col(2);
         const Eigen::Vector3d way = Eigen::Vector3d(5, 5, 0) - pose.world_from_camera.translation();
         const double aside_rad = std::remainder(
@@ -113,10 +113,10 @@ TEST(ScanByHand, LooksAtFurnitureRatherThanAtBareWalls) {
   EXPECT_GT(of_a_table, 1.2 * frames_with_the_table("wall"));
 }
 
-TEST(ScanByHand, IsAFunctionOfItsSeed) {
+TEST(HandheldScan, IsAFunctionOfItsSeed) {
   const Camera camera = test::pepper().camera;
   const auto path = [&](std::uint64_t seed) {
-    return scan_by_hand(office(), camera, {.seed = seed, .frames = 300}).camera;
+    return handheld_scan(office(), camera, {.seed = seed, .frames = 300}).camera;
   };
   const auto a = path(1), b = path(1), c = path(2);
   ASSERT_EQ(a.size(), 300U);
@@ -129,12 +129,12 @@ TEST(ScanByHand, IsAFunctionOfItsSeed) {
   EXPECT_GT(apart_m / 300, 0.5);
 }
 
-TEST(ScanByHand, EachPartOfTheMotionHasItsPublishedSize) {
+TEST(HandheldScan, EachPartOfTheMotionHasItsPublishedSize) {
   const Camera camera = test::pepper().camera;
   HandheldConfig still{.frames = 3000};
   still.walking_m_per_s = 0;
   still.wander_rms_rad = still.tremor_rms_rad = still.tremor_rms_m = 0;
-  const DrivenPath swaying = scan_by_hand(office(), camera, still);
+  const DrivenPath swaying = handheld_scan(office(), camera, still);
   double mean = 0, square = 0;
   for (const TimedPose& pose : swaying.camera) mean += pose.world_from_camera.translation().x();
   mean /= 3000;
@@ -145,7 +145,7 @@ TEST(ScanByHand, EachPartOfTheMotionHasItsPublishedSize) {
   // Tremor only: the root mean square is the configured one.
   still.sway_rms_m = 0;
   still.tremor_rms_m = 0.00025;
-  const DrivenPath trembling = scan_by_hand(office(), camera, still);
+  const DrivenPath trembling = handheld_scan(office(), camera, still);
   square = mean = 0;
   for (const TimedPose& pose : trembling.camera) mean += pose.world_from_camera.translation().x();
   mean /= 3000;
@@ -154,11 +154,11 @@ TEST(ScanByHand, EachPartOfTheMotionHasItsPublishedSize) {
   EXPECT_NEAR(std::sqrt(square / 3000), 0.00025, 0.00003);
 }
 
-TEST(ScanByHand, RefusesBadSettingsAndPlacesWithoutRoom) {
+TEST(HandheldScan, RefusesBadSettingsAndPlacesWithoutRoom) {
   const Camera camera = test::pepper().camera;
   const auto refusal = [&](const Scene& scene, const HandheldConfig& config) -> std::string {
     try {
-      scan_by_hand(scene, camera, config);
+      handheld_scan(scene, camera, config);
     } catch (const InputError& e) {
       return e.what();
     }

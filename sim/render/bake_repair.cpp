@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/render/bake_mend.hpp"
+#include "sim/render/bake_repair.hpp"
 
 #include "sim/render/color.hpp"
 
@@ -42,8 +42,8 @@ void fill(std::vector<char>& known, const BakeSurface& surface, Colors& direct, 
 
 }  // namespace
 
-void mend(const std::vector<char>& inside, const BakeSurface& surface, int smoothing,
-          Colors& direct, Colors& indirect) {
+void repair(const std::vector<char>& inside, const BakeSurface& surface, int smoothing,
+            Colors& direct, Colors& indirect) {
   std::vector<char> known(inside.size());
   for (std::size_t v = 0; v < known.size(); ++v) known[v] = !inside[v];
   fill(known, surface, direct, indirect);
