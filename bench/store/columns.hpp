@@ -17,8 +17,8 @@
 #include "slam/io/settings_io.hpp"
 
 // Records as rows of SQL tables, via their lists of fields: the column definitions, and values in
-// both directions. Nested records are flattened into columns; a pose takes seven; a list is JSON
-// text; values that are unknown or not finite are null.
+// both directions. Nested records are flattened into columns; a pose takes seven columns; a list is
+// stored as JSON text; values that are unknown or not finite are stored as null.
 
 namespace mh {
 
@@ -80,7 +80,7 @@ std::string columns_of() {
 /// Inserts rows into a table, value by value in column order.
 class RowWriter {
  public:
-  /// The rows have all columns of the table; SQL computes the digest.
+  /// A row has a value for every column of the table except the digest, which SQL computes.
   RowWriter(SQLite::Database& db, const std::string& table)
       : statement_(db, insert_row(table, column_count(db, table))) {}
 

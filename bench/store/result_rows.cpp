@@ -41,7 +41,7 @@ void read_result(const Json& json, RunResult& run) {
   result_fields(run, read);
 }
 
-/// How many rows a run has, besides the one in `runs`.
+/// How many rows a run has, without the one in `runs`.
 std::int64_t row_count(SQLite::Database& db, const std::string& key) {
   std::int64_t count = 0;
   for (const char* table : kTablesOfRuns) {

@@ -17,8 +17,8 @@ namespace mh {
 class Hiding {
  public:
   /// @param hidden  paths that do not exist are ignored
-  /// @param needed  paths that the program needs: these, and folders that contain one of them, stay
-  ///                visible
+  /// @param needed  paths that the program needs: these, and folders that contain one of them, are
+  ///                not hidden
   /// @param own     a folder that the bench made for the program, possibly in shared memory
   Hiding(std::span<const std::filesystem::path> hidden,
          std::span<const std::filesystem::path> needed, const std::filesystem::path& own);
