@@ -15,8 +15,8 @@
 
 namespace mh {
 
-/// The stages of relocalization that match features. kEveryKeyframe is not a stage of it: it
-/// matches, by words, with every keyframe of the map, regardless of the choice of candidates.
+/// The stages of relocalization that match features. kEveryKeyframe is not one of them: it matches,
+/// by visual words, with every keyframe of the map, regardless of the choice of candidates.
 enum class MatchStage { kWords, kGuided, kLocalMap, kEveryKeyframe };
 inline constexpr MatchStage kMatchStages[] = {MatchStage::kWords, MatchStage::kGuided,
                                               MatchStage::kLocalMap, MatchStage::kEveryKeyframe};

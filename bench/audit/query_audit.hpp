@@ -24,7 +24,7 @@ enum class FirstCause {
   kNone,             ///< it was correct
   kWrongCandidates,  ///< some keyframe alone would have given a correct answer
   kNothingInSight,   ///< no keyframe shows at least kInSight of what the query sees
-  kFewMatches,       ///< no keyframe has enough matches by words to try a pose
+  kFewMatches,       ///< no keyframe has enough word matches to try a pose
   kFalseAnswer,      ///< a pose was returned
   kFewInliers        ///< no pose had enough inliers
 };

@@ -88,7 +88,7 @@ using MappingObserver =
 
 /// Maps a sequence (section 3.1 of the paper; with OnFailure::kContinue, each frame is shown once
 /// and the rules on rewinds below do not apply). A failure is a lost frame right after a tracked
-/// one. After a failure at frame i the feed rewinds to i - 50 and continues with the map as it is.
+/// one. After a failure at frame i, the feed rewinds to i - 50 and continues with the map as it is.
 /// Frames lost on the way back to i are not failures, since the system is still relocalizing there;
 /// if frame i itself is lost again, that is a failure. After five consecutive restarts that did not
 /// get past i (the furthest frame that failed), the frame that failed last, which may be before i,

@@ -72,9 +72,9 @@ struct QueryScore {
   Stamp stamp_ns = 0;
   std::optional<SE3> true_world_from_camera = {};  ///< absent if unknown
   bool success = false;                            ///< a pose was returned (the paper's measure)
-  // Both false if the answer cannot be judged.
-  bool correct = false;             ///< a pose was returned, and it is within the protocol's limits
-  bool false_positive = false;      ///< a pose was returned, and it is not, or nothing was mapped
+  // Both are false if the answer cannot be judged.
+  bool correct = false;             ///< a pose within the protocol's limits was returned
+  bool false_positive = false;      ///< a pose outside them was returned, or nothing was mapped
   std::optional<bool> in_map = {};  ///< is_in_map()
   // Absent if no pose was returned or there is no anchor: nothing was mapped, or the truth is
   // unknown. The aligned distance is also absent if the true pose is unknown, or the answer is not

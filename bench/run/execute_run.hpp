@@ -21,12 +21,12 @@ struct RunOrder {
   std::filesystem::path maps;    ///< for finished maps; empty: nothing is kept
   std::filesystem::path images;  ///< for images that several runs see; empty: none are shared
   std::uint64_t images_limit = 0;
-  bool share_noise = false;   ///< also share mapping frames there, noise included
+  bool share_noise = false;   ///< also share mapping frames in `images`, noise included
   std::string views;          ///< file name of the environment's contact sheet
   std::string session_start;  ///< time at which the command started
   int jobs = 1;               ///< number of parallel runs, and of threads for baking light
   bool metrics_only = false;  ///< as in BenchOptions
-  int parent = 0;  ///< process id of the command; the run is killed when it ends; 0: none
+  int parent = 0;  ///< process id of the command; when it ends, the run is killed; 0: none
 };
 
 template <MaybeConst<RunOrder> O, class Visit>

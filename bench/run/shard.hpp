@@ -43,7 +43,8 @@ struct PredictedShare {
 /// Splits runs into consecutive shares of about equal predicted cost. Minimizes the sum of the
 /// eighth powers of the shares' costs, which approximately minimizes the cost of the most expensive
 /// share. A share that starts in the middle of runs with the same images must render those images
-/// again. Every run is in exactly one share; with more parts than runs the last shares are empty.
+/// again. Every run is in exactly one share; if there are more parts than runs, the last shares are
+/// empty.
 /// @param runs  runs that see the same images are consecutive, as expand() orders them
 /// @returns `parts` shares
 std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts);

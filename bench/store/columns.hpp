@@ -36,7 +36,7 @@ class ColumnTexts {
   void operator()(const char* name, const T&) {
     add<T>(name, " NOT NULL");
   }
-  /// A setting: null if a system does not have it.
+  /// The column of a setting: null if the system does not have that setting.
   template <class T>
   void operator()(const char* name, const T&, const SettingRange&, const char*) {
     text_ += fmt::format("  {} {},\n", name,
@@ -114,7 +114,7 @@ class RowWriter {
       if (value)
         put(*value);
       else
-        next_ += std::is_same_v<T, std::optional<SE3>> ? 7 : 1;  // stay null
+        next_ += std::is_same_v<T, std::optional<SE3>> ? 7 : 1;  // these columns are left null
     } else if constexpr (std::is_same_v<T, double>) {
       if (std::isfinite(value)) statement_.bind(next_, value);
       ++next_;

@@ -27,7 +27,7 @@ struct Sweep {
 
 /// Reads the section `parameters`: `map: fixed | rebuilt`, and either a grid (any settings, each
 /// with a list of values: `features.count: [500, 1000]`; the last one varies fastest) or `sobol:
-/// {points, seed, ranges: {semantics.gamma: [low, high], ...}}`. On a fixed map only the section
+/// {points, seed, ranges: {semantics.gamma: [low, high], ...}}`. On a fixed map, only the section
 /// `semantics` can vary.
 /// @param base  settings that are not varied
 /// @throws InputError naming file, line, field and value.

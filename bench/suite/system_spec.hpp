@@ -29,15 +29,15 @@ struct SystemSpec {
   SystemKind kind = SystemKind::kSemantic;
   std::string name = "semantic";
   std::optional<OutsideProgram> outside = {};  ///< set for an outside system only
-  /// Its own settings, by full name (slam/config/by_name.hpp), in place of the suite's. Only one of
-  /// our systems under another name has any.
+  /// Its own settings, by full name (slam/config/by_name.hpp), in place of the suite's. Only our
+  /// systems under another name have any.
   std::vector<std::pair<std::string, YamlReader>> settings = {};
 
   /// Whether equal runs give equal bits. If false, the gate judges the system by the spread over
   /// its runs.
   bool repeatable = true;
 
-  // Its capabilities; no other code checks its kind.
+  // The system's capabilities: other code checks these, not `kind`.
   bool is_outside() const { return kind == SystemKind::kOutside; }
   bool sees_labels() const { return kind != SystemKind::kPlain; }
   /// Whether it has the settings of SlamConfig. Such a system needs a vocabulary, and reports
