@@ -75,7 +75,7 @@ class RunAuditor {
 
  private:
   void prepare_set(QuerySet set) {
-    // Every point has the same frames: take those of the first.
+    // Every point has the same frames: those of the first point are used.
     const std::vector<QueryScore>& scores = queries(run_.points.front(), set);
     for (std::size_t i = 0; i < scores.size(); ++i) asked_.push_back(prepare_query(set, i));
   }

@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// @throws InputError naming the run and the reason, if it has no match traces (an outside system),
-/// episodes, or no exact truth (a recording).
+/// @throws InputError naming the run and the reason, if it has episodes, no match traces (an
+/// outside system) or no exact truth (a recording).
 void require_auditable(const RunSpec& spec);
 
 /// Executes a run as run_one() does, and keeps its finished map.

@@ -47,7 +47,7 @@ RunAudit execute(const RunSpec& spec, const std::string& key, const AuditOptions
   return audit;
 }
 
-/// Key of what an audit depends on: its run, and the code of the audit.
+/// Key of an audit: it depends on the key of the run and on the code of the audit.
 std::string audit_key(const std::string& key_of_run) {
   return text_key(key_of_run + std::string(code_of_audit()));
 }
@@ -82,7 +82,8 @@ std::vector<AuditedRun> audit_suite(const Suite& suite, const AuditOptions& opti
           (static_cast<double>(audited.size()) + share) / static_cast<double>(specs.size()),
           fmt::format("{} of {} audited, {}", audited.size(), specs.size(), what));
     };
-    // Images belong to one environment at one level, whose runs are consecutive.
+    // Images are shared only by the runs of one environment at one level. These are consecutive, so
+    // the images are deleted when either changes.
     if (!audited.empty() && (audited.back().spec.environment.name != spec.environment.name ||
                              audited.back().spec.level != spec.level))
       std::filesystem::remove_all(shared.images.folder);

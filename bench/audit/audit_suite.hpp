@@ -15,7 +15,7 @@
 namespace mh {
 
 struct AuditOptions {
-  /// Keeps baked light, finished maps and finished audits; nullopt: nothing is kept.
+  /// Folder that keeps baked light, finished maps and finished audits; nullopt: nothing is kept.
   std::optional<std::filesystem::path> cache;
   int threads = 1;  ///< for baking light
   /// Disk space for the images of one environment, which its runs share.

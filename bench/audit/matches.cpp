@@ -169,7 +169,7 @@ MatchAudit audit_matches(const DecisionTrace& decisions, const EndsOf& ends_of, 
     return end;
   };
   for (std::size_t begin = 0; begin < all.size();) {
-    // A search is traced as it was, then as it would have been at xi = 1.
+    // Each search is traced twice: as it was, then as it would have been at xi = 1.
     const std::size_t middle = end_of(begin, true), end = end_of(middle, false);
     if (const auto stage = stage_of(all[begin].matcher)) {
       StageMatches& of_stage = audit[static_cast<std::size_t>(*stage)];

@@ -15,8 +15,8 @@
 
 namespace mh {
 
-/// The stages of relocalization that match features, and matching by words with every keyframe of
-/// the map, which does not depend on the choice of candidates.
+/// The stages of relocalization that match features. kEveryKeyframe is not one of them: it matches,
+/// by visual words, with every keyframe of the map, regardless of the choice of candidates.
 enum class MatchStage { kWords, kGuided, kLocalMap, kEveryKeyframe };
 inline constexpr MatchStage kMatchStages[] = {MatchStage::kWords, MatchStage::kGuided,
                                               MatchStage::kLocalMap, MatchStage::kEveryKeyframe};
@@ -27,7 +27,7 @@ std::optional<MatchStage> stage_of(Matcher matcher);
 
 /// What is known about one end of a match.
 struct MatchEnd {
-  std::optional<TruePoint> point;  ///< none: it shows no surface
+  std::optional<TruePoint> point;  ///< absent if it shows no surface
   ClassId label = kVoid;           ///< as SLAM has it
 };
 
@@ -54,14 +54,14 @@ void fields(C& counts, Visit& v) {
 
 /// What equation 2 changed in a stage.
 struct XiEffect {
-  // Right pairs that are not kept but would be at xi = 1, by what removed them; `another` is a pair
-  // that xi favors, or the check of rotations.
+  // Right pairs that are not kept but would be kept at xi = 1, counted by what removed them;
+  // `another` stands for a pair that xi favors, or for the check of rotations.
   std::int64_t lost_to_threshold = 0, lost_to_ratio = 0, lost_to_another = 0;
-  // The same pairs, by why their labels differ: one is void, one is within kBorder_px of another
-  // class, or else one must be wrong. The rest have equal labels and were lost because another pair
-  // changed.
+  // The same pairs, counted by why their labels differ: a label is void, an end is within
+  // kBorder_px of another class, or, in all other cases, a label must be wrong. Pairs with equal
+  // labels are not counted here: they were lost because another pair changed.
   std::int64_t lost_by_void = 0, lost_at_border = 0, lost_by_label_error = 0;
-  std::int64_t right_gained = 0;  ///< kept, but would not be at xi = 1
+  std::int64_t right_gained = 0;  ///< kept, but would not be kept at xi = 1
   std::int64_t wrong_removed = 0, wrong_gained = 0;
   // Pairs kept at xi = 1 whose labels differ.
   std::int64_t right_differ = 0, wrong_differ = 0;

@@ -12,22 +12,21 @@
 
 namespace mh {
 
-/// A keyframe counts as showing nothing of what a query sees if it shows less than this share of
-/// it.
+/// A keyframe that shows less than this share of what a query sees counts as showing nothing of it.
 inline constexpr double kInSight = 0.1;
 /// A keyframe is relevant to a query if it shows at least this share of what the query sees.
 inline constexpr double kRelevant = 0.25;
-/// "The nearest": this many keyframes, by true distance, where 1 rad counts as 1 m.
+/// How many keyframes count as "the nearest", by true distance, where 1 rad counts as 1 m.
 inline constexpr std::size_t kNearest = 5;
 
 /// Why the first attempt at a query gave no correct answer: the first of these that applies.
 enum class FirstCause {
   kNone,             ///< it was correct
   kWrongCandidates,  ///< some keyframe alone would have given a correct answer
-  kNothingInSight,   ///< no keyframe shows kInSight of what the query sees
-  kFewMatches,       ///< no keyframe has enough matches by words to try a pose
+  kNothingInSight,   ///< no keyframe shows at least kInSight of what the query sees
+  kFewMatches,       ///< no keyframe has enough word matches to try a pose
   kFalseAnswer,      ///< a pose was returned
-  kFewInliers        ///< no pose with enough inliers
+  kFewInliers        ///< no pose had enough inliers
 };
 
 constexpr Names<FirstCause, 6> words(FirstCause) {
@@ -42,31 +41,32 @@ constexpr Names<FirstCause, 6> words(FirstCause) {
 /// The audit of one query under one parameter point. Everything but `correct` and `attempts` refers
 /// to the first attempt.
 struct QueryAudit {
-  std::size_t frame = 0;  ///< of its sequence
+  std::size_t frame = 0;  ///< index in its sequence
   bool correct = false;   ///< in the run, after all its attempts
   int attempts = 0;
   bool first_answered = false, first_correct = false;
   RelocalizationStage stage = RelocalizationStage::kNone;
   FirstCause cause = FirstCause::kNone;
 
-  // Where the query is: co-visibility is the share of the surface it sees that a keyframe shows.
+  // Where the query is. Co-visibility is the share of the surface seen by the query that a keyframe
+  // also shows.
   double best_co_visible = 0;
   std::optional<double> nearest_m = {},
                         nearest_deg = {};  ///< to the nearest keyframe by true pose, if any
   int keyframes = 0, relevant = 0;
 
-  // Retrieval: what Algorithm 1 chose, and all keyframes by their similarity (equation 5).
+  // Retrieval: what Algorithm 1 chose, and how all keyframes rank by similarity (equation 5).
   int candidates = 0, relevant_candidates = 0;
-  std::optional<int> solving_candidate = {};  ///< rank of the first that solves it, from 1
+  std::optional<int> solving_candidate = {};  ///< rank, from 1, of the first that solves the query
   std::optional<double> average_precision = {};
   std::optional<double> precision_1 = {}, precision_5 = {}, precision_10 = {};
   std::optional<double> recall_1 = {}, recall_5 = {}, recall_10 = {};
-  std::optional<int> solving_rank = {};  ///< of the most similar keyframe that solves it, from 1
+  std::optional<int> solving_rank = {};  ///< likewise, among all keyframes by similarity
   std::optional<double> solving_m = {}, solving_deg = {},
                         solving_co_visible = {};  ///< of that keyframe
   double label_mass = 0;
 
-  // Ceilings: what would solve the query. The last two include the first.
+  // Ceilings: what would solve the query. The last two are true whenever by_any is.
   bool by_any = false;          ///< some keyframe as the only candidate
   bool by_nearest = false;      ///< one of the kNearest keyframes
   bool without_false = false;   ///< some keyframe, with all false matches removed
@@ -136,7 +136,7 @@ void fields(A& point, Visit& v) {
 
 /// The audit of one run.
 struct RunAudit {
-  std::vector<PointAudit> points;  ///< as in RunSpec::points
+  std::vector<PointAudit> points;  ///< in the order of RunSpec::points
   // CPU time, s: not deterministic.
   double audit_s = 0, run_s = 0;
   bool map_from_cache = false;  ///< run_s then excludes the mapping

@@ -22,8 +22,8 @@ struct AnswerAgain {
 
 /// Repeats the queries of a finished run on its finished map, to observe what the run did not
 /// record. Under NeighborScores::kAsReleased, answers depend on earlier ones: queries are then made
-/// in the order of the run, and leave() repeats the attempts after the first. The references
-/// outlive it.
+/// in the order of the run, and leave() repeats the attempts after the first. The objects given by
+/// reference must outlive it.
 class QueryReplay {
  public:
   QueryReplay(const RunSpec& spec, const World& world, SlamState& frozen)
@@ -37,7 +37,7 @@ class QueryReplay {
   void begin(const SemanticConfig& point);
   /// The streams of the first attempt.
   Presentation first(QuerySet set, std::size_t index) const;
-  /// A frame of a set's sequence, and that frame with its features.
+  /// Returns a frame of a set's sequence; prepared() adds the frame's features.
   RgbdFrame frame(QuerySet set, std::size_t index, RandomStream noise) const;
   PreparedFrame prepared(const RgbdFrame& frame) const;
   /// What Algorithm 1 chooses for a frame, best first. Has no side effects.

@@ -10,12 +10,13 @@ namespace mh {
 /// Whether each item of a ranked list is relevant, best first.
 using Relevance = std::vector<unsigned char>;
 
-/// Mean, over all relevant items, of the precision at their ranks; an item that is not in the list
-/// counts as 0. Absent if nothing is relevant.
+/// Mean, over all relevant items, of the precision at their ranks; a relevant item that is not in
+/// the list counts as 0. Absent if nothing is relevant.
 /// @param relevant  number of relevant items, in the list or not
 std::optional<double> average_precision(const Relevance& ranked, std::size_t relevant);
 
-/// Share of the first k items that are relevant; positions beyond the list's end are not.
+/// Share of the first k items that are relevant; positions beyond the end of the list count as not
+/// relevant.
 /// @pre k > 0
 double precision_at(std::size_t k, const Relevance& ranked);
 

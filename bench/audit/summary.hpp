@@ -21,7 +21,8 @@ struct AuditedRun {
 };
 
 /// Summary of the queries of one set. Shares refer to all queries unless stated otherwise; a mean
-/// is over the queries that have the value, and absent if none has.
+/// is taken over the queries that have the value, and absent if no query has it. A query is
+/// solvable if QueryAudit::by_any is true.
 struct AuditSummary {
   std::size_t queries = 0;
   double correct = 0;        ///< in the run, after all attempts
@@ -35,7 +36,7 @@ struct AuditSummary {
   // Retrieval.
   double candidates = 0;                      ///< mean
   std::optional<double> relevant_candidates;  ///< share of all candidates
-  std::optional<double> candidate_solves;     ///< of solvable queries: some candidate solves it
+  std::optional<double> candidate_solves;  ///< of solvable queries, those that a candidate solves
   std::optional<double> first_candidate_solves, most_similar_solves;  ///< of solvable queries
   std::optional<double> average_precision, precision_1, precision_5, precision_10, recall_1,
       recall_5, recall_10;
@@ -91,13 +92,13 @@ AuditSummary summarize(std::span<const QueryAudit* const> queries);
 /// point and query set that was used.
 struct AuditRow {
   std::string level, system, labels;
-  std::string settings;     ///< the varied ones; empty without a sweep
+  std::string settings;     ///< values of the varied settings; empty without a sweep
   std::string environment;  ///< empty: all of them
   QuerySet set = QuerySet::kHeldOut;
   AuditSummary summary;
 };
 
-/// @param by_environment  one row per environment as well, instead of one for all environments
+/// @param by_environment  separate rows for each environment, instead of rows over all of them
 std::vector<AuditRow> audit_rows(const Suite& suite, std::span<const AuditedRun> runs,
                                  bool by_environment = false);
 

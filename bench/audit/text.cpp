@@ -17,8 +17,8 @@ std::string number(std::optional<double> value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
-/// The columns that name a row in every table; level and settings are left out if all rows have the
-/// same.
+/// The columns that name a row in every table; level and settings are left out if they are the same
+/// in all rows.
 class Names {
  public:
   explicit Names(std::span<const AuditRow> rows) {

@@ -20,16 +20,16 @@ struct TrialOutcome {
 };
 
 /// Outcomes known so far for one query under one xi and void policy, the only settings that affect
-/// them: for the system itself, without false matches, and from the true pose.
+/// them: for the system as it is, without false matches, and from the true pose.
 struct TrialMemo {
   std::map<KeyframeId, TrialOutcome> plain, without_false, with_true_pose;
-  std::optional<StageMatches> with_every_keyframe;  ///< matches by words
+  std::optional<StageMatches> with_every_keyframe;  ///< matches by words, with all of them
 };
 
 /// Tries single keyframes for one query, each at most once.
 class Trials {
  public:
-  /// The subject of the trials; the references outlive them.
+  /// The subject of the trials; the objects given by reference must outlive them.
   struct Subject {
     const SlamState& frozen;
     const PreparedFrame& frame;  ///< with its words
@@ -37,7 +37,7 @@ class Trials {
     const TrueMap& truth;
     const TrueView& view;  ///< of the query
     std::function<bool(const SE3& world_from_camera)> is_correct;
-    std::optional<SE3> camera_from_map;  ///< the true pose; none: unknown in this map
+    std::optional<SE3> camera_from_map;  ///< from the true pose; absent if unknown in this map
   };
   Trials(Subject subject, TrialMemo& memo) : subject_(std::move(subject)), memo_(memo) {}
 
@@ -56,10 +56,11 @@ class Trials {
 /// Keyframes in the orders in which an audit tries them.
 struct KeyframeOrders {
   std::span<const KeyframeId> nearest;     ///< by true distance
-  std::span<const KeyframeId> co_visible;  ///< by co-visibility, those with any; best first
+  std::span<const KeyframeId> co_visible;  ///< those with any co-visibility, best first
 };
 
-/// Fills in the ceilings of a query and its first cause. Tries as few keyframes as possible.
+/// Fills in the ceilings of a query and the first cause of its failure. Tries as few keyframes as
+/// possible.
 /// @param audit  already has its answers and best_co_visible
 void find_ceilings(Trials& trials, const KeyframeOrders& orders, QueryAudit& audit);
 

@@ -14,8 +14,8 @@ namespace mh {
 
 /// Ground truth of what a finished map shows.
 struct TrueMap {
-  std::vector<KeyframeId> live;                     ///< keyframes, by id
-  std::vector<std::optional<TrueView>> views;       ///< by keyframe id; none for erased ones
+  std::vector<KeyframeId> live;  ///< the keyframes that were not erased, in order of their ids
+  std::vector<std::optional<TrueView>> views;       ///< by keyframe id; absent for erased keyframes
   std::vector<std::optional<TruePoint>> landmarks;  ///< by landmark id: see true_landmark()
 };
 

@@ -13,7 +13,8 @@ double tolerance_m(double depth_m) {
   return std::max(kSamePoint_m, kSamePointShare * depth_m);
 }
 
-/// The depth at a pixel; where the 3x3 pixels around it show two surfaces, that of the nearer.
+/// The depth at a pixel; where the 3x3 pixels around it show two surfaces, the depth of the nearer
+/// one.
 float nearest_surface_m(const Grid2d<float>& depth_m, int x, int y) {
   constexpr float kSameSurface = 1.05F;  // ratio of depths, as in SLAM's features
   float nearest = 0, farthest = 0;
@@ -39,7 +40,7 @@ bool is_at_border(const Grid2d<ClassId>& classes, int x, int y) {
 
 }  // namespace
 
-// Undistorted keypoints may be outside the image's rectangle: the wider camera sees them.
+// Undistorted keypoints may be outside the image's rectangle; the wide camera sees these, too.
 TrueCamera::TrueCamera(const Camera& known) : camera(known), wide(Lens(known).pinhole()) {
   camera.distortion = {};
 }
@@ -81,7 +82,7 @@ bool same_place(const TruePoint& a, const TruePoint& b) {
 }
 
 double co_visible_share(const TrueView& view, const TrueView& other) {
-  constexpr int kEvery = 2;  // of the stored depth: 8 px
+  constexpr int kEvery = 2;  // every second sample of the stored depth: 8 px
   const SE3 other_from_view = other.world_from_camera.inverse() * view.world_from_camera;
   int seen = 0, shared = 0;
   for (int y = 0; y < view.depth_m.height(); y += kEvery)

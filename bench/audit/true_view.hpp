@@ -46,16 +46,16 @@ struct TrueCamera {
 /// Renders what a camera at a true pose sees, and looks up what its keypoints show. A keypoint that
 /// straddles two surfaces shows the nearer one, as in SLAM.
 /// @param features  of the frame taken there (undistorted); with a rolling shutter they are off by
-///                  the camera's motion within the frame, which is not undone
+///                  the camera's motion within the frame, which is not corrected
 TrueView look(const Renderer& renderer, const TrueCamera& camera, const SE3& world_from_camera,
               const Features& features);
 
 /// Whether two keypoints show the same place.
 bool same_place(const TruePoint& a, const TruePoint& b);
 
-/// Share, in [0, 1], of the surface in `view` that `other` shows, too: of the points behind a
-/// regular grid of pixels, those that, projected into `other`, agree with its depth. 0 if `view`
-/// shows nothing.
+/// Share, in [0, 1], of the surface in `view` that `other` also shows. Computed over the points
+/// behind a regular grid of pixels: those that, projected into `other`, agree with its depth. 0 if
+/// `view` shows nothing.
 double co_visible_share(const TrueView& view, const TrueView& other);
 
 }  // namespace mh

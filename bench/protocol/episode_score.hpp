@@ -21,19 +21,19 @@ struct EpisodeScore {
   /// stuck, collision_stop, time_out, wrong_arrival.
   std::string reason = {};
   bool said_arrived = false;
-  bool wrong_arrival = false;                  ///< reported arrival, but was not there
+  bool wrong_arrival = false;                  ///< reported arrival, but had not arrived
   double time_s = 0;                           ///< until it stopped for good
   std::optional<double> located_s = {};        ///< when it first believed that it knew where it was
-  std::optional<double> located_error_m = {};  ///< of that belief
+  std::optional<double> located_error_m = {};  ///< error of that belief
   std::optional<double> located_error_deg = {};
-  std::optional<double> last_error_m = {};  ///< of its belief at the end
+  std::optional<double> last_error_m = {};  ///< error of its belief at the end
   double length_m = 0, shortest_m = 0;
   double spl = 0;             ///< success * shortest / max(shortest, driven): Anderson et al., 2018
   double end_distance_m = 0;  ///< from the nearest goal object
-  int contacts = 0, collisions = 0;  ///< collisions: faster than 0.1 m/s
+  int contacts = 0, collisions = 0;  ///< collisions: contacts faster than 0.1 m/s
   double worst_contact_m_per_s = 0;
   int frames = 0;
-  std::uint64_t digest = 0;  ///< of all that was seen, answered and commanded
+  std::uint64_t digest = 0;  ///< of everything that was seen, answered and commanded
 };
 
 template <MaybeConst<EpisodeScore> S, class Visit>

@@ -7,13 +7,14 @@
 
 namespace mh {
 
-/// How far a graded query is from what was mapped. Absent for queries of the other sets.
+/// How far a graded query is from what was mapped. Every field is absent for queries of the other
+/// sets.
 struct QueryGrade {
-  // Distance and angle to the nearest frame offered for mapping, where 1 rad counts as 1 m (as for
-  // NearestBy::kPlace). From true poses, hence the same for every system.
+  // Distance and angle to the nearest frame offered for mapping; to find the nearest, 1 rad counts
+  // as 1 m (as for NearestBy::kPlace). From true poses, hence the same for every system.
   std::optional<double> mapped_m = {}, mapped_deg = {};
-  std::optional<double> shown = {};  ///< share of the visible surface that a mapped frame shows
-  /// Playback speed of a handheld scan, 1 = as recorded; absent if standing still.
+  std::optional<double> shown = {};  ///< share of the visible surface that mapped frames show
+  /// Playback speed of a handheld scan, 1 = as recorded; absent if the camera is at rest.
   std::optional<double> speed = {};
   friend bool operator==(const QueryGrade&, const QueryGrade&) = default;
 };

@@ -21,8 +21,8 @@ struct LoopAudit {
 
 /// Compares each loop's relative pose with the true one. A loop is a false positive if it is off by
 /// more than config.correct_distance_m or config.correct_angle_deg, like an answer to a query.
-/// @param truth  ordered by stamp; interpolated at a loop's stamps as at a query's
-///               (kMaxTruthGap_ns)
+/// @param truth  ordered by stamp; interpolated at a loop's stamps in the same way as at a query's
+///               stamp (kMaxTruthGap_ns)
 LoopAudit audit_loops(std::span<const LoopClosure> loops, const Trajectory& truth,
                       const ProtocolConfig& config);
 

@@ -105,7 +105,7 @@ MappingOutcome map_sequence(System& system, const Sequence& sequence, const Prot
       count + 1000, static_cast<std::size_t>(config.max_effort * static_cast<double>(count)));
 
   Feed feed{.next = first, .mapped = first > 0};
-  std::optional<Stamp> shown_ns;  // of the last frame, unless the feed has jumped back since
+  std::optional<Stamp> shown_ns;  // of the last frame shown; absent after a jump back
   while (feed.next < count) {
     const std::size_t i = feed.next++;
     if (is_test_frame(i, config) || out[i]) continue;

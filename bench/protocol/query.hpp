@@ -13,7 +13,7 @@ namespace mh {
 /// A system's answer to one test frame.
 struct QueryAnswer {
   std::size_t index = 0;                 ///< of the test frame in its sequence
-  int blank_frames = 0;                  ///< shown until the system was lost
+  int blank_frames = 0;                  ///< number shown until the system was lost
   int attempts = 0;                      ///< how often the test frame was shown
   std::optional<SE3> world_from_camera;  ///< the first returned pose
   std::uint32_t map = 0;                 ///< SystemReport::map
@@ -47,7 +47,7 @@ void fields(A& answer, Visit& v) {
 /// A black image without depth or labels, which the paper shows between test frames.
 RgbdFrame blank_frame(int width_px, int height_px, Stamp stamp_ns);
 
-/// Whether a frame shows nothing at all, as blank_frame() does.
+/// Whether a frame shows nothing at all, like one from blank_frame().
 bool is_blank(const RgbdFrame& frame);
 
 /// The random streams of one presentation of a test frame.
@@ -59,11 +59,11 @@ struct Presentation {
 /// @param attempt  from 0
 Presentation presentation(RandomStream stream, std::size_t index, int attempt, Attempts attempts);
 
-/// Queries a frozen system with one test frame (section 3.2 of the paper): a fresh session, blank
-/// frames until it is lost, then the test frame up to config.query_attempts times or until a pose
-/// is returned; config.attempts decides the noise. Noise and SLAM draw from streams keyed by (test
-/// frame, attempt) alone: the answer depends on no other query (except with `neighbor_scores:
-/// as_released`).
+/// Queries a frozen system with one test frame (section 3.2 of the paper). In a fresh session,
+/// shows blank frames until the system is lost, then the test frame until a pose is returned, at
+/// most config.query_attempts times; config.attempts determines each attempt's noise. The noise and
+/// the SLAM system draw from streams keyed only by (test frame, attempt), so the answer depends on
+/// no other query (except with `neighbor_scores: as_released`).
 /// @throws UnusableFrame if the frame cannot be shown.
 /// @param memo  from frozen.make_memo(), for this query alone, or null; does not change the answer
 QueryAnswer query(const System& frozen, std::size_t index, const Sequence& sequence,

@@ -11,7 +11,7 @@
 namespace mh {
 namespace {
 
-/// Mean of a number over the queries for which the system reports it; absent if it reports none.
+/// Mean of a number over the queries for which the system reports it; absent if it never does.
 template <class Get>
 std::optional<double> mean_reported(std::span<const QueryScore> queries, Get get) {
   double sum = 0, count = 0;

@@ -17,8 +17,8 @@ EpisodeSummary summarize(std::span<const EpisodeScore> episodes);
 
 MappingCounts count(const MappingOutcome& mapping);
 
-/// Every figure of a run under one of its parameter points, under its name in all_metrics(). Leaves
-/// out query sets that were not used, and episodes if the run has none.
+/// Every figure of a run at one of its parameter points, with its name in all_metrics(). Figures of
+/// query sets that were not used, and of episodes if the run has none, are left out.
 std::vector<Figure> figures_of(const RunResult& run, std::size_t point);
 
 }  // namespace mh

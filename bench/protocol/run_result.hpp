@@ -23,7 +23,7 @@ namespace mh {
 struct PointResult {
   std::vector<QueryScore> held_out;
   std::vector<QueryScore> second_tour = {};  ///< never pooled with held_out
-  std::vector<QueryScore> graded = {};       ///< nor with the two above
+  std::vector<QueryScore> graded = {};       ///< never pooled with the two above
 };
 
 /// When and where a run's times were measured: times of different sessions are not comparable.
@@ -44,14 +44,14 @@ struct RunResult {
   Trajectory elsewhere = {};  ///< poses in its other maps
   TrajectoryScore trajectory;
   EstimateAlignment alignment;
-  std::vector<PointResult> points;          ///< as in spec.points
-  std::vector<EpisodeScore> episodes = {};  ///< by variant as in spec.episodes, then by start
-  std::shared_ptr<const VoxelMap> volume;   ///< keyframe depth at the final poses, dock frame
-  OccupancyGrid grid;                       ///< the part of it that obstructs a robot
+  std::vector<PointResult> points;          ///< in the order of spec.points
+  std::vector<EpisodeScore> episodes = {};  ///< ordered by variant as in spec.episodes, then start
+  std::shared_ptr<const VoxelMap> volume;   ///< keyframe depth fused at the final poses; dock frame
+  OccupancyGrid grid;                       ///< what obstructs a robot in `volume`
   std::uint64_t map_digest = 0;             ///< of trajectory and grid
   CallTimes times;                          ///< not deterministic: never part of results.json
-  // Not deterministic either. CPU time spent making the frames, and on products that are neither
-  // SLAM nor scored: octree, grid, images.
+  // Not deterministic either. CPU time spent on making the frames, and on products that are neither
+  // made by SLAM nor scored: octree, grid, images.
   double frames_s = 0, products_s = 0;
   double wall_s = 0;
   Circumstances circumstances;
@@ -63,7 +63,7 @@ void set_estimate(RunResult& run, const Trajectory& all);
 /// Like set_estimate(), and also scores the trajectory.
 void take_trajectory(RunResult& run, const Trajectory& all);
 
-/// The mapped frames of the map that an answer is in.
+/// The estimated poses in the map that an answer refers to.
 Trajectory mapped_beside(const RunResult& run, const QueryAnswer& answer);
 
 /// Scores an answer by the run's protocol. Only the largest map is aligned with the truth.

@@ -14,22 +14,22 @@ namespace mh {
 
 /// Which mapped frame anchors a query's true pose in the map.
 enum class NearestBy {
-  kTime,   ///< held-out frames: the mapped frame nearest in time
-  kPlace,  ///< another tour: the mapped frame nearest by true pose (pose_distance())
+  kTime,   ///< for held-out frames: the mapped frame nearest in time
+  kPlace,  ///< for another tour: the mapped frame nearest by true pose (pose_distance())
 };
 inline NearestBy nearest_by(QuerySet set) {
   return set == QuerySet::kHeldOut ? NearestBy::kTime : NearestBy::kPlace;
 }
 
-/// What a query's true pose is measured from: a mapped frame or, with QueryTruth::kInterpolated,
-/// the estimate at the query's own time.
+/// The reference from which a query's true pose in the map is computed: a mapped frame or, with
+/// QueryTruth::kInterpolated, the estimate at the query's own time.
 struct Anchor {
   SE3 estimate;  ///< world_from_camera of the system
-  SE3 truth;     ///< world_from_camera, true; the identity if unknown (interpolated)
+  SE3 truth;     ///< true world_from_camera; the identity if unknown (interpolated)
   Stamp stamp_ns = 0;
 };
 
-/// A query's time and its camera's true pose, absent if unknown.
+/// A query's time, and the true pose of its camera if that is known.
 struct QueryMoment {
   Stamp stamp_ns = 0;
   std::optional<SE3> true_world_from_camera = {};
@@ -40,8 +40,9 @@ struct QueryMoment {
 };
 
 /// Exact pose of the query camera in the system's own map: the anchor's estimated pose composed
-/// with the true motion from the anchor to the query. Drift of the map elsewhere has no effect (the
-/// paper's Table 1 has distances of 0.02 m beside an APE of 0.2 m, so those must be local, too).
+/// with the true motion from the anchor to the query. Drift of the map elsewhere has no effect.
+/// (The paper's Table 1 has distances of 0.02 m where the APE is 0.2 m, so its distances must be
+/// local, too.)
 SE3 local_truth(const Anchor& anchor, const SE3& true_world_from_camera);
 
 /// Returns the anchor of a query; nullopt if nothing was mapped. Ties go to the earlier frame.
@@ -49,19 +50,19 @@ std::optional<Anchor> nearest_mapped(const Trajectory& estimate, const Trajector
                                      const TimedPose& true_query, NearestBy by);
 
 /// Returns a query's time and its true camera pose, interpolated from a true trajectory.
-/// @param truth  may be null: unknown
+/// @param truth  null if unknown
 QueryMoment moment_of(Stamp stamp_ns, const Trajectory* truth);
 
 /// Returns the anchor that config.truth prescribes. With kInterpolated, the anchor of a held-out
-/// query is the estimate interpolated at its time, which needs no truth. If that cannot be
-/// interpolated, for queries of another tour (which have no neighbors in time), and with kLocal, it
-/// is the nearest mapped frame, which needs the query's true pose.
+/// query is the estimate interpolated at its time, which needs no truth. In all other cases, the
+/// anchor is the nearest mapped frame, which needs the query's true pose: with kLocal, for queries
+/// of another tour (which have no neighbors in time), and if the estimate cannot be interpolated.
 std::optional<Anchor> find_anchor(const Trajectory& estimate, const Trajectory& mapping_truth,
                                   const QueryMoment& query, NearestBy by,
                                   const ProtocolConfig& config);
 
-/// Whether a query's place is in the map: a mapped frame is within 1 m and 30 degrees of it, by
-/// true poses. Absent if the query's true pose is unknown.
+/// Whether a query's place is in the map: by true poses, some mapped frame is within 1 m and 30
+/// degrees of the query. Absent if the query's true pose is unknown.
 std::optional<bool> is_in_map(const Trajectory& estimate, const Trajectory& mapping_truth,
                               const QueryMoment& query);
 
@@ -71,10 +72,9 @@ struct QueryScore {
   Stamp stamp_ns = 0;
   std::optional<SE3> true_world_from_camera = {};  ///< absent if unknown
   bool success = false;                            ///< a pose was returned (the paper's measure)
-  // Both false if the answer cannot be judged.
-  bool correct = false;  ///< returned, and within the protocol's limits
-  bool false_positive =
-      false;  ///< returned, and outside them (or nothing was mapped to compare with)
+  // Both are false if the answer cannot be judged.
+  bool correct = false;             ///< a pose within the protocol's limits was returned
+  bool false_positive = false;      ///< a pose outside them was returned, or nothing was mapped
   std::optional<bool> in_map = {};  ///< is_in_map()
   // Absent if no pose was returned or there is no anchor: nothing was mapped, or the truth is
   // unknown. The aligned distance is also absent if the true pose is unknown, or the answer is not
@@ -107,7 +107,7 @@ inline bool is_judged(const QueryScore& q) {
   return q.true_world_from_camera.has_value() || q.distance_m.has_value();
 }
 
-/// @param truth_from_estimate  global SE(3) alignment of the answer's map; absent: unknown
+/// @param truth_from_estimate  global SE(3) alignment of the answer's map; absent if unknown
 QueryScore score(const QueryAnswer& answer, const QueryMoment& moment,
                  const std::optional<Anchor>& anchor, const std::optional<SE3>& truth_from_estimate,
                  const ProtocolConfig& config);

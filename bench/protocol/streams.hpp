@@ -24,8 +24,8 @@ RandomStream mapping_stream(const RunSpec& spec);
 /// @param stream  mapping_stream()
 RandomStream mapping_noise(RandomStream stream, int restart);
 
-/// The noise streams that the mapping frames of a trial's runs share: the initial one and those
-/// after each of the first restarts. After more restarts, runs hardly share any frames.
+/// The noise streams of the mapping frames that the runs of one trial share: the initial stream and
+/// one for each of the first restarts. After more restarts, runs hardly share any frames.
 std::vector<RandomStream> shared_noises(const RunSpec& spec);
 
 /// The stream that the queries of a set draw from (bench/protocol/query.hpp).

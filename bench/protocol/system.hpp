@@ -72,7 +72,7 @@ inline std::unique_ptr<RelocalizationSession> System::open_session_with(QueryMem
   return open_session();
 }
 
-/// Forwards all calls to another system, so that they can be observed.
+/// Forwards all calls to another system, so that subclasses can observe them.
 class SystemView : public System {
  public:
   explicit SystemView(std::unique_ptr<System> inner) : inner_(std::move(inner)) {}

@@ -20,9 +20,9 @@ struct Candidates {
   std::optional<int> final;          ///< after equation 6
   std::optional<double> label_mass;  ///< share of the query vector's L1 mass held by labels
   std::optional<double> gamma;       ///< the weight of a label that resulted in this share
-  /// Shares of equation 5's similarities that no query computed (unscored) or that are left over
-  /// from an earlier query (stale); the stale ones' share of the sums, and their mean age in
-  /// queries.
+  /// Among the similarities in equation 5: the share that no query computed (unscored) and the
+  /// share left over from earlier queries (stale); the stale similarities' share of the sums, and
+  /// their mean age in queries.
   std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
   friend bool operator==(const Candidates&, const Candidates&) = default;
 };
@@ -48,17 +48,17 @@ void fields(C& candidates, Visit& v) {
 struct SystemReport {
   TrackStatus status = TrackStatus::kLost;
   std::optional<SE3> world_from_camera;  ///< in the system's own world
-  std::uint32_t map = 0;                 ///< that the pose refers to, if the system keeps several
+  std::uint32_t map = 0;  ///< the map that the pose refers to, if the system keeps several
   std::optional<int> keypoints, inliers;
   bool keyframe_added = false;
   bool map_reset = false;  ///< it discarded its map and started a new one: earlier poses are void
-  std::optional<LoopClosure> loop;  ///< if one was closed
+  std::optional<LoopClosure> loop;  ///< the loop that was closed, if any
   std::optional<RelocalizationStage> relocalization;
-  Candidates candidates;  ///< when relocalization was tried
+  Candidates candidates;  ///< set when relocalization was tried
   std::optional<MatchCounts> matches;
 };
 
-/// Digest of everything that a step reported on its matching and relocalization, except the pose.
+/// Digest of everything in a report about matching and relocalization, except the pose.
 std::uint64_t digest_of_matching(const SystemReport& report);
 
 }  // namespace mh

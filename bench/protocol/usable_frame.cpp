@@ -37,8 +37,9 @@ RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noi
 }
 
 std::vector<bool> increasing_stamps(const Sequence& sequence) {
-  // Longest increasing subsequence: `ends` holds, for each length so far, the last frame of one,
-  // with the smallest stamp possible; `before` holds each frame's predecessor.
+  // Longest increasing subsequence: of all increasing subsequences of length n + 1 so far,
+  // `ends[n]` is the last frame of the one that ends with the smallest stamp; `before[i]` is the
+  // predecessor of frame i.
   constexpr std::size_t kNone = SIZE_MAX;
   std::vector<std::size_t> ends, before(sequence.size(), kNone);
   for (std::size_t i = 0; i < sequence.size(); ++i) {
@@ -62,7 +63,7 @@ std::string stamp_fault(const Sequence& sequence, std::size_t i) {
 }
 
 std::optional<RgbdFrame> UsableFrames::frame(std::size_t i, RandomStream noise) {
-  if (!has_stamp_[i]) {  // not evidence that the frames cannot be read
+  if (!has_stamp_[i]) {  // a bad stamp is no evidence that the frames cannot be read
     skipped_.add(stamp_fault(sequence_, i));
     return std::nullopt;
   }

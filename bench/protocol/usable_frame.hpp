@@ -12,8 +12,8 @@
 
 namespace mh {
 
-/// Frames of a recording that were not shown to any system: they cannot be read, differ in size
-/// from the camera's, or have stamps that do not increase.
+/// Frames of a recording that were not shown to any system: they cannot be read, do not have the
+/// camera's image size, or have stamps that do not increase.
 struct SkippedFrames {
   static constexpr std::size_t kReasonsKept = 5;
   std::size_t count = 0;
@@ -37,18 +37,18 @@ struct UnusableFrame : InputError {
 /// If none of this many frames at the start is usable, the recording is rejected.
 inline constexpr std::size_t kHopeless = 10;
 
-/// Returns frame i. @throws UnusableFrame if it cannot be read or differs in size from the
-/// camera's.
+/// Returns frame i. @throws UnusableFrame if it cannot be read or does not have the camera's image
+/// size.
 RgbdFrame usable_frame(const Sequence& sequence, std::size_t i, RandomStream noise);
 
-/// Marks a largest set of frames whose stamps strictly increase; among frames with equal stamps,
-/// the first. A clock that jumps for one frame costs only that frame.
+/// Marks a largest set of frames whose stamps strictly increase; of frames with equal stamps, only
+/// the first can be in it. A clock that jumps for one frame costs only that frame.
 std::vector<bool> increasing_stamps(const Sequence& sequence);
 
 /// Why increasing_stamps() leaves out frame i.
 std::string stamp_fault(const Sequence& sequence, std::size_t i);
 
-/// The frames of a sequence that can be shown; records why the others cannot.
+/// The frames of a sequence that can be shown; records why the other frames cannot.
 class UsableFrames {
  public:
   explicit UsableFrames(const Sequence& sequence)
@@ -71,7 +71,7 @@ class UsableFrames {
 };
 
 /// Reads the first kHopeless frames of a recording until one can be used.
-/// @throws the first frame's InputError if none can.
+/// @throws the first frame's InputError if none can be used.
 void require_usable_frames(const Sequence& sequence);
 
 }  // namespace mh

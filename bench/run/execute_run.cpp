@@ -39,8 +39,9 @@ double load_per_processor() {
   return load / std::max(1.0, static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
-/// @param wall_s wall time of this process so far, matching its cpu_s
-/// @param world_s, products_s  CPU time in addition to what `run` recorded
+/// @param wall_s wall time of this process so far, the period that its cpu_s covers
+/// @param world_s, products_s  CPU time spent on the world and on products, in addition to what
+/// `run` recorded
 RunCost cost_of_this_process(const RunResult& run, double wall_s, double world_s, double products_s,
                              const RunOrder& order) {
   rusage usage{};
@@ -73,7 +74,7 @@ World build_as_planned(const RunSpec& spec, const std::string& key,
       throw_changed(spec);
     }
   }
-  return build();  // the inputs match the key: an error is now the run's own
+  return build();  // the inputs match the key, so an error now is the run's own fault
 }
 
 }  // namespace
@@ -94,8 +95,8 @@ RunOrder read_order(const fs::path& file) {
 
 void execute_run(const RunOrder& order, const RunListener& listener) {
   const auto start = std::chrono::steady_clock::now();
-  // To follow a frame through the code, start here: of all that came before, only the spec affects
-  // its bits.
+  // To follow a frame through the code, start here: nothing before this point affects its bits
+  // except the spec.
   const RunSpec& spec = order.spec;
   double world_s = 0, products_s = 0;
   const World world = build_as_planned(spec, order.key, [&] {
@@ -113,7 +114,8 @@ void execute_run(const RunOrder& order, const RunListener& listener) {
   make_output_folder(folder);
   if (!order.metrics_only) remove_run(folder);
   std::error_code no_matter;
-  // The new map would differ from the one that the earlier episodes drove on.
+  // If the system is not repeatable, its new map differs from the one that earlier episodes used,
+  // so their scores are discarded.
   if (!spec.system.repeatable) fs::remove_all(ended, no_matter);
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
@@ -127,7 +129,7 @@ void execute_run(const RunOrder& order, const RunListener& listener) {
   if (!order.metrics_only) {
     const ProcessorTimer timer(products_s);
     write_run(folder, world, run, order.key);
-    // One process makes the contact sheet; if two start it, both write the same bytes.
+    // One process makes the contact sheet; if two processes make it, both write the same bytes.
     if (world.simulated) write_views(order.folder / order.views, world, spec);
   }
   const double wall_s =

@@ -17,16 +17,16 @@ struct RunOrder {
   RunSpec spec;
   std::string key;
   std::filesystem::path store, folder;
-  std::filesystem::path cache;   ///< for baked light; empty: keeps nothing
-  std::filesystem::path maps;    ///< for finished maps; empty: keeps nothing
-  std::filesystem::path images;  ///< of runs that see the same images; empty: none are shared
+  std::filesystem::path cache;   ///< for baked light; empty: nothing is kept
+  std::filesystem::path maps;    ///< for finished maps; empty: nothing is kept
+  std::filesystem::path images;  ///< for images that several runs see; empty: none are shared
   std::uint64_t images_limit = 0;
-  bool share_noise = false;   ///< also share mapping frames with their noise there
+  bool share_noise = false;   ///< also share mapping frames in `images`, noise included
   std::string views;          ///< file name of the environment's contact sheet
-  std::string session_start;  ///< start of the command
-  int jobs = 1;               ///< parallel runs; threads for baking light
+  std::string session_start;  ///< time at which the command started
+  int jobs = 1;               ///< number of parallel runs, and of threads for baking light
   bool metrics_only = false;  ///< as in BenchOptions
-  int parent = 0;             ///< process of the command: the run ends with it; 0: none
+  int parent = 0;  ///< process id of the command; when it ends, the run is killed; 0: none
 };
 
 template <MaybeConst<RunOrder> O, class Visit>

@@ -40,7 +40,7 @@ std::optional<double> Forecast::of_all(const std::vector<const RunSpec*>& runs) 
 
 std::optional<double> Forecast::to_go_s(double waiting_s, const std::vector<RunAtWork>& at_work,
                                         int jobs) const {
-  constexpr double kEnough = 0.1;  // share of a run's work from which to extrapolate the rest
+  constexpr double kEnough = 0.1;  // share of a run's work after which its rest is extrapolated
   double all_s = waiting_s, longest_s = 0;
   for (const RunAtWork& run : at_work) {
     std::optional<double> left_s;

@@ -19,7 +19,7 @@ struct RunAtWork {
 };
 
 /// Estimates the time remaining from the durations of finished runs: those of the same system in
-/// the same environment, else of the same system, else of any.
+/// the same environment; if there are none, those of the same system; otherwise all.
 class Forecast {
  public:
   void note(const RunSpec& finished, double wall_s);
@@ -27,9 +27,9 @@ class Forecast {
   std::optional<double> of(const RunSpec& run) const;
   /// Expected duration of all these runs, one after another; nullopt before any run has finished.
   std::optional<double> of_all(const std::vector<const RunSpec*>& runs) const;
-  /// Time remaining; nullopt if unknown: no run has finished, and one in progress is less than 1/10
+  /// Time remaining; nullopt if no run has finished and some run in progress is less than 1/10
   /// done.
-  /// @param waiting_s  of_all() of the runs that have not begun
+  /// @param waiting_s  of_all() for the runs that have not begun
   /// @param jobs       runs in parallel
   std::optional<double> to_go_s(double waiting_s, const std::vector<RunAtWork>& at_work,
                                 int jobs) const;

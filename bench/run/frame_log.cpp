@@ -11,7 +11,7 @@
 namespace mh {
 namespace {
 
-/// ",3", or "," if unknown.
+/// A CSV cell with its leading comma: ",3", or "," if unknown.
 std::string cell(const std::optional<int>& count) {
   return count ? fmt::format(",{}", *count) : ",";
 }

@@ -57,7 +57,7 @@ void check_recordings(const Environment& e, const Labels& labels,
   }
 }
 
-/// Warns about SLAM settings in a calibration file that a run does not use: a suite ignores them,
+/// Warns if a calibration file has SLAM settings that differ from the run's. A suite ignores them,
 /// except the readout time, which is a property of the camera.
 void warn_of_ignored_settings(const fs::path& file, const RunSpec& run,
                               const std::function<void(std::string_view)>& say) {
@@ -207,7 +207,7 @@ PlannedKeys keys_by_name(const std::vector<Job>& jobs) {
 void validate_inputs(const std::vector<Job>& jobs, InputReader& inputs,
                      const std::function<void(std::string_view)>& say) {
   std::set<fs::path> calibrations;
-  std::set<std::pair<std::string, bool>> checked;  // recordings, and whether with labels
+  std::set<std::pair<std::string, bool>> checked;  // recordings, with or without labels
   struct Uses {
     std::set<std::tuple<fs::path, fs::path, std::optional<fs::path>>>
         drives;  // robot, tour, pedestrian

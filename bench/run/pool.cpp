@@ -29,7 +29,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kFirstGuess_mb = 1500;  // until a run has been measured
+constexpr double kFirstGuess_mb = 1500;  // memory of one run, until a run has been measured
 constexpr int kPoll_ms = 100;
 constexpr auto kBeat = std::chrono::seconds(10);
 
@@ -44,7 +44,7 @@ double available_mb() {
 
 struct Waiting {
   Job job;
-  bool alone = false;  ///< it was killed from outside once
+  bool alone = false;  ///< must run alone, since it was killed from outside once
 };
 
 struct Running {
@@ -165,7 +165,7 @@ class Pool {
     std::vector<pollfd> outputs;
     for (const Running& r : running_) outputs.push_back({r.process->output(), POLLIN, 0});
     ::poll(outputs.data(), outputs.size(), kPoll_ms);
-    // A closed output is always readable: do not spin on it.
+    // A closed output always counts as readable: wait a little instead of spinning.
     for (const pollfd& output : outputs)
       if ((output.revents & POLLHUP) != 0) ::poll(nullptr, 0, 5);
   }
@@ -297,10 +297,10 @@ class Pool {
   Store& store_;
   const PoolOptions& options_;
   std::size_t all_, done_ = 0, failed_ = 0;
-  double require_mb_ = 0;  ///< of one run, as measured so far
+  double require_mb_ = 0;  ///< largest memory of one run measured so far
   Forecast forecast_;
   std::vector<Waiting> waiting_;
-  std::optional<double> waiting_s_;  ///< how long they will take, if known
+  std::optional<double> waiting_s_;  ///< how long the waiting runs will take, if known
   std::vector<Running> running_;
   std::set<std::string> begun_;  // images that a run has begun to make
 };

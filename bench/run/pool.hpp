@@ -17,8 +17,8 @@ namespace mh {
 struct Job {
   RunSpec spec;
   std::string key;
-  std::string images = {};  ///< name of the images that it sees: equal if the images are
-  std::string frames = {};  ///< name of the frames that it maps, noise included; likewise
+  std::string images = {};  ///< name of the images that it sees; equal for equal images
+  std::string frames = {};  ///< likewise for the frames that it maps, noise included
 };
 
 /// Prefix of the error of a run that failed on bad input, which the user can fix.
@@ -34,13 +34,13 @@ struct PoolProgress {
 
 struct PoolOptions {
   int jobs = 1;  ///< parallel processes; never changes a result
-  /// Wall time of one run, in addition to the simulated time that its episodes may take; 0 = no
-  /// limit.
+  /// Limit on the wall time of one run, to which the simulated time that its episodes may take is
+  /// added; 0 = no limit.
   double time_limit_s = 14400;
-  double memory_limit_mb = 0;  ///< resident set size of one run; 0 = none
+  double memory_limit_mb = 0;  ///< limit on the resident set size of one run; 0 = no limit
   std::filesystem::path executable;
-  /// For the runs' logs, KEY.log, and what `arguments` writes, KEY.json: both are removed after a
-  /// success. Must exist.
+  /// Existing folder for each run's log (KEY.log) and for the file that `arguments` writes
+  /// (KEY.json). Both files are removed after a success.
   std::filesystem::path work_folder;
   /// The command line of a run's process. The process finishes by putting the result into the
   /// store.
@@ -60,10 +60,10 @@ struct PoolOptions {
 ///   use, else the next one in the order of `jobs`.
 /// - Another process starts only if there is enough memory for it and for what the running ones
 ///   still need (as measured on finished ones); at least one always runs.
-/// - A run that ends by itself without success is a failure and stays one. One that was killed from
-///   outside (SIGKILL, SIGTERM, SIGHUP: by a kernel short of memory or by a scheduler) is tried
-///   once more, alone. One that hits a full disk ends all work and is not a failure: the same
-///   command resumes once there is space.
+/// - A run that ends by itself without success is a failure and is not tried again. One that was
+///   killed from outside (SIGKILL, SIGTERM, SIGHUP: by a kernel short of memory or by a scheduler)
+///   is tried once more, alone. A run that hits a full disk ends all work and is not a failure: the
+///   same command resumes once there is space.
 /// @throws Interrupted on Ctrl-C, SIGTERM or SIGHUP; DiskFullError.
 void run_pending(Store& store, std::vector<Job> jobs, const PoolOptions& options);
 

@@ -30,8 +30,8 @@ namespace mh {
 namespace {
 
 /// This process' environment, set so that glibc requests 2 MB pages where possible: a run touches
-/// some 300 MB once, mostly textures, and spent a fifth of its time on their page faults. The
-/// user's own setting is kept.
+/// some 300 MB once, mostly textures; with small pages, their page faults take a fifth of its time.
+/// The user's own setting is kept.
 std::vector<char*> with_large_pages() {
   static std::string tunables = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
   std::vector<char*> all;
@@ -83,7 +83,8 @@ RunProcess::RunProcess(const std::filesystem::path& executable,
   posix_spawn_file_actions_adddup2(&files, pipe_ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log_.c_str(),
                                    O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  // Its own process group: Ctrl-C reaches only this process, which then ends the others in order.
+  // The run gets its own process group, so that Ctrl-C reaches only this process, which then ends
+  // the runs in order.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -122,7 +123,7 @@ void RunProcess::kill() {
 
 void RunProcess::read_shares() {
   char buffer[4096];
-  constexpr int kMost = 256;  // reads: a process that prints endlessly must not block us
+  constexpr int kMost = 256;  // reads at most: endless printing must not block us
   for (int piece = 0; piece < kMost; ++piece) {
     const ssize_t got = read(output_, buffer, sizeof buffer);
     if (got <= 0) break;

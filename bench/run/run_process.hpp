@@ -30,7 +30,7 @@ inline constexpr char kStatusMark = '~';
 /// How a process ended.
 struct ProcessEnd {
   bool good = false;
-  int signal = 0;         ///< that killed it; 0 = it exited
+  int signal = 0;         ///< signal that killed it; 0 if it exited
   int code = 0;           ///< exit code
   std::string message;    ///< the last line of its standard error
   bool reported = false;  ///< the message is an error that Modelhouse itself reported
@@ -42,8 +42,8 @@ struct ProcessEnd {
 std::string unreported_end(const ProcessEnd& end, const std::string& status);
 
 /// A process of our own executable that executes one run. It dies with the process that started it.
-/// On standard output it prints the share of the work done, one per line, and the names of long
-/// stages.
+/// Each line that it prints on standard output is the share of the work done, the name of a long
+/// stage, or a status.
 class RunProcess {
  public:
   /// @param log  file for its standard error
@@ -54,7 +54,7 @@ class RunProcess {
   RunProcess(const RunProcess&) = delete;
   RunProcess& operator=(const RunProcess&) = delete;
 
-  /// Returns how it ended, once; nullopt while it is running.
+  /// Returns, only once, how it ended; nullopt while it is running.
   std::optional<ProcessEnd> poll();
   void kill();
 

@@ -31,7 +31,7 @@ fs::path real_executable(const fs::path& executable) {
   return error ? executable : real;
 }
 
-/// Warns about missing files of finished runs, which will not be rewritten.
+/// Warns about missing files of finished runs: they will not be written again.
 void warn_missing_outputs(const Suite& suite, const BenchResults& results,
                           const BenchOptions& options) {
   std::size_t runs = 0;
@@ -50,8 +50,9 @@ void warn_missing_outputs(const Suite& suite, const BenchResults& results,
       counted(runs, "folder"), counted(views.size(), "sheet"), options.out.string()));
 }
 
-/// If a scene was changed and changed back, the existing files are from the run in between. The
-/// result is then forgotten, so that the run is repeated; for a failed run, the files are removed.
+/// If a scene was changed and changed back, the files in a run's folder are from the run in
+/// between. The run's stored result is then forgotten, so that the run is repeated; if the run
+/// failed, only the files are removed.
 void forget_outdated_runs(Store& store, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     const fs::path folder = out / job.spec.name;
@@ -64,7 +65,7 @@ void forget_outdated_runs(Store& store, const std::vector<Job>& jobs, const fs::
   }
 }
 
-/// Keeps the jobs of this machine's share.
+/// Keeps only the jobs in this machine's share.
 void take_share(std::vector<Job>& jobs, const BenchOptions& options) {
   if (options.shard.of > 1) {
     std::vector<PredictedCost> costs;

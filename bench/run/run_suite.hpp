@@ -22,10 +22,11 @@ struct BenchOptions {
   std::filesystem::path out;  ///< exists; holds results.sqlite and a folder per run
   int jobs = 1;               ///< never changes a result
   Shard shard;
-  /// nullopt: light is baked for this command alone (once), and each run redoes its mapping.
+  /// Folder of the cache; nullopt: light is baked once, for this command alone, and each run redoes
+  /// its mapping.
   std::optional<std::filesystem::path> cache;
   double time_limit_s = 14400;  ///< as in PoolOptions
-  double memory_limit_mb = 0;   ///< of one run; 0 = none
+  double memory_limit_mb = 0;   ///< limit for one run; 0 = no limit
   /// Disk space, in options.out, for images that runs share; 0: each renders its own. Never changes
   /// a result.
   double images_limit_gb = 20;
@@ -33,14 +34,14 @@ struct BenchOptions {
   /// Metrics only: no occupancy map, no images and no files of runs.
   bool metrics_only = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
-  FolderHold* hold = nullptr;     ///< on `out`, kept after the runs; null: held only while they run
-  InputReader* inputs = nullptr;  ///< has read some of the inputs already; null: none
+  FolderHold* hold = nullptr;  ///< the caller's, on `out`; null: `out` is held only during the runs
+  InputReader* inputs = nullptr;  ///< has already read some inputs; null: a new one is used
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(const PoolProgress&)> progress = [](const PoolProgress&) {};
 };
 
 /// Runs a suite into options.out / "results.sqlite". A finished run is never repeated. Several
-/// processes may do so at the same time: they share the runs.
+/// processes may run the same suite at the same time: they share the runs.
 /// @throws InputError if an input cannot be read or changes meanwhile, or if another suite is
 /// running in that folder; Interrupted on Ctrl-C.
 BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,

@@ -19,9 +19,9 @@ namespace mh {
 namespace {
 
 // Measured: docs/measurements/cost_of_the_bench.md, "Shares of an array".
-constexpr double kImage_s = 0.066;      // an image with blur and rolling shutter, 640x480
-constexpr double kFrame_s = 0.017;      // noise, SLAM and files of a run, per frame with an image
-constexpr double kEpisode_s = 6;        // 0.3 s per simulated second
+constexpr double kImage_s = 0.066;  // an image with blur and rolling shutter, 640x480
+constexpr double kFrame_s = 0.017;  // noise, SLAM and files of a run, for each frame with an image
+constexpr double kEpisode_s = 6;    // 0.3 s per simulated second
 constexpr double kAssumedFrames = 600;  // generated rooms have 300 to 1,500
 
 double frames_of(const std::optional<std::filesystem::path>& tour, const RunSpec& run) {
@@ -36,7 +36,7 @@ class SplitTable {
  public:
   explicit SplitTable(std::span<const PredictedCost> runs) {
     double own_s = 0;                   // of the runs so far
-    double before_s = 0, images_s = 0;  // of the images so far, without and with this run's
+    double before_s = 0, images_s = 0;  // of the images so far, without and with those of this run
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (i > 0 && runs[i].images != runs[i - 1].images) before_s = images_s;
       images_s = before_s + runs[i].images_s;
@@ -46,7 +46,7 @@ class SplitTable {
     }
   }
 
-  /// Predicted cost of the runs [begin, end), not empty.
+  /// Predicted cost of the runs [begin, end), a range that is not empty.
   double cost_s(std::size_t begin, std::size_t end) const {
     return end_s_[end - 1] - begin_s_[begin];
   }
@@ -71,9 +71,10 @@ class SplitTable {
   }
 
  private:
-  /// Fills next_[low .. high], whose last share begins within [first, last]. The cost is convex in
-  /// end_s_[end] - begin_s_[begin], both of which ascend: the best start does not decrease as the
-  /// end increases, so the two halves split the candidates between them.
+  /// Fills next_[low .. high], given that their best last shares begin within [first, last]. The
+  /// eighth power of a share's cost, end_s_[end] - begin_s_[begin], is convex, and both terms
+  /// ascend. The best start therefore never decreases as the end increases, and each half needs to
+  /// search only the starts on its own side of the middle's best start.
   void fill(std::size_t low, std::size_t high, std::size_t first, std::size_t last) {
     if (low > high) return;
     const std::size_t middle = (low + high) / 2;
@@ -88,12 +89,13 @@ class SplitTable {
     fill(middle + 1, high, begin_[middle], last);
   }
 
-  std::vector<double> begin_s_, end_s_;  // cost_s() is their difference
-  std::vector<double> least_, next_;  // lowest sum by the number of runs: without, with this part
-  std::vector<std::size_t> begin_;    // start of the last part, by the number of runs
+  std::vector<double> begin_s_, end_s_;  // for cost_s()
+  std::vector<double> least_, next_;  // lowest sum for the first n runs, without and with this part
+  std::vector<std::size_t> begin_;    // start of the last part of the first n runs
 };
 
-/// The number if every bin is filled; the actual number is not known before the drive.
+/// The number of graded queries if every bin is filled; the actual number is not known before the
+/// drive.
 double graded_queries(const RunSpec& run) {
   if (!run.graded) return 0;
   const GradedSpec& g = *run.graded;

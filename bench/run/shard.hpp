@@ -25,9 +25,9 @@ std::string images_of(const RunSpec& run);
 /// Predicted processor time of a run, known before anything has run. Used to balance shares;
 /// docs/measurements/cost_of_the_bench.md compares it with measured times.
 struct PredictedCost {
-  std::string images;   ///< as images_of()
-  double images_s = 0;  ///< making these images; spent once for all runs that see them
-  double own_s = 0;     ///< tracking, queries, noise, episodes
+  std::string images;   ///< from images_of()
+  double images_s = 0;  ///< for making these images; spent once for all runs that see them
+  double own_s = 0;     ///< for tracking, queries, noise, episodes
 };
 
 /// Predicts from the lengths of the tours: `handheld:SEED:FRAMES` states its length, others count
@@ -41,9 +41,10 @@ struct PredictedShare {
 };
 
 /// Splits runs into consecutive shares of about equal predicted cost. Minimizes the sum of the
-/// eighth powers of the shares' costs, which approximates minimizing the most expensive share. A
-/// share that starts in the middle of runs with the same images must render those images again.
-/// Every run is in exactly one share; with more parts than runs the last shares are empty.
+/// eighth powers of the shares' costs, which approximately minimizes the cost of the most expensive
+/// share. A share that starts in the middle of runs with the same images must render those images
+/// again. Every run is in exactly one share; if there are more parts than runs, the last shares are
+/// empty.
 /// @param runs  runs that see the same images are consecutive, as expand() orders them
 /// @returns `parts` shares
 std::vector<PredictedShare> split_runs(std::span<const PredictedCost> runs, std::size_t parts);

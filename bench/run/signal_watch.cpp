@@ -28,7 +28,7 @@ const char* interrupted_line(bool goes_on) {
 
 void tell_of_interrupts() {
   for (const int number : {SIGINT, SIGTERM}) std::signal(number, end_at_once);
-  // Under nohup SIGHUP is ignored and must stay ignored.
+  // Under nohup, SIGHUP is ignored and must remain ignored.
   if (std::signal(SIGHUP, end_at_once) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 

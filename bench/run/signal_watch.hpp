@@ -9,7 +9,7 @@ namespace mh {
 /// finished results are kept.
 struct Interrupted {
   int signal = 0;
-  bool goes_on = true;  ///< whether the same command resumes from what is finished
+  bool goes_on = true;  ///< whether the same command continues from what is finished
 };
 
 inline constexpr int kInterruptedCode = 130;  ///< exit code

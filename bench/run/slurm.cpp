@@ -32,7 +32,7 @@ std::optional<Store> store_in(const fs::path& folder) {
   return std::optional<Store>(std::in_place, folder / "results.sqlite");
 }
 
-/// Shares, counted from 1, with runs that are neither in `out` nor in the share's folder.
+/// Shares, counted from 1, that have runs with no result in `out` or in the share's folder.
 /// @param failed  whether a failed run counts as finished
 std::vector<std::size_t> unfinished(const std::vector<Job>& jobs,
                                     const std::vector<PredictedShare>& shares, const fs::path& out,
@@ -96,7 +96,8 @@ void submit(const fs::path& folder, const std::vector<std::string>& words,
   }
 }
 
-/// Removes files of runs that do not belong to their results; the shares bring the right ones.
+/// Removes the files of a run if they do not belong to its result; merging the shares brings the
+/// right ones.
 void remove_outdated(const Suite& suite, const std::vector<Job>& jobs, const fs::path& out) {
   for (const Job& job : jobs) {
     if (!shows_another_run(out / job.spec.name, job.key)) continue;
@@ -173,7 +174,8 @@ SlurmResults run_on_slurm(const Suite& suite, const SuiteOverrides& overrides,
     submit(folder, words, options.say);
   }
 
-  // A share that was not submitted may have been planned by an earlier version of the suite.
+  // A share that was not submitted may have been planned for an earlier version of the suite, so
+  // each share is planned again.
   std::vector<fs::path> parts;
   for (std::size_t share = 1; share <= shares.size(); ++share)
     if (const fs::path part = share_folder(out, share); fs::exists(part / "results.sqlite")) {

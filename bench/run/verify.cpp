@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kFewJobs = 1, kManyJobs = 4;
 
-/// The stage at which one presentation of a frame differs; empty if none does.
+/// The first stage at which two presentations of a frame differ; empty if none does.
 template <class Presented>
 std::string stage_of_difference(const Presented& a, const Presented& b) {
   if (a.index != b.index) return "order";

@@ -11,12 +11,12 @@ namespace mh {
 
 /// Where two executions of one suite first differ.
 struct Difference {
-  std::string run;    ///< empty: the results as a whole
+  std::string run;    ///< empty if the results as a whole differ
   std::string phase;  ///< "world", "mapping", "held_out", "second_tour", "episodes" or "result"
   std::size_t frame = 0;
-  int restart = 0;    ///< of the mapping, before the frame was shown
+  int restart = 0;    ///< number of restarts of the mapping before the frame was shown
   std::string stage;  ///< "scene", "path", "order", "image", "matching", "pose", "map", "scores";
-                      ///< for episodes, which one
+                      ///< for episodes, which episode
   friend bool operator==(const Difference&, const Difference&) = default;
 };
 
@@ -40,8 +40,8 @@ struct Verification {
   std::optional<Difference> difference;
 };
 
-/// Executes a suite twice from its files, once with 1 job and once with 4, sharing nothing (no
-/// store, no cache), and compares.
+/// Executes a suite twice from its files, once with 1 job and once with 4, sharing nothing between
+/// the two (no store, no cache), and compares the results.
 /// @throws MachineError if a run failed.
 Verification verify(const Suite& suite, const SuiteOverrides& overrides, BenchOptions options);
 

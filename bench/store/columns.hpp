@@ -17,8 +17,8 @@
 #include "slam/io/settings_io.hpp"
 
 // Records as rows of SQL tables, via their lists of fields: the column definitions, and values in
-// both directions. Nested records are flattened into columns; a pose takes seven; a list is JSON
-// text; values that are unknown or not finite are null.
+// both directions. Nested records are flattened into columns; a pose takes seven columns; a list is
+// stored as JSON text; values that are unknown or not finite are stored as null.
 
 namespace mh {
 
@@ -36,7 +36,7 @@ class ColumnTexts {
   void operator()(const char* name, const T&) {
     add<T>(name, " NOT NULL");
   }
-  /// A setting: null if a system does not have it.
+  /// The column of a setting: null if the system does not have that setting.
   template <class T>
   void operator()(const char* name, const T&, const SettingRange&, const char*) {
     text_ += fmt::format("  {} {},\n", name,
@@ -80,7 +80,7 @@ std::string columns_of() {
 /// Inserts rows into a table, value by value in column order.
 class RowWriter {
  public:
-  /// The rows have all columns of the table; SQL computes the digest.
+  /// A row has a value for every column of the table except the digest, which SQL computes.
   RowWriter(SQLite::Database& db, const std::string& table)
       : statement_(db, insert_row(table, column_count(db, table))) {}
 
@@ -114,7 +114,7 @@ class RowWriter {
       if (value)
         put(*value);
       else
-        next_ += std::is_same_v<T, std::optional<SE3>> ? 7 : 1;  // stay null
+        next_ += std::is_same_v<T, std::optional<SE3>> ? 7 : 1;  // these columns are left null
     } else if constexpr (std::is_same_v<T, double>) {
       if (std::isfinite(value)) statement_.bind(next_, value);
       ++next_;

@@ -29,8 +29,8 @@ std::unique_ptr<SQLite::Database> open(const std::string& name, int flags) {
   return database;
 }
 
-/// Switches to WAL mode. Two processes that open a new file at the same time would make each
-/// other's switch fail without waiting.
+/// Switches to WAL mode. Tries repeatedly: if two processes open a new file at the same time, the
+/// switch of one fails at once instead of waiting for the other.
 void enter_wal(SQLite::Database& db) {
   constexpr int kTries = 200;
   for (int tries = 1;; ++tries) {
@@ -45,8 +45,9 @@ void enter_wal(SQLite::Database& db) {
   }
 }
 
-/// Merging copies whole rows, so an extra or missing column is an error, and a column of a
-/// different type would change numbers. Additional tables are harmless.
+/// Checks the columns of each table. Merging copies whole rows, so an extra or missing column would
+/// be an error, and a column of a different type would change numbers. Additional tables are
+/// harmless.
 void require_schema(SQLite::Database& db, const fs::path& file) {
   SQLite::Database fresh(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   fresh.exec(schema());
@@ -136,7 +137,7 @@ UnchangedFile open_unchanged(const fs::path& file) {
     opened.name = fs::absolute(file).string();
   } else if (const auto left = fs::file_size(log_of(file), error); error || left == 0) {
     opened.name = as_immutable(file);
-  } else {  // the log's content must be applied to some file
+  } else {  // the log must be applied, so both are copied
     opened.copy = std::make_unique<TemporaryFolder>(fs::temp_directory_path());
     const fs::path copy = opened.copy->path() / "results.sqlite";
     write_atomically(copy, read_file(file));

@@ -27,7 +27,7 @@ struct UnchangedFile {
 /// Opens a file without changing it; it may be in a read-only place. Checks every row.
 UnchangedFile open_unchanged(const std::filesystem::path& file);
 
-/// Checks pages as SQLite does, not rows (require_whole_table).
+/// Checks only the file's pages, as SQLite does; require_whole_table() checks rows.
 void require_whole_pages(SQLite::Database& db, const std::filesystem::path& file);
 
 /// Begins a transaction that locks for writing immediately, so that it never has to be abandoned

@@ -99,7 +99,8 @@ std::size_t Store::merge(const fs::path& other) {
       clash.reset();
       require_same_results(*database_, other, file_);
       database_->exec("INSERT OR IGNORE INTO suite SELECT * FROM other.suite");
-      // Finished results here stay; a failure is replaced by a result.
+      // Finished results of this store are kept; a failure in it is replaced by the other store's
+      // result.
       database_->exec(
           "CREATE TEMP TABLE wanted AS SELECT key FROM other.runs o WHERE NOT EXISTS "
           "(SELECT 1 FROM runs r WHERE r.key = o.key AND (r.status = 'done' OR o.status = "

@@ -41,7 +41,7 @@ void read_result(const Json& json, RunResult& run) {
   result_fields(run, read);
 }
 
-/// How many rows a run has, besides the one in `runs`.
+/// How many rows a run has, without the one in `runs`.
 std::int64_t row_count(SQLite::Database& db, const std::string& key) {
   std::int64_t count = 0;
   for (const char* table : kTablesOfRuns) {
@@ -66,7 +66,8 @@ void put_points(SQLite::Database& db, const std::string& key, const RunSpec& spe
   RowWriter rows(db, "points");
   for (std::size_t p = 0; p < spec.points.size(); ++p) {
     rows << key << p;
-    if (spec.system.takes_settings()) fields(spec.points[p], rows);  // else the rest stays null
+    if (spec.system.takes_settings())
+      fields(spec.points[p], rows);  // otherwise, the rest is left null
     rows.end_row();
   }
 }

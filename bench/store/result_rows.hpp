@@ -11,9 +11,10 @@
 
 namespace mh {
 
-// Converts a run to rows of the tables of schema.hpp and back. All within the caller's transaction.
+// Converts a run to rows of the tables of schema.hpp and back. All functions work within the
+// caller's transaction.
 
-/// Call it after the run's other rows are stored: it counts them.
+/// Stores the row in `runs`. Call it after the run's other rows are stored, since it counts them.
 void put_run(SQLite::Database& db, const std::string& key, const RunSpec& spec,
              const std::string& error, const std::string& result);
 void put_rows(SQLite::Database& db, const std::string& key, const RunResult& run);

@@ -28,7 +28,7 @@ void append(std::string& bytes, sqlite3_value* value) {
     case SQLITE_INTEGER:
       return append(bytes, 'n', static_cast<std::int64_t>(sqlite3_value_int64(value)));
     case SQLITE_FLOAT: {
-      // An integer column stores 12.0 as 12, a real one 12 as 12.0.
+      // An integer column stores 12.0 as 12, a real column 12 as 12.0: both get the same digest.
       const double number = sqlite3_value_double(value);
       if (std::abs(number) < kExact && number == std::floor(number))
         return append(bytes, 'n', static_cast<std::int64_t>(number));
@@ -102,7 +102,7 @@ void require_all_rows(SQLite::Database& db, const std::filesystem::path& file) {
   if (lost.executeStep())
     fail(fmt::format("run '{}' has {} of {} rows", ascii(lost.getColumn(0).getString()),
                      lost.getColumn(2).getInt64(), lost.getColumn(1).getInt64()));
-  // All in one statement: other processes may be adding results.
+  // All in one statement, since other processes may be adding results.
   SQLite::Statement left(
       db, fmt::format("SELECT {} - (SELECT coalesce(sum(row_count), 0) FROM runs)", of_all));
   left.executeStep();

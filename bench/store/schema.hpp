@@ -13,9 +13,9 @@ namespace mh {
 inline constexpr int kSchemaVersion = 15;
 
 /// The tables of a results file, as CREATE statements; docs/store.md explains each column. `runs`,
-/// `points`, `metrics`, `calls`, `frames`, `queries` and `episodes` are a function of suite, seeds
-/// and binary; `times` and `claims` contain everything that is not. The last column is a digest of
-/// the others (row_digest.hpp).
+/// `points`, `metrics`, `calls`, `frames`, `queries` and `episodes` depend only on suite, seeds and
+/// binary; `times` and `claims` contain everything else. The last column is a digest of the others
+/// (row_digest.hpp).
 std::string schema();
 
 /// One stamp of a mapping tour: the camera's true pose and the system's final estimate. A
@@ -25,7 +25,7 @@ struct FrameRow {
   Stamp stamp_ns = 0;
   std::optional<SE3> truth;
   std::optional<SE3> estimate;
-  std::uint32_t map = 0;  ///< that the estimate is in
+  std::uint32_t map = 0;  ///< the map that the estimate is in
 };
 
 template <MaybeConst<FrameRow> F, class Visit>

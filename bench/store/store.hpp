@@ -58,7 +58,7 @@ class Store {
   void check() const;
 
   /// Records the suite and which result belongs to which of its runs, replacing the earlier record.
-  /// Results stay.
+  /// Results are kept.
   void plan(const Suite& suite, const SuiteOverrides& overrides, const PlannedKeys& key_of_name);
   /// Whether this is exactly the recorded suite.
   bool is_planned(const Suite& suite, const SuiteOverrides& overrides,
@@ -72,14 +72,14 @@ class Store {
   /// Error of a failed run; empty if it did not fail.
   std::string error(const std::string& key) const;
 
-  /// Claims a run that is neither finished nor in progress; a claim is taken over if its process
-  /// has died, or is on another host and silent for kClaimLife_s.
+  /// Claims a run that is neither finished nor in progress. Another process's claim is taken over
+  /// if that process has died, or if it is on another host and has been silent for kClaimLife_s.
   bool claim(const std::string& key);
   void release(const std::string& key);
   void beat();  ///< marks this process's claims as alive
   static constexpr int kClaimLife_s = 120;
 
-  /// Both end the claim. A failed run's result is excluded from the tables.
+  /// put() and put_failure() also end the claim. A failed run is excluded from the tables.
   void put(const std::string& key, const RunResult& run, const RunCost& cost);
   void put_failure(const std::string& key, const RunSpec& spec, const std::string& error,
                    const RunCost& cost);
@@ -87,18 +87,18 @@ class Store {
   /// Removes a result, so that it is rerun.
   void forget(const std::string& key);
 
-  /// A finished run; `spec` supplies names and paths. Without its volume and grid.
+  /// Loads a finished run, without its volume and grid; `spec` supplies names and paths.
   RunResult load(const std::string& key, const RunSpec& spec) const;
-  /// The largest resident set of a finished run, MB; 0 if none.
+  /// The largest resident set of any finished run, MB; 0 if no run has finished.
   double largest_rss_mb() const;
 
   /// Copies the results of another store that this one lacks; returns the number of runs copied.
   /// @throws InputError if a run of the same name was planned with different settings, code or
   /// input.
   std::size_t merge(const std::filesystem::path& other);
-  /// Checks that all files can be merged. @throws InputError as merge() does, or if they are
-  /// results of different suites, or of one suite with different trials or different runs, or if
-  /// one of their results is damaged.
+  /// Checks that all files can be merged. @throws InputError as merge() does, or if they contain
+  /// results of different suites, or of the same suite with different trials or runs, or a damaged
+  /// result.
   static void check_mergeable(const std::vector<std::filesystem::path>& files);
 
   /// Rows of a query, for exports: column names first.

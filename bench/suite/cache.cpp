@@ -50,7 +50,7 @@ constexpr std::string_view kMarkerText =
     "Signature: 8a477f597d28d172789f06886806bc55\n"
     "# The cache of modelhouse. It removes entries of its own from here, and nothing else.\n";
 
-/// Whether this is itself a file (or, below, a folder), not a link to one.
+/// Whether this is itself a file (is_own_folder: a folder), not a link to one.
 bool is_own_file(const fs::path& file) {
   std::error_code error;
   return fs::symlink_status(file, error).type() == fs::file_type::regular;
@@ -99,7 +99,7 @@ std::optional<std::string> unpack(const fs::path& file) {
   return packed;
 }
 
-/// Held while an entry is computed; waits for another process that holds it.
+/// Held while an entry is computed; if another process holds it, waits for that process.
 class EntryLock {
  public:
   explicit EntryLock(const fs::path& file)
@@ -188,7 +188,7 @@ std::string Cache::get(std::string_view kind, std::string_view key,
   }
   std::string content = make();
   try {
-    // A file without an entry's header may belong to someone else.
+    // A file without an entry's header may belong to someone else, so it is moved aside.
     const fs::path aside = file.string() + ".found";
     const bool nothing = is_own_file(file) && fs::file_size(file, error) == 0;
     if (fs::exists(fs::symlink_status(file, error)) && !has_magic(file) && !nothing) {
@@ -198,13 +198,13 @@ std::string Cache::get(std::string_view kind, std::string_view key,
     write_atomically(file, pack(file, content));
     keep_within_bounds(own, content.size());
   } catch (const std::exception&) {
-    // Then nothing is cached; the work continues.
+    // Nothing is cached then; the work continues.
   }
   return content;
 }
 
 void Cache::keep_within_bounds(const fs::path& own, std::uintmax_t written_bytes) const {
-  // Looking at the entries takes longer than writing a small one.
+  // Looking at all entries takes longer than writing a small one.
   constexpr std::uintmax_t kParts = 64;
   *unseen_bytes_ += written_bytes;
   if (*unseen_bytes_ < max_bytes_ / kParts) return;

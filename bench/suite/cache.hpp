@@ -14,7 +14,7 @@ namespace mh {
 /// A cache of results that are expensive to compute and small to store, addressed by a digest of
 /// their inputs. An entry is written to a temporary file and renamed, verified by a digest when it
 /// is read, and rebuilt if it is damaged. Several processes may share one folder: a process that
-/// requests an entry that another is building waits for it.
+/// requests an entry while another one is building it waits for that one.
 ///
 /// Owns only what it wrote: everything is in its own subfolder of the given folder, which contains
 /// a marker file. Files there whose name or header is not an entry's are left alone, and links are
@@ -36,22 +36,23 @@ class Cache {
   /// $XDG_CACHE_HOME/modelhouse, else ~/.cache/modelhouse; empty where neither is known.
   static std::filesystem::path default_folder();
   /// Why nothing can be cached: the folder cannot be written, the disk is full, or the subfolder's
-  /// name is taken by something else. Empty if it can.
+  /// name is taken by something else. Empty if entries can be cached.
   std::string why_unwritable() const;
 
   static constexpr std::uintmax_t kDefaultBytes = std::uintmax_t{4} << 30;
   static constexpr const char* kOwnFolder = "modelhouse-cache";
 
  private:
-  /// Creates it if missing. @throws InputError if it cannot be created, or is not the cache's.
+  /// Returns the cache's own subfolder; creates it if missing. @throws InputError if it cannot be
+  /// created, or if a folder of that name is not the cache's.
   std::filesystem::path own_folder() const;
-  /// Looks at all entries, but only after a fraction of the bound has been written since the last
-  /// look.
+  /// Removes the least recently read entries beyond max_bytes. Looks at the entries only after a
+  /// fraction of max_bytes has been written since the last look.
   void keep_within_bounds(const std::filesystem::path& own, std::uintmax_t written_bytes) const;
 
   std::filesystem::path folder_;
   std::uintmax_t max_bytes_;
-  // Written since the last look; shared by copies.
+  // Bytes written since the last look; shared by copies of this object.
   std::shared_ptr<std::atomic<std::uintmax_t>> unseen_bytes_;
 };
 

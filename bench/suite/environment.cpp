@@ -124,7 +124,8 @@ std::vector<fs::path> matching_files(const YamlReader& pattern, const fs::path& 
   return files;
 }
 
-/// Identifies an environment's place, regardless of its name and of how its recordings are written.
+/// Identifies an environment's place, regardless of the environment's name and of how the paths of
+/// its recordings are written.
 Environment place_of(Environment e, const SuitePaths& paths) {
   e.name = e.category = "";
   if (e.is_recorded()) {  // with a different calibration it is still the same place

@@ -57,7 +57,7 @@ struct EpisodesSpec {
   friend bool operator==(const EpisodesSpec&, const EpisodesSpec&) = default;
 };
 
-/// All but the variants: the section's single values.
+/// Lists all members but the variants, that is, the section's single values.
 template <MaybeConst<EpisodesSpec> E, class Visit>
 void episode_settings(E& episodes, Visit& v) {
   auto& [goals, starts, seed, limit_s, arrival_m, ticks_per_frame, dark_s, variants] = episodes;

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct Token {
   char op = 0;                      ///< ; & | < > ( ) or newline; 0 = a word
   std::string raw;                  ///< as written
-  std::optional<std::string> text;  ///< after the shell's expansion; absent: not understood
+  std::optional<std::string> text;  ///< after the shell's expansion; absent if not understood
 };
 
 /// Splits a command as /bin/sh does. A word is understood if it consists of letters, quotes,

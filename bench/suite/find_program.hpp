@@ -12,8 +12,8 @@
 namespace mh {
 
 /// Checks before any work that the library exists, or that the first program of an outside command
-/// exists and is executable, looked up as /bin/sh will: by its path from the program's folder, or
-/// on PATH. A first word that is not understood (see files_of) is not checked.
+/// exists and is executable. It is looked up in the same way as /bin/sh will: by its path from the
+/// program's folder, or on PATH. A first word that is not understood (see files_of) is not checked.
 /// @throws InputError naming the suite's line, system, command and program.
 void require_program(const OutsideProgram& program);
 
@@ -23,20 +23,20 @@ struct ProgramFile {
   std::filesystem::path file;  ///< its path
 };
 
-/// Lists, each once: the command's first program that is not a shell builtin or keyword, as /bin/sh
-/// will find it; every other word of the command that names a regular file relative to the
-/// program's folder (also after a '='); the library, settings and inputs. Quotes, backslashes, a
-/// leading ~ and environment variables are understood. Left out are files that do not exist or
-/// cannot be read, those that > or tee writes to, relative words after a `cd`, and words with a
-/// placeholder, a pattern, a substitution or a variable that the command sets.
+/// Lists these files, each once: the command's first program that is not a shell builtin or
+/// keyword, as /bin/sh will find it; every other word of the command that names a regular file
+/// relative to the program's folder (also after a '='); the library, settings and inputs. Quotes,
+/// backslashes, a leading ~ and environment variables are understood. Left out are files that do
+/// not exist or cannot be read, those that > or tee writes to, relative words after a `cd`, and
+/// words with a placeholder, a pattern, a substitution or a variable that the command sets.
 std::vector<ProgramFile> files_of(const OutsideProgram& program);
 
 /// The environment variables that the command names, with their values; absent if not set.
 /// Variables that it sets itself, and PWD, are left out.
 std::map<std::string, std::optional<std::string>> variables_of(const OutsideProgram& program);
 
-/// Returns a warning if a command that names no inputs starts a program that is not among its
-/// files: cached results would survive a change of the program. Empty otherwise.
+/// Returns a warning if a command without `inputs` starts a program that files_of() does not find:
+/// cached results would then be reused after a change of the program. Empty otherwise.
 std::string unseen_program(const OutsideProgram& program);
 
 }  // namespace mh

@@ -8,8 +8,8 @@ namespace mh {
 /// Compiler, build type and versions of the libraries that results depend on.
 nlohmann::ordered_json build_json();
 
-/// Build and machine, since the last bits may depend on them. Part of the files that contain times,
-/// never of results.json.
+/// Build and machine, since the last bits may depend on them. It is part of the files that contain
+/// times, and never part of results.json.
 nlohmann::ordered_json fingerprint_json();
 
 }  // namespace mh

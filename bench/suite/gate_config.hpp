@@ -10,10 +10,11 @@
 
 namespace mh {
 
-/// How much worse a measure may get: the greater of the two limits. If both are 0, not at all.
+/// How much worse a measure may get: by the greater of the two limits. If both are 0, it may not
+/// get worse at all.
 struct Tolerance {
   double absolute = 0;  ///< in the measure's unit
-  double relative = 0;  ///< of the baseline's median
+  double relative = 0;  ///< as a share of the baseline's median
   double of(double baseline_median) const;
 };
 
@@ -22,7 +23,8 @@ using Tolerances = std::map<std::string, Tolerance, std::less<>>;
 
 struct GateConfig {
   Tolerances tolerances;
-  std::map<std::string, Tolerances, std::less<>> of_scenario;  ///< override those above
+  std::map<std::string, Tolerances, std::less<>>
+      of_scenario;  ///< by environment, overriding `tolerances`
 };
 
 /// Reads the section `check` of a suite: `tolerances: {MEASURE: NUMBER | {absolute, relative}}`

@@ -11,14 +11,16 @@
 namespace mh {
 
 /// Queries drawn by their distance and angle from the nearest mapped view, the same number in each
-/// cell of a grid of both.
+/// cell of a grid over both.
 struct GradedSpec {
   std::vector<double> distance_m, angle_deg;  ///< edges of the bins, increasing
   std::size_t per_bin = 10;                   ///< queries in each pair of bins
   std::uint64_t seed = 0;                     ///< of the draw
-  /// If mapping was a handheld scan: multiples of its speed at which each query's scan is played.
+  /// If the mapping was a handheld scan: each query's scan is played at each of these multiples of
+  /// its speed.
   std::vector<double> speed = {1.0};
-  /// A view is counted, not asked, if the mapped frames show less than this share of its surface.
+  /// A drawn view is only counted, not used as a query, if the mapped frames show less than this
+  /// share of its surface.
   double least_shown = 0.05;
   friend bool operator==(const GradedSpec&, const GradedSpec&) = default;
 };

@@ -77,7 +77,7 @@ std::vector<InputDigest> inputs_of_program(const SystemSpec& system) {
 std::vector<InputDigest> InputReader::inputs_of(const Environment& e) {
   std::vector<InputDigest> inputs;
   if (e.is_recorded()) {
-    // What is read of a recording depends on the files given with it, too.
+    // What is read from a recording also depends on the files given with it.
     const std::string beside = fmt::format("{} {} {}", e.settings.value_or("").string(),
                                            e.classes.value_or("").string(), e.topics);
     const auto add = [&](const char* name, const std::string& sequence) {
@@ -180,7 +180,7 @@ void InputReader::load(SourceKind kind, const fs::path& file, const SceneFrame& 
     case SourceKind::kScene:
       if (is_generated(file))  // depends only on its name; expensive to create
         return static_cast<void>(parse_generated(file.string()));
-      forget_scene();  // to read it again: only what is read is noted
+      forget_scene();  // so that it is read again: only what is read now is noted
       return static_cast<void>(scene(file, frame));
     case SourceKind::kMotion:
       return check_motion(file);

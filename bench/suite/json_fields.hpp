@@ -22,8 +22,8 @@
 #include "slam/io/words.hpp"
 
 // Records as JSON, via their lists of fields (slam/io/fields.hpp). Values that are unknown or not
-// finite become null, a digest becomes 16 hexadecimal digits, a pose [x, y, z, qx, qy, qz, qw], an
-// enumerator its word in words(value).
+// finite become null; a digest becomes 16 hexadecimal digits; a pose becomes [x, y, z, qx, qy, qz,
+// qw]; an enumerator becomes its word in words(value).
 
 namespace mh {
 
@@ -32,7 +32,7 @@ inline constexpr bool kIsDigest = false;
 template <class T>
 inline constexpr bool kIsDigest<Digest<T>> = true;
 
-/// JSON key of a field in a list of fields: its name, or that of its metric
+/// JSON key of a field in a list of fields: its name, or the name of its metric
 /// (bench/protocol/metrics).
 inline std::string key_of(const char* name) {
   return name;

@@ -41,7 +41,7 @@ std::string own_name(const YamlReader& node, const std::string& called) {
   return called;
 }
 
-/// `{of: exact, name: confused_25, confusion: 0.25}`
+/// Reads a dose: `{of: exact, name: confused_25, confusion: 0.25}`.
 Labels read_dose(YamlReader node) {
   const YamlReader of = node.at("of");
   const LabelMode kind = one_of(of, words(LabelMode{}));

@@ -55,13 +55,13 @@ void fields(L& labels, Visit& v) {
 
 /// "exact", "none"; for a detector or a dose, its own name.
 std::string name(const Labels& labels);
-/// "exact labels", "labels from boxes", "no labels", "labels from yolox_nano", "exact labels,
-/// confused_25"
+/// For texts: "exact labels", "labels from boxes", "no labels", "labels from yolox_nano", "exact
+/// labels, confused_25".
 std::string with_labels(const Labels& labels);
 
-/// Reads a kind of labels, or a mapping: either `of` (a kind that is rendered from a scene), `name`
-/// and fields of LabelNoiseConfig, or the fields of read_detector() and `name`, which defaults to
-/// the name of the network's or the boxes' file.
+/// Reads a kind of labels, or a mapping. A mapping for a dose has `of` (a kind that is rendered
+/// from a scene), `name` and fields of LabelNoiseConfig; one for a detector has the fields of
+/// read_detector() and `name`, which defaults to the name of the network's or the boxes' file.
 /// @param folder  what its paths are relative to
 /// @throws InputError naming file, line and value
 Labels read_label_source(YamlReader node, const std::filesystem::path& folder);

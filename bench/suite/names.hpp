@@ -21,7 +21,8 @@ inline std::vector<YamlReader> items_of(const YamlReader& node) {
   return items;
 }
 
-/// @param values  of the list's items. @throws InputError at the first that repeats an earlier one.
+/// @param values  the values of the list's items. @throws InputError at the first item that repeats
+/// an earlier one.
 template <class T>
 void require_distinct(const YamlReader& list, const std::vector<T>& values) {
   const std::vector<YamlReader> items = list.items();

@@ -42,10 +42,10 @@ std::string replace_placeholders(std::string_view text,
   return result;
 }
 
-/// The first part of a command in single quotes, or in double quotes and without a space, that
-/// contains a placeholder: the quotes around its value would end the former and be literal in the
-/// latter. A command for another shell ("sh -c") contains spaces and may contain placeholders.
-/// Empty if there is none.
+/// The first quoted part of a command that wrongly contains a placeholder; empty if there is none.
+/// A placeholder's value comes with its own single quotes: within single quotes, they would end the
+/// quoted part; within double quotes, they would be literal. Double-quoted parts with spaces are
+/// accepted, since they may be commands for another shell ("sh -c").
 std::string quoted_placeholder(const std::string& command) {
   for (std::size_t at = command.find_first_of("'\"\\"); at < command.size();
        at = command.find_first_of("'\"\\", at)) {

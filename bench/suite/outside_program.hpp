@@ -37,10 +37,10 @@ struct OutsideProgram {
   std::vector<std::string> inputs = {};
   /// A shared library in place of a command, relative to `folder`: modelhouse-library-host runs it.
   std::string library = {};
-  std::string settings = {};  ///< of the library, relative to `folder`; empty: none
+  std::string settings = {};  ///< settings file of the library, relative to `folder`; empty: none
   /// Files and folders that it must not see; not read from the suite.
   std::vector<std::filesystem::path> hidden = {};
-  std::string place = {};  ///< "suite.yaml:12", for messages; empty: not from a file
+  std::string place = {};  ///< "suite.yaml:12", for messages; empty if not from a file
   bool is_library() const { return !library.empty(); }
   friend bool operator==(const OutsideProgram&, const OutsideProgram&) = default;
 };
@@ -49,7 +49,7 @@ struct OutsideProgram {
 std::string described(const OutsideProgram& program);
 
 /// Lists the limits of a program: visit(key, value, range, meaning, mode), where `mode` is the only
-/// one that the limit applies to; absent: both.
+/// mode that the limit applies to, or absent if it applies to both.
 template <MaybeConst<OutsideProgram> P, class Visit>
 void limits(P& p, Visit&& visit) {
   const auto both = std::optional<OutsideMode>();
@@ -67,8 +67,8 @@ void limits(P& p, Visit&& visit) {
         both);
 }
 
-/// Describes it to another process: all members but `hidden` and `place`, which only the process
-/// that starts it uses.
+/// Lists the members that describe a program to another process: all but `hidden` and `place`,
+/// which only the process that starts the program uses.
 template <MaybeConst<OutsideProgram> P, class Visit>
 void fields(P& program, Visit& v) {
   auto& [name, command, mode, folder, run_limit_s, reply_limit_s, memory_limit_mb, disk_limit_mb,
@@ -98,7 +98,7 @@ std::string shell_quoted(std::string_view value);
 std::string expand_command(
     std::string_view command,
     const std::vector<std::pair<std::string_view, std::string>>& placeholders);
-/// Like expand_command(), but for one placeholder; the others stay.
+/// Like expand_command(), but replaces only one placeholder and leaves the others unchanged.
 std::string fill_in(std::string_view command, std::string_view placeholder, std::string_view value);
 
 }  // namespace mh

@@ -11,7 +11,8 @@
 
 namespace mh {
 
-/// Reported facts about a path. NaN: unknown, since the path was cut or recorded.
+/// Reported facts about a path. A value is NaN if it is unknown because the path was cut or
+/// recorded.
 struct PathFacts {
   std::size_t frames = 0;
   std::size_t true_poses = 0;  ///< frames whose true pose is known
@@ -33,8 +34,8 @@ void fields(P& path, Visit& v) {
 /// Graded queries in one pair of bins, given by their indices.
 struct GradedCell {
   std::size_t distance = 0, angle = 0;
-  std::size_t asked = 0;   ///< poses, each asked at every speed
-  std::size_t hidden = 0;  ///< drawn, but the mapped frames show too little of what they see
+  std::size_t asked = 0;   ///< poses used as queries, each at every speed
+  std::size_t hidden = 0;  ///< drawn, not used: mapped frames show too little of their view
 };
 
 template <MaybeConst<GradedCell> C, class Visit>
@@ -55,8 +56,8 @@ struct PlaceFacts {
   std::optional<PathFacts> query_tour;
   std::vector<GradedCell> graded = {};  ///< empty: no graded queries
   bool cut = false;                     ///< the tours were cut after RunSpec::max_frames
-  /// A line about each part of its recordings that could not be used or was repaired, without their
-  /// path.
+  /// A line about each part of its recordings that could not be used or was repaired, without the
+  /// recording's path.
   std::vector<std::string> notes = {};
   std::vector<InputDigest> inputs;
 };

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// What is reset after a frame was dropped (section 3.1 of the paper leaves it open).
+/// What is reset after a frame was dropped (section 3.1 of the paper leaves this open).
 enum class DropReset {
   kCounter,  ///< the count of failed restarts is cleared, the map is kept
   kMap,      ///< the system discards its map, too
@@ -32,9 +32,10 @@ constexpr std::array<std::pair<std::string_view, OnFailure>, 2> words(OnFailure)
 /// What a query's answer is compared with.
 enum class QueryTruth {
   kLocal,  ///< the nearest mapped frame's estimate, propagated to the query by the true motion
-  /// Interpolated in time between the estimates of the mapped frames before and after (section 3.2
-  /// of the paper: "based on the camera poses with neighboring frames"). Needs no ground truth, but
-  /// inherits the errors of the estimates. Without two near neighbors, kLocal applies.
+  /// The estimate interpolated in time between the mapped frames before and after the query
+  /// (section 3.2 of the paper: "based on the camera poses with neighboring frames"). Needs no
+  /// ground truth, but inherits the errors of the estimates. Without two near neighbors, kLocal
+  /// applies.
   kInterpolated,
 };
 
@@ -60,8 +61,8 @@ struct ProtocolConfig {
   int restarts_per_frame = 5;
   DropReset reset = DropReset::kCounter;
   int hopeless_after = 0;
-  /// A system that never recovers would otherwise cost restarts_per_frame + 1 rewinds for each
-  /// dropped frame.
+  /// Limit on the track calls of a mapping, in multiples of the number of frames. Without it, a
+  /// system that never recovers would cost restarts_per_frame + 1 rewinds for each dropped frame.
   double max_effort = 6.0;
   int query_attempts = 5;
   Attempts attempts = Attempts::kSameFrame;
@@ -72,12 +73,12 @@ struct ProtocolConfig {
   friend bool operator==(const ProtocolConfig&, const ProtocolConfig&) = default;
 };
 
-/// Settings that affect only queries: maps made with different values are the same.
+/// Settings that affect only queries: maps do not depend on them.
 inline constexpr const char* kProtocolOfQueries[] = {"query_attempts",    "attempts",
                                                      "max_blank_frames",  "correct_distance_m",
                                                      "correct_angle_deg", "truth"};
 
-/// A camera's feed: every frame once, none held out.
+/// The settings of a live camera's feed: every frame is shown once, and none is held out.
 inline ProtocolConfig live_feed() {
   ProtocolConfig config;
   config.test_interval = 0;

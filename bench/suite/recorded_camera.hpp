@@ -26,7 +26,7 @@ bool settings_have_camera(const std::filesystem::path& file);
 /// it is not a settings file.
 std::optional<double> stated_depth_per_meter(const std::filesystem::path& file);
 
-/// The same configuration, with calibrations read from settings files.
+/// Returns the configuration, changed so that calibrations are read from settings files.
 /// @param read  receives all settings in the file that has the camera; may be null
 RecordingConfig with_settings(RecordingConfig config, Settings* read);
 

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Reads a recording by its name, with its path relative to the suite.
-/// @param topics  of its messages; absent: none are named
+/// @param topics  ROS topics of the recording; absent if none are named
 std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int index,
                           const std::optional<YamlReader>& topics) {
   const auto [layout, path] = split_sequence(with_index(node.as_string(), index));
@@ -53,7 +53,7 @@ void check_topics(const YamlReader& topics) {
   }
 }
 
-/// Files of a recording other than its frames, shared by all environments of an entry.
+/// What an entry names in addition to its recordings of frames, the same for all its environments.
 struct BesideFrames {
   std::optional<YamlReader> queries, topics;
   std::optional<fs::path> settings, classes;
@@ -125,7 +125,7 @@ std::vector<FoundRecording> find_recordings(const YamlReader& pattern, const Sui
   return found;
 }
 
-/// Reads "Bathroom: bathroom" and so on; empty if the entry has none.
+/// Reads `categories`, "Bathroom: bathroom" and so on; empty if the entry has none.
 std::map<std::string, std::string> read_categories(YamlReader& node) {
   std::map<std::string, std::string> categories;
   if (auto map = node.find("categories"))

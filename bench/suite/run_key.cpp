@@ -49,7 +49,7 @@ nlohmann::ordered_json determining(RunSpec spec, std::span<const InputDigest> in
   return json;
 }
 
-/// The last part of a path: its name, regardless of where it is.
+/// The last part of a path: the name of a file, regardless of where it is.
 fs::path name_of(const fs::path& source) {
   return is_generated(source) ? source : source.filename();
 }

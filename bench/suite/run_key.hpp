@@ -20,8 +20,8 @@ std::string run_key(const RunSpec& spec, std::span<const InputDigest> inputs);
 void require_key(const RunSpec& spec, std::span<const InputDigest> read, const std::string& key);
 [[noreturn]] void throw_changed(const RunSpec& spec);
 
-/// Like run_key(), but for a run's finished map: omits what affects only its queries, so that runs
-/// that differ in nothing else share the map.
+/// Like run_key(), but for a run's finished map: omits what affects only the queries, so that runs
+/// that differ only in their queries share the map.
 std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs);
 
 /// The spec as stored with a result: names instead of paths, so that it does not depend on where

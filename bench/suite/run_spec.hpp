@@ -30,7 +30,7 @@ struct RunSpec {
   ProtocolConfig protocol;
   std::vector<Sense> senses = {};
   std::optional<GradedSpec> graded = {};
-  std::optional<EpisodesSpec> episodes = {};  ///< asked after the queries
+  std::optional<EpisodesSpec> episodes = {};  ///< run after the queries
   /// Labels of the frames of a run with episodes: the objects of the robot's map are made from
   /// them, even if the system sees no labels.
   Labels map_labels = {};
@@ -71,8 +71,8 @@ inline const Labels& labels_of_frames(const RunSpec& run) {
   return run.episodes ? run.map_labels : run.labels;
 }
 
-/// Settings as a system sees them: neutral semantics for the plain one, none for an outside
-/// program.
+/// Settings as a system sees them: neutral semantics for the plain system, no settings for an
+/// outside program.
 SlamConfig settings_of(const SystemSpec& system, const SlamConfig& settings);
 
 /// The parameter points of a suite: those of its sweep, otherwise its own settings only.
@@ -80,8 +80,9 @@ std::vector<SharedSlamConfig> parameter_points(const Suite& suite);
 
 /// Returns every run, ordered by environment, level, trial, parameters, system, labels. The plain
 /// system never uses labels (its own test checks this), so it runs once and is compared with every
-/// kind of label. A parameter that a system ignores adds no runs and no points for it: from a
-/// sweep, the plain system takes the points that differ in alpha or beta, an outside program none.
+/// kind of label. A parameter that a system ignores adds neither runs nor points for that system:
+/// of a sweep's points, the plain system takes only those that differ in alpha or beta, and an
+/// outside program takes none.
 std::vector<RunSpec> expand(const Suite& suite);
 
 }  // namespace mh

@@ -12,12 +12,12 @@ enum class Shipped { kSuite, kScene, kTour, kRobot, kLevel, kVocabulary, kSettin
 
 /// The folder that contains bench/suites, scenes, robots, sim/sensors/levels and assets: that of
 /// the installed package next to the executable (../share/modelhouse) or of the Python package,
-/// otherwise the source tree.
+/// otherwise that of the source tree.
 std::filesystem::path data_folder();
 
 /// The names of everything of a kind that is shipped, in alphabetical order: a file's name without
-/// its extension; for a scene house.yaml, the name of its folder (model_house); for a tour in
-/// `tours` next to it, both (model_house/mapping).
+/// its extension; for a scene house.yaml, the name of its folder (model_house); for a tour in the
+/// folder `tours` next to a house.yaml, both names (model_house/mapping).
 std::vector<std::string> shipped_names(Shipped what);
 
 /// The file that a user's word refers to: the file of that name if it exists, otherwise what is

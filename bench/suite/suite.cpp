@@ -37,7 +37,7 @@ std::size_t system_named(const YamlReader& node, const std::vector<SystemSpec>& 
   return static_cast<std::size_t>(found - systems.begin());
 }
 
-/// Reads pairs of different systems, each once; default: semantic and plain.
+/// Reads pairs of different systems, no pair twice; default: semantic and plain.
 std::vector<SystemPair> read_compare(YamlReader& yaml, const std::vector<SystemSpec>& systems) {
   std::vector<SystemPair> pairs;
   const auto node = yaml.find("compare");
@@ -71,7 +71,7 @@ Environment& only_environment(Suite& suite, const char* option) {
   return suite.environments.front();
 }
 
-/// Reads the levels of scenes; adds the one of recordings if there are any.
+/// Reads the levels of scenes; adds kRecordedLevel if there are recordings.
 std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, const Suite& suite) {
   const auto is_recorded = [](const Environment& e) { return e.is_recorded(); };
   std::vector<fs::path> levels;
@@ -90,7 +90,8 @@ std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, con
   return levels;
 }
 
-/// Boxes from a file belong to the frames of one sequence, so no environment may have a second.
+/// Boxes from a file belong to the frames of one sequence, so no environment may have a second
+/// sequence.
 void check_boxes(const YamlReader& node, const Labels& labels, const Suite& suite) {
   if (!labels.detector || labels.detector->boxes.empty()) return;
   for (const Environment& e : suite.environments)

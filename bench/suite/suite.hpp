@@ -30,7 +30,8 @@ constexpr Names<Published, 1> words(Published) {
   return {{{"table2", Published::kTable2}}};
 }
 
-/// A robot's other sensors, whose readings are given to the systems under test.
+/// A robot's sensors, in addition to the camera, whose readings are given to the systems under
+/// test.
 enum class Sense { kOdometry, kImu, kLaser };
 constexpr Names<Sense, 3> words(Sense) {
   return {{{"odometry", Sense::kOdometry}, {"imu", Sense::kImu}, {"laser", Sense::kLaser}}};
@@ -70,8 +71,8 @@ struct Suite {
   Sweep sweep;
   ProtocolConfig protocol;
   std::vector<Sense> senses;             ///< given while mapping, in addition to the camera
-  std::optional<GradedSpec> graded;      ///< asked in every environment
-  std::optional<EpisodesSpec> episodes;  ///< also in every environment: a robot drives by its map
+  std::optional<GradedSpec> graded;      ///< queries asked in every environment
+  std::optional<EpisodesSpec> episodes;  ///< run in every environment: a robot drives by its map
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;
@@ -79,7 +80,7 @@ struct Suite {
   std::optional<double> non_inferiority_margin;
   std::optional<Published> published;
   /// ATE (RMSE, m) that others published, by system, then environment. Shown next to the measured
-  /// ones.
+  /// ATE.
   std::map<std::string, std::map<std::string, double>> published_ate_m;
   GateConfig gate;                         ///< what `modelhouse check` tolerates
   std::optional<std::size_t> max_frames;   ///< truncates the tours: for a quick look
@@ -129,7 +130,7 @@ Suite parse_suite(const std::string& content, const std::filesystem::path& file,
 inline constexpr const char* kRecordedLevel = "recorded";
 
 /// Whether runs of an environment may use these labels: a recording has recorded labels, a scene
-/// simulated ones; both may run without labels or with those of a real detector.
+/// has simulated ones; both may run without labels or with those of a real detector.
 bool fits(const Environment& environment, const Labels& labels);
 /// Whether an environment is run at this level. Recordings are run only at kRecordedLevel, scenes
 /// only at other levels.

@@ -13,7 +13,7 @@
 namespace mh {
 
 /// Whether a sweep varies only the parameters of the queries, on one map built with the suite's own
-/// settings, or rebuilds the map for each point. Every table states which.
+/// settings, or rebuilds the map for each point. Every table states which of the two applies.
 enum class SweepMap { kFixed, kRebuilt };
 std::string_view name(SweepMap map);
 
@@ -27,14 +27,14 @@ struct Sweep {
 
 /// Reads the section `parameters`: `map: fixed | rebuilt`, and either a grid (any settings, each
 /// with a list of values: `features.count: [500, 1000]`; the last one varies fastest) or `sobol:
-/// {points, seed, ranges: {semantics.gamma: [low, high], ...}}`. On a fixed map only the section
+/// {points, seed, ranges: {semantics.gamma: [low, high], ...}}`. On a fixed map, only the section
 /// `semantics` can vary.
 /// @param base  settings that are not varied
 /// @throws InputError naming file, line, field and value.
 Sweep read_sweep(YamlReader node, const SlamConfig& base);
 
-/// The name of a setting in tables and images: the paper's symbols as they are ("gamma"), others by
-/// their full names.
+/// The name of a setting in tables and images: the paper's symbol if it has one ("gamma"),
+/// otherwise its full name.
 std::string_view shown_name(std::string_view setting);
 
 /// How much labels weigh in equation 1, given as a factor or as the share of a vector's mass that
@@ -45,7 +45,7 @@ inline bool weighs_labels(std::string_view setting) {
   return setting == kGamma || setting == kLabelMass;
 }
 
-/// The value of a setting in tables and images: numbers to four digits.
+/// The value of a setting in tables and images; numbers are rounded to four digits.
 std::string shown_value(const SlamConfig& config, std::string_view setting);
 
 /// The settings that the sweep varies, with their values: "gamma 1, features.count 500".

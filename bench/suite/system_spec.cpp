@@ -39,7 +39,7 @@ void read_library(YamlReader& node, OutsideProgram& program, const SuitePaths& p
   }
 }
 
-/// A program for each combination of the values of its command's own placeholders.
+/// One system for each combination of the values of the command's own placeholders.
 std::vector<SystemSpec> varied(const SystemSpec& spec, YamlReader vary) {
   std::vector<SystemSpec> all{spec};
   for (const auto& [placeholder, list] : vary.entries()) {

@@ -14,7 +14,8 @@
 namespace mh {
 namespace {
 
-/// Keyframes left by Algorithm 1, and which queries its sums come from.
+/// The numbers of keyframes left by Algorithm 1, and how many scores in its sums are from earlier
+/// queries.
 Candidates as_candidates(const CandidateCounts& c, double gamma) {
   Candidates candidates{.keyframes = c.keyframes,
                         .c1 = c.c1,
@@ -51,7 +52,8 @@ SystemReport as_report(const StepReport& step, const SlamState& state) {
 
 class BuiltinSession : public RelocalizationSession {
  public:
-  /// @param stale_scores  left by earlier sessions, and by this one for the next; may be null
+  /// @param stale_scores  scores left by earlier sessions, to which this session adds its own; may
+  /// be null
   BuiltinSession(const SlamState& frozen, const StepObservers& observers,
                  StaleScores* stale_scores = nullptr)
       : frozen_(frozen), observers_(observers), stale_scores_(stale_scores) {
@@ -158,11 +160,11 @@ class BuiltinSystem : public System {
     const SemanticConfig& settings = state_.config.semantics;
     for (auto& [of, scores] : stale_scores_)
       if (of == settings) return &scores;
-    // Initially as mapping left them.
+    // Initially, the scores are as mapping left them.
     return &stale_scores_.emplace_back(settings, state_.tracker.stale_scores).second;
   }
 
-  /// Starts a new map in place of this one, if the frame can initialize it.
+  /// Starts a new map in place of the present one, if the frame can initialize a map.
   std::optional<SystemReport> begin_anew(const RgbdFrame& frame, RandomStream stream) {
     SlamState anew = make_slam(state_.camera, state_.config, state_.vocabulary);
     const StepReport first = step(anew, frame, stream, options_.observers);
@@ -176,8 +178,8 @@ class BuiltinSystem : public System {
   std::unique_ptr<SlamState> own_;
   SlamState& state_;
   BuiltinOptions options_;
-  /// Under NeighborScores::kAsReleased, sessions with the same query settings share these scores
-  /// and so depend on their order. Sessions hold pointers into it.
+  /// Under NeighborScores::kAsReleased, sessions with the same query settings share these scores,
+  /// so that answers depend on the order of the sessions. Sessions hold pointers into this list.
   mutable std::list<std::pair<SemanticConfig, StaleScores>> stale_scores_;
   bool found_ = false;  ///< a frame was tracked in this map
   bool frozen_ = false;

@@ -19,14 +19,15 @@ std::unique_ptr<System> make_builtin_system(const Camera& camera, const SlamConf
 struct BuiltinOptions {
   StepObservers observers = {};
   /// When tracking is lost, a map of at most this many keyframes is discarded at the first lost
-  /// frame that can start a new one, as the original ORB-SLAM2 does: such a map is soon rebuilt,
-  /// whereas a place seen briefly may never be seen again. 0: never.
+  /// frame that can start a new one, as the original ORB-SLAM2 does. Such a small map is soon
+  /// rebuilt, whereas waiting to relocalize in it may never end, since the place that it shows may
+  /// never be seen again. 0: never discarded.
   int small_map = 0;
   std::vector<SemanticConfig> points = {};  ///< as for make_builtin_system()
 };
 
-/// Like the function above, on a state that the caller owns and that outlives the system: a map
-/// that was loaded or will be saved.
+/// Like the function above, on a state that the caller owns and that outlives the system, such as a
+/// map that was loaded or will be saved.
 std::unique_ptr<System> make_builtin_system(SlamState& state, const BuiltinOptions& options);
 
 }  // namespace mh

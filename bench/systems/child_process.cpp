@@ -32,7 +32,7 @@ constexpr auto kLook = std::chrono::milliseconds(500);       // between two chec
 constexpr double kMegabyte = 1024.0 * 1024.0;
 constexpr double kLogLimit_mb = 64;                      // docs/outside_systems.md
 constexpr int kMoment_ms = 2000;                         // grace for a program that closed its pipe
-constexpr std::size_t kMostSaid = 200, kMostTold = 600;  // bytes: log line, message
+constexpr std::size_t kMostSaid = 200, kMostTold = 600;  // maximum bytes of log line, message
 
 Clock::time_point after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -116,7 +116,7 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   };
   log_file_ = new_log(log_);
   if (log_file_ < 0) machine(log_.string());
-  int in[2] = {-1, -1}, out[2] = {-1, -1};  // ours, the child's
+  int in[2] = {-1, -1}, out[2] = {-1, -1};  // our end, the child's end
   if (talk == Talk::kOverPipes) {
     // A socket, not a pipe: writing to a program that has exited must return an error, not raise
     // SIGPIPE.
@@ -154,7 +154,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::fail(std::string_view what) {
   watcher_->end_all();
   const std::vector<fs::path> folders = {folder_, log_.parent_path()};
-  // Read through the open file: the one of this name may have been replaced.
+  // Read through the open file, since the file with this name may have been replaced.
   std::string said = last_line_of(log_file_);
   if (said.starts_with("modelhouse: ")) said.clear();  // the watcher's note; reported separately
   said = told(without_folders(std::move(said), folders), kMostSaid);
@@ -179,7 +179,8 @@ void ChildProcess::check_limits(std::string_view doing) {
       fail(fmt::format("wrote {:.0f} MB into its folder during {}, its limit is {:g} MB", mb, doing,
                        program_.disk_limit_mb));
   }
-  // Checking takes a small share of the time, however many files there are.
+  // The next check is late enough that checking takes a small share of the time, however many files
+  // there are.
   next_look_ = Clock::now() + std::max<Clock::duration>(kLook, 20 * (Clock::now() - start));
 }
 

@@ -30,9 +30,9 @@ class ChildProcess {
   /// @param talk    kOverPipes: send() and read_line() reach its standard input and output; kNo: it
   ///                reads nothing and its output goes to the log. Its standard error always goes to
   ///                the log.
-  /// @param log     beyond 64 MB the program is stopped
-  /// @param folder  where the program may write: counts toward its disk limit, and is removed if
-  ///                this process dies before the object is destroyed
+  /// @param log     file for the log; a program whose log exceeds 64 MB is stopped
+  /// @param folder  where the program may write: its growth counts toward the disk limit, and it is
+  ///                removed if this process dies before the object is destroyed
   ChildProcess(const OutsideProgram& program, std::string command, Talk talk,
                const std::filesystem::path& log, const std::filesystem::path& folder);
   ~ChildProcess();
@@ -53,11 +53,11 @@ class ChildProcess {
   void finish(double limit_s);
 
   /// Throws an OutsideError about what the program did ("exited with code 3"), after ending the
-  /// program. Files in the log's folder and in `folder` are named relative to it, so the same
-  /// failure has the same message anywhere.
+  /// program. Files in the log's folder and in `folder` are named relative to these folders, so
+  /// that the same failure has the same message everywhere.
   [[noreturn]] void fail(std::string_view what);
 
-  /// Growth of its folder.
+  /// Growth of its folder since the start, MB.
   double written_mb() const;
 
  private:

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Request = nlohmann::ordered_json;
-// Of a reply: even with many keys, the cost stays linear in its length.
+// The type of replies: its cost is linear in a reply's length even if the reply has many keys.
 using Json = nlohmann::json;
 
 constexpr int kProtocol = 1;
@@ -41,7 +41,7 @@ std::string shortened(std::string_view line, std::size_t most = 120) {
   return line.size() > most ? text + "..." : text;
 }
 
-/// Contains k4 to k6 only if they are not all 0.
+/// The camera as JSON, with k4 to k6 only if they are not all 0.
 Request json_of(const Camera& camera) {
   const Distortion& d = camera.distortion;
   Request json = {{"width", camera.width_px},
@@ -118,7 +118,8 @@ class Conversation {
     return reply;
   }
 
-  /// Sends a request about a frame and parses the fields that any such reply may contain.
+  /// Sends a request about a frame and parses the fields that every reply about a frame may
+  /// contain.
   SystemReport ask_about(const std::string& what, const RgbdFrame& frame, RandomStream stream,
                          Request fields) {
     const FrameFiles files = image_files(frame);

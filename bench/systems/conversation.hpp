@@ -12,8 +12,8 @@ namespace mh {
 
 /// An outside program as a system under test: each call becomes a line of JSON on the program's
 /// standard input, answered by a line on its standard output (docs/outside_systems.md). Starts the
-/// program and sends the greeting; the program ends when the system is destroyed. The program
-/// receives 31 bits of a frame's stream as its seed.
+/// program and sends the greeting; the program ends when the system is destroyed. With each frame,
+/// the program receives 31 bits of the frame's stream as a seed.
 ///
 /// A program has a single map, so only the most recently opened session may be fed.
 /// @param log   file for what the program writes to its standard error

@@ -9,8 +9,8 @@
 namespace mh {
 
 /// Counts the files of a folder that any process has opened since this object was made (inotify).
-/// This shows how far a program is in a recording, whether or not it reports it. Counts nothing if
-/// the system has no inotify watches left.
+/// This shows how far a program is in a recording, even if the program does not report it. Counts
+/// nothing if the system has no inotify watches left.
 class FramesRead {
  public:
   explicit FramesRead(const std::filesystem::path& folder);

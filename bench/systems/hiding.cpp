@@ -56,7 +56,7 @@ int make_memory_private(const std::string& of_own) {
   if (of_own.empty())
     return mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, "mode=1777") == 0 ? 0 : errno;
   const char* const own = of_own.c_str();
-  // Opened here, since a folder of the outer namespace cannot be mounted in this one.
+  // Opened in this namespace, since a folder of the outer namespace cannot be mounted here.
   const int folder = open(own, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (folder < 0) return errno;
   if (mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, "mode=1777") != 0) return errno;
@@ -113,7 +113,7 @@ Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> neede
         const fs::path real = fs::weakly_canonical(one, error);
         return lies_in(real, kMemory) && !lies_in(real, own);
       });
-  std::set<fs::path> all;  // a folder before its contents
+  std::set<fs::path> all;  // sorted: a folder comes before its contents
   for (const fs::path& path : hidden)
     if (const fs::path real = fs::canonical(path, error); !error) all.insert(real);
   for (const fs::path& path : all) {

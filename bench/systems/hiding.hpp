@@ -8,17 +8,17 @@
 
 namespace mh {
 
-/// Hides files and folders from a program and whatever it starts; everything else stays visible. In
-/// the program's own mount namespace, folders are covered by an empty one, files by /dev/null, and
-/// shared memory (/dev/shm) holds only the program's own folder, so that it cannot touch another
-/// program's images. For users without privileges this requires a user namespace, in which the
-/// program cannot remove the covers; a program run by root could. If the system does not allow
+/// Hides files and folders from a program and whatever it starts; everything else remains visible.
+/// In the program's own mount namespace, folders are covered by an empty one, files by /dev/null,
+/// and shared memory (/dev/shm) holds only the program's own folder, so that it cannot touch
+/// another program's images. For users without privileges this requires a user namespace, in which
+/// the program cannot remove the covers; a program run by root could. If the system does not allow
 /// these namespaces, nothing is hidden.
 class Hiding {
  public:
   /// @param hidden  paths that do not exist are ignored
-  /// @param needed  paths that the program needs: these, and folders that contain one of them, stay
-  ///                visible
+  /// @param needed  paths that the program needs: these, and folders that contain one of them, are
+  ///                not hidden
   /// @param own     a folder that the bench made for the program, possibly in shared memory
   Hiding(std::span<const std::filesystem::path> hidden,
          std::span<const std::filesystem::path> needed, const std::filesystem::path& own);

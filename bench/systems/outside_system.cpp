@@ -58,7 +58,8 @@ class OutsideSession : public RelocalizationSession {
   SystemReport feed(const RgbdFrame& frame, RandomStream stream) override {
     assert(number_ == system_.sessions_);  // the program keeps no older session
     using enum OutsideSystem::Question;
-    // A held-out frame's own stamp, between those of its neighbors, would reveal its pose.
+    // Stamps are shifted: a held-out frame's own stamp, which lies between those of mapped frames,
+    // would reveal its pose.
     if (!later_ns_) later_ns_ = system_.after_mapping_ns() - frame.stamp_ns;
     RgbdFrame shown = frame;
     shown.stamp_ns += *later_ns_;

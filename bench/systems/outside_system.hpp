@@ -21,8 +21,9 @@ using Refuse = std::function<void(const std::string& what)>;
 /// non-finite values and a quaternion far from unit length.
 SE3 told_pose(const std::array<double, 7>& values, const Refuse& refuse);
 
-/// Refuses candidate counts that grow from step to step, a failure stage with a pose, a keyframe or
-/// the stage kVerified without a pose, and more inliers than keypoints.
+/// Refuses a report if a candidate count exceeds that of an earlier step, if it has a pose and a
+/// failure stage, if it has a keyframe or the stage kVerified but no pose, or if it has more
+/// inliers than keypoints.
 void check_told(const SystemReport& report, const Refuse& refuse);
 
 /// The seed that an outside system receives: 31 bits of a frame's stream, which fit an int
@@ -46,7 +47,7 @@ class OutsideSystem : public System {
   /// Its reply to a frame, except for the status. @param session  0 with kTrack
   virtual SystemReport ask(Question what, std::uint64_t session, const RgbdFrame& frame,
                            RandomStream stream) const = 0;
-  virtual void forget() = 0;  ///< everything, including the map
+  virtual void forget() = 0;  ///< forgets everything, including the map
   /// Ends the mapping. @returns the poses of the finished map, if it reports them
   virtual std::optional<Trajectory> end_mapping() = 0;
   virtual void begin_session(std::uint64_t) const {}

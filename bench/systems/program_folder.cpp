@@ -35,7 +35,7 @@ bool is_true_folder(const fs::path& path) {
   return fs::symlink_status(path, error).type() == fs::file_type::directory;
 }
 
-/// Restores all our permissions on a program's folder, which the program may have removed.
+/// Restores all our permissions on a program's folder: the program may have removed them.
 void open_up(const fs::path& folder) {
   std::error_code error;
   fs::permissions(folder, fs::perms::owner_all, fs::perm_options::add, error);
@@ -63,8 +63,8 @@ std::string list_of(const fs::path& folder) {
   return list;
 }
 
-/// Moves a folder to an unused name, even across disks. Across disks, anything that is not a file,
-/// folder or link, or is nested too deep, is left out.
+/// Moves a folder to an unused name, possibly on another disk. In that case, anything that is not a
+/// file, folder or link, or is nested too deep, is left out.
 void move_folder(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::rename(from, to, error);
@@ -164,7 +164,8 @@ void ProgramFolder::move_to_run() {
     std::error_code error;
     if (fs::exists(fs::symlink_status(place, error))) continue;
     move_folder(path_, place);
-    // Last, since copied files have new times. A file that the program put in its place is removed.
+    // The list is written last, since copied files have new times. Whatever the program put in its
+    // place is removed first.
     remove_tree((place / kList).c_str());
     fs::remove(place / kList, error);
     write_atomically(place / kList, list_of(place));

@@ -8,7 +8,8 @@
 
 namespace mh {
 
-/// How deep folders in a program's folder may nest: the cost of a path grows with its parts.
+/// How deep folders in a program's folder may nest: the cost of a path grows with the number of its
+/// parts.
 inline constexpr int kDeepestFolder = 100;
 
 /// The folder given to an outside program, for its dataset and its output. It is new for each run
@@ -17,8 +18,8 @@ inline constexpr int kDeepestFolder = 100;
 /// into the run's folder, as `outside`.
 ///
 /// Before that, the remains of an earlier run are removed from `outside`: the files that it
-/// contained when it was moved, unless they have changed since. If it contains anything else, it
-/// stays, and the new folder becomes `outside.2`, and so on.
+/// contained when it was moved, unless they have changed since. If `outside` contains anything
+/// else, it is kept, and the new folder becomes `outside.2`, and so on.
 class ProgramFolder {
  public:
   /// @param run  the run's folder, which exists; the program never learns its path
@@ -28,7 +29,7 @@ class ProgramFolder {
   ProgramFolder(const ProgramFolder&) = delete;
   ProgramFolder& operator=(const ProgramFolder&) = delete;
 
-  /// Where such folders are made: not below one that holds results, and with room for images.
+  /// Where such folders are made: not below a folder that holds results, and with room for images.
   static std::filesystem::path place();
 
   const std::filesystem::path& path() const { return path_; }

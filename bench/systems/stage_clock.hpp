@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// A stopwatch for the stages of steps: an outside observer, so that no algorithm needs a clock.
-/// The time of a nested stage is not counted in the outer one.
+/// A stopwatch for the stages of SLAM steps. It observes from outside, so that no algorithm needs a
+/// clock. The time of a nested stage is not counted in the outer one.
 class StageClock {
  public:
   using Times = std::array<double, static_cast<std::size_t>(Stage::kCount)>;  ///< ms by stage

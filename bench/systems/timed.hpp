@@ -13,7 +13,7 @@ namespace mh {
 /// Processor time of this process so far, s, over all its threads.
 double processor_time_s();
 
-/// Adds the processor time of its lifetime to a sum.
+/// Adds the processor time spent during its lifetime to a sum.
 class ProcessorTimer {
  public:
   explicit ProcessorTimer(double& sum_s) : sum_s_(sum_s), start_s_(processor_time_s()) {}

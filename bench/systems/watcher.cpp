@@ -168,7 +168,7 @@ class Watch {
     close_range(next, ~0U, 0);
   }
 
-  /// Reports once.
+  /// Reports the end, but only once.
   void report(WatchedEnd::Kind kind, int value) {
     const WatchedEnd end{kind, value};
     if (!reported_ && write(news_, &end, sizeof end) < 0) return;  // no reader is left

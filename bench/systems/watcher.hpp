@@ -19,8 +19,8 @@ struct WatchedCommand {
   int log = -1;                   ///< file for its standard error
   std::uint64_t log_limit_bytes = 0;
   std::uint64_t file_limit_bytes = 0;  ///< per file that it writes; 0: unlimited
-  const char* scratch = "";            ///< removed if this process ends before the watcher
-  const Hiding* hiding = nullptr;      ///< hides files from the command; null: nothing is hidden
+  const char* scratch = "";  ///< folder that is removed if this process ends before the watcher
+  const Hiding* hiding = nullptr;  ///< hides files from the command; null: nothing is hidden
 };
 
 /// How a watched command ended.
@@ -38,9 +38,9 @@ struct WatchedEnd {
 /// A process between this one and a command: the parent of the command and of whatever the command
 /// leaves behind (PR_SET_CHILD_SUBREAPER), in whatever session or process group. It kills all of
 /// them when the command has ended, when this object is destroyed, or when this process ends, for
-/// whatever reason. Only processes that another process started (such as a daemon, on request), or
-/// that this user may not kill, escape; if the watcher itself is killed, all but the command's own
-/// process escape.
+/// whatever reason. The only processes that escape are those that an unrelated process (such as a
+/// daemon) started on request and those that this user may not kill. If the watcher itself is
+/// killed, all but the command's own process escape.
 class Watcher {
  public:
   /// @throws MachineError if the process cannot be started

@@ -42,7 +42,7 @@ std::size_t used_vertices(const std::vector<std::uint32_t>& corners, std::size_t
   return static_cast<std::size_t>(std::ranges::count(used, true));
 }
 
-/// As many triangles as the size limit allows.
+/// The corners of a simplified scene with as many triangles as the size limit allows.
 std::vector<std::uint32_t> decimated(const Scene& scene) {
   std::vector<std::uint32_t> all;
   all.reserve(3 * scene.triangles.size());
@@ -58,7 +58,7 @@ std::vector<std::uint32_t> decimated(const Scene& scene) {
     few.resize(meshopt_simplify(few.data(), all.data(), all.size(), first, vertices,
                                 sizeof(Eigen::Vector3f), target, 0.02F, 0, nullptr));
     if (few.size() <= target + target / 4) continue;
-    // With many loose parts, only the other method reaches the limit.
+    // If the scene has many loose parts, only this second method reaches the limit.
     few.resize(all.size());
     few.resize(meshopt_simplifySloppy(few.data(), all.data(), all.size(), first, vertices,
                                       sizeof(Eigen::Vector3f), target, 0.1F, nullptr));

@@ -34,9 +34,10 @@ struct Replay {
 };
 
 /// Executes a run again and records it. Runs repeat bit for bit; `same` in the scene states whether
-/// this one gave the positions in the result (a results file rounds orientations).
+/// this execution gave the same positions as the result. Orientations are not compared, since a
+/// results file rounds them.
 /// @throws InputError naming the run if it uses a recording or an outside system; InputChanged if a
-/// file that it reads differs from the one behind the result.
+/// file that it reads has changed since the result was made.
 Replay make_replay(const RunResult& result, const ReplayTools& tools);
 
 }  // namespace mh

@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 enum Flag : std::uint32_t {
   kHasLandmark = 1,  ///< a keypoint: the map has a landmark for it
   kIsRight = 1,      ///< a pair: both ends show the same surface
-  kIsWrong = 2,      ///< a pair: they do not; neither flag: an end shows no surface
+  kIsWrong = 2,      ///< a pair: its ends show different surfaces; neither flag: one shows none
   kIsPenalized = 4   ///< a pair: its labels differ (equation 2)
 };
 
@@ -53,7 +53,7 @@ class ViewsOf {
  private:
   Json keyframes() const {
     std::map<Stamp, const MappedFrame*>
-        call_of;  // that made the keyframe; the last one, since earlier ones were culled
+        call_of;  // the call that made the keyframe; the last one, since earlier ones were culled
     for (const MappedFrame& call : run_.mapping.calls)
       if (call.keyframe_added) call_of[call.stamp_ns] = &call;
     Json list = Json::array();
@@ -115,8 +115,8 @@ class ViewsOf {
             {"candidates", std::move(tried)}};
   }
 
-  /// The matches by words with a keyframe: two bytes per coordinate of the query's end and of the
-  /// keyframe's, and a byte of flags.
+  /// The matches by words with a keyframe. Each has two bytes per coordinate of the query's end and
+  /// of the keyframe's end, and a byte of flags.
   std::string pairs(KeyframeId k, const MatchTrace& matches, const Features& features,
                     const TrueView& view) const {
     const Keyframe& keyframe = frozen_.map.at(k);
@@ -134,7 +134,7 @@ class ViewsOf {
     return base64(bytes);
   }
 
-  /// Two bytes per coordinate, one for the class, one of flags.
+  /// Keypoints as bytes: two per coordinate, one for the class, one for flags.
   template <class FlagOf>
   std::string keypoints(const Features& features, const FlagOf& flag_of) const {
     std::vector<std::uint8_t> bytes;
@@ -146,7 +146,7 @@ class ViewsOf {
     return base64(bytes);
   }
 
-  /// Where the image, with the camera's lens, shows a keypoint, in tenths of a pixel.
+  /// Where the image, which has the lens distortion, shows a keypoint, in tenths of a pixel.
   void put_pixel(const Keypoint& keypoint, std::vector<std::uint8_t>& bytes) const {
     const Camera& c = frozen_.camera;
     const Eigen::Vector3d ray = c.unproject(keypoint.u_px, keypoint.v_px, 1.0);

@@ -14,8 +14,8 @@ inline constexpr int kViewWidth_px = 320;
 
 /// What a run saw: the image of each keyframe with its keypoints, and for each query of the first
 /// parameter point its image, the candidates of Algorithm 1 at its first attempt, and the matches
-/// by words with each candidate, right or wrong according to the true scene. Pixel coordinates
-/// refer to these images.
+/// by words with each candidate, marked as right or wrong according to the true scene. Pixel
+/// coordinates refer to these images.
 /// @param frozen  the run's finished map; its queries are repeated separately
 nlohmann::ordered_json views_json(const RunResult& run, const World& world, SlamState& frozen);
 

@@ -14,8 +14,8 @@ namespace mh {
 namespace {
 
 constexpr double kStep_s = 0.1;      // between commands
-constexpr double kMapError_m = 0.1;  // it drives this much nearer by its map than required
-constexpr double kSettle_s = 1.0;    // to come to rest after it has reported that it stops
+constexpr double kMapError_m = 0.1;  // it drives this much closer, by its map, than required
+constexpr double kSettle_s = 1.0;    // time to come to rest after reporting that it stops
 
 constexpr std::uint64_t kNoiseStream = 0x6570, kDrawStream = 0x6571;
 
@@ -29,7 +29,7 @@ std::uint64_t digest_of(const Twist2d& command, std::uint64_t sum) {
   return digest_bytes(command.data(), sizeof(double) * 3, sum);
 }
 
-/// The same for every system, different for every variant and start.
+/// Seed of the sensor noise: the same for every system, different for every variant and start.
 std::uint64_t noise_seed(const EpisodesSpec& spec, const std::string& variant, std::size_t start) {
   const std::uint64_t of_variant = digest_bytes(variant.data(), variant.size());
   return RandomStream(spec.seed).fork(kNoiseStream).fork(of_variant).fork(start).key();

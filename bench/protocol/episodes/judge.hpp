@@ -12,7 +12,7 @@ namespace mh {
 /// How far a belief is off.
 struct PoseError {
   double away_m = 0, turned_rad = 0;
-  /// Farther than kFalsePose_m or turned by more than kFalsePose_deg.
+  /// Whether it is off by more than kFalsePose_m or kFalsePose_deg.
   bool is_false() const;
 };
 PoseError error_of(const Pose2& belief, const Pose2& truth);
@@ -26,8 +26,8 @@ struct EpisodeEnd {
   std::span<const Bump> bumps;
 };
 
-/// Completes a score that already says when the robot was located: success, SPL, contacts, the
-/// reason for a failure.
+/// Fills in success, SPL, contacts and the reason for a failure, in a score whose start and
+/// located_* are already set.
 void judge(const EpisodeEnd& end, const EpisodeStart& start, double arrival_m, EpisodeScore& score);
 
 }  // namespace mh

@@ -18,7 +18,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-// A view adds something new to the map after this much motion: at 2 m, 0.26 rad is half a meter.
+// A view adds something new to the map once the camera has moved or turned this much: when it turns
+// by 0.26 rad, a point 2 m away shifts by half a meter.
 constexpr double kMoved_m = 0.25, kTurned_rad = 0.26;
 
 /// The cells in which a wall was seen.

@@ -31,11 +31,11 @@ struct RobotMap {
 
 /// Adds what a robot's lasers read at one time.
 /// @param map_from_base  assumed pose of the robot
-/// @param lasers_m       by laser, as in RobotReading
+/// @param lasers_m       the ranges of each laser, as in RobotReading
 void add_scans(ScanGrid& scans, const Equipment& equipment, const SE3& map_from_base,
                std::span<const std::vector<float>> lasers_m);
 
-/// A grid as the navigator reads it, with the walls that its map saw.
+/// Converts a grid to the form that the navigator reads, with the walls seen in the voxel map.
 KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid);
 
 /// The cells that each object covers (their centers, m): those of its class inside its box. The box
@@ -43,8 +43,8 @@ KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid);
 std::vector<std::vector<Eigen::Vector2d>> footprints_of(const VoxelMap& map,
                                                         const std::vector<MapObject>& objects);
 
-/// Frames that the map is made from, as indices of the sequence: those with a pose at which the
-/// camera has moved or turned enough since the last one.
+/// Indices of the frames that the map is made from: they have a pose, and the camera has moved or
+/// turned enough since the previous one of them.
 std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory& estimate);
 
 /// What a map is built from.
@@ -53,17 +53,18 @@ struct MapInput {
   const Trajectory& estimate;  ///< world_from_camera in the system's own world
   const Robot& robot;
   RandomStream noise;  ///< of the frames
-  /// The scans at a frame, by laser; if empty, the grid is made from depth alone.
+  /// Returns the scans at a frame, one for each laser; if this is empty, the grid is made from
+  /// depth alone.
   std::function<std::vector<std::vector<float>>(std::size_t frame)> lasers = {};
 };
 
-/// Builds the map from depth, labels and lasers. Renders the frames again; frames that were shown
-/// again after tracking failed have the noise of their first showing here. The map is empty if
+/// Builds the map from depth, labels and lasers. Renders the frames again; a frame that was shown
+/// several times because tracking failed gets the noise of its first showing. The map is empty if
 /// nothing was tracked or no free floor was seen.
 RobotMap build_robot_map(const MapInput& input);
 
 /// The objects that a name refers to, as goals, the one with the best score first.
-/// @throws InputError with suggestions if the map has none.
+/// @throws InputError with suggestions if the map has no such object.
 std::vector<NavigatorGoal> goals_named(const RobotMap& map, const std::string& name);
 
 }  // namespace mh

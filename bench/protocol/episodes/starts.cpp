@@ -20,15 +20,15 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kClear_m = 0.05;     // around a robot that is put down
-constexpr double kSqueeze_m = 0.015;  // around one that takes the shortest path
+constexpr double kClear_m = 0.05;     // clearance around a robot that is put down
+constexpr double kSqueeze_m = 0.015;  // clearance around a robot on the shortest path
 constexpr double kLeast_m = 0.5;      // a shorter path is not a search
 
 bool is_search(double way_m) {
   return std::isfinite(way_m) && way_m >= kLeast_m;
 }
 
-/// Length (m) of the shortest path from each cell to a place where the robot has arrived.
+/// Length (m) of the shortest path from each cell to a place that counts as arrival.
 Grid2d<float> ways_to(const EpisodeStart& goal, const FloorGrid& grid, double arrival_m,
                       double clearance_m) {
   std::vector<Vector2d> ends;

@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 
 constexpr double kBeforeThing_m = 0.02;
 
-/// Whether all corners are on one side of an interval along an axis.
+/// Whether, along an axis, all corners are on one side of the interval between a and b.
 bool beside(std::span<const Vector2d> corners_m, const Vector2d& axis, double a, double b) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Vector2d& corner : corners_m) {

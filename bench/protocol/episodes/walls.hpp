@@ -17,12 +17,12 @@ class TrueWalls {
   TrueWalls(const Scene& scene, double robot_height_m);
 
   /// Whether a wall crosses the straight line between two places. Walls that cross only its last 2
-  /// cm do not count: things stand against walls.
+  /// cm do not count: the goal may stand against that wall.
   bool between(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) const;
 
  private:
   struct Outline {
-    std::vector<Eigen::Vector2d> corners_m;  ///< of a convex polygon; on a line if upright
+    std::vector<Eigen::Vector2d> corners_m;  ///< of a convex polygon; on one line if vertical
     Eigen::AlignedBox2d bounds_m;
   };
   std::vector<Outline> outlines_;

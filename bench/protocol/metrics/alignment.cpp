@@ -38,7 +38,8 @@ std::vector<IndexPair> pair_up(const Trajectory& shorter, const Trajectory& long
     const std::size_t j = nearest(longer, shorter[i].stamp_ns);
     const Stamp difference_ns = std::abs(longer[j].stamp_ns - shorter[i].stamp_ns);
     if (difference_ns > max_difference_ns) continue;
-    // Stamps increase on both sides, so competitors for one pose are consecutive.
+    // Stamps increase in both trajectories, so poses that compete for the same pose are
+    // consecutive.
     if (pairs.empty() || pairs.back().longer != j)
       pairs.push_back({i, j, difference_ns});
     else if (difference_ns < pairs.back().difference_ns)
@@ -93,7 +94,8 @@ std::optional<Similarity> umeyama(std::span<const Eigen::Vector3d> source,
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d values = svd.singularValues();
-  // Rank 2 suffices (the third axis follows); a second value at rounding level does not count.
+  // Rank 2 suffices (the third axis follows from the other two); a second singular value at
+  // rounding level does not count.
   const double rounding = std::numeric_limits<double>::epsilon() * std::max(1.0, 16.0 * values[0]);
   if (!(values[1] > rounding)) return std::nullopt;
 

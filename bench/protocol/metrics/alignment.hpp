@@ -22,20 +22,21 @@ struct MatchedTrajectories {
   std::size_t size() const { return truth.size(); }
 };
 
-/// Pairs poses by stamp: each pose of the shorter trajectory (the estimate if equal) takes the
-/// nearest of the longer one, the earlier of two equally near, if at most max_difference away. As
-/// `evo` does, with one exception: if several poses claim the same one, only the nearest of them
-/// (the earliest if equal) gets it, so that no pose is counted twice.
+/// Pairs poses by stamp: each pose of the shorter trajectory (the estimate if both are equally
+/// long) takes the nearest pose of the longer one (the earlier of two equally near) if it is at
+/// most max_difference away. `evo` does the same, with one exception: here, if several poses claim
+/// the same pose, only the nearest of them (the earliest if equally near) gets it, so that no pose
+/// is counted twice.
 /// @pre both ordered by strictly increasing stamp.
 MatchedTrajectories match_by_stamp(const Trajectory& truth, const Trajectory& estimate,
                                    Stamp max_difference_ns = kMaxStampDifference_ns);
 
 /// How an estimate is aligned with the truth before absolute errors are computed.
 enum class Alignment {
-  kNone,    ///< unchanged: both share a world
+  kNone,    ///< unchanged: both are in the same world frame
   kOrigin,  ///< first pose onto first pose
   kSe3,     ///< rotation and translation by least squares over all positions
-  kSim3,    ///< and scale
+  kSim3,    ///< rotation, translation and scale
 };
 
 /// target_from_source with scale: x -> scale * rotation * x + translation.

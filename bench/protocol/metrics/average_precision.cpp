@@ -16,8 +16,8 @@ constexpr int kRecalls = 101, kOverlaps = 10;
 constexpr double kSmallest = 32.0 * 32.0, kLargest = 96.0 * 96.0;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// The k-th of `count` evenly spaced values, rounded as pycocotools' numpy.linspace rounds them: a
-/// recall of 29 in 100 is 0.29, and whether that reaches the 29th value depends on the last bits.
+/// The k-th of `count` evenly spaced values, rounded as pycocotools' numpy.linspace rounds them:
+/// whether a recall of 29 in 100, for example, reaches the value 0.29 depends on the last bits.
 double spaced(double first, double last, int count, int k) {
   return k == count - 1 ? last : first + k * ((last - first) / (count - 1));
 }

@@ -17,7 +17,7 @@ double box_overlap(const ImageBox& a, const ImageBox& b);
 
 struct TruthBox {
   ImageBox box;
-  double area = 0;      ///< of the object itself, px: its visible pixels
+  double area = 0;      ///< of the object itself: the number of its visible pixels
   bool ignore = false;  ///< too small to be required: neither finding nor missing it counts
 };
 
@@ -26,27 +26,27 @@ struct ScoredBox {
   double score = 0;
 };
 
-/// Objects of COCO's size classes: below 32 x 32 px, between, and from 96 x 96 px on.
+/// COCO's size classes of objects: smaller than 32 x 32 px, from there to 96 x 96 px, and at least
+/// 96 x 96 px.
 enum class ObjectSize { kAll, kSmall, kMedium, kLarge };
 
 /// Average precision of one class by COCO's definition (Lin et al., ECCV 2014; detection
-/// evaluation, cocodataset.org); NaN without any truth.
+/// evaluation, cocodataset.org); NaN if there is no truth.
 struct AveragePrecision {
   double ap = 0;  ///< mean over overlaps of 0.50, 0.55, ..., 0.95
   double ap50 = 0, ap75 = 0;
-  double small = 0, medium = 0, large = 0;  ///< as `ap`, for objects of one size
+  double small = 0, medium = 0, large = 0;  ///< like `ap`, for objects of one size class
   std::size_t truths = 0;                   ///< number of truths that count
 };
 
 /// The best 100 detections of an image are assigned in order of their scores, each to the free
-/// truth that it overlaps most, if the overlap reaches the threshold. Precision is interpolated at
-/// 101 recalls (0, 0.01, ..., 1) by its maximum at that recall or a higher one. Truths of a
-/// different size are ignored, and so are unassigned detections of a different size. There are no
-/// crowds.
+/// truth that it overlaps most, if the overlap reaches the threshold. At each of 101 recalls (0,
+/// 0.01, ..., 1), precision is its maximum at that recall or any higher one. Truths outside the
+/// size class are ignored, and so are unassigned detections outside it. There are no crowd regions.
 AveragePrecision average_precision(std::span<const TruthBox> truths,
                                    std::span<const ScoredBox> found);
 
-/// Average precision at one overlap and size. @returns NaN without any truth
+/// Average precision at one overlap and size. @returns NaN if there is no truth
 double average_precision(std::span<const TruthBox> truths, std::span<const ScoredBox> found,
                          double overlap, ObjectSize size);
 

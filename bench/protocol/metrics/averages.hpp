@@ -7,7 +7,7 @@
 
 namespace mh {
 
-/// The middle value (mean of the two middle ones); 0 for an empty list.
+/// The median (mean of the two middle values if their number is even); 0 for an empty list.
 double median(std::vector<double> values);
 /// The median of the known values; absent if there are none.
 std::optional<double> median_of_known(std::span<const std::optional<double>> values);

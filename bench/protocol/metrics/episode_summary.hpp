@@ -11,7 +11,7 @@ struct EpisodeSummary {
   double success = 0;              ///< share
   double located = 0;              ///< share in which the robot ever believed itself located
   double spl = 0;                  ///< mean
-  std::optional<double> median_s;  ///< time of the successes
+  std::optional<double> median_s;  ///< of the times of the successful episodes
   double collided = 0, wrong_arrivals = 0;  ///< shares
   double worst_contact_m_per_s = 0;
 };

@@ -107,8 +107,8 @@ std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& e
   const std::vector<double> along = progress(estimate, delta.unit);
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const auto miss = [&](std::size_t j) { return std::abs(along[j] - along[i] - delta.value); };
-    // Progress only grows: the nearest pose is the first one at or beyond the delta, or the one
-    // before.
+    // Progress never decreases, so the nearest pose is either the first one at or beyond the delta
+    // or the one before it.
     std::size_t end = i + 1;
     while (end + 1 < count && along[end] - along[i] < delta.value) ++end;
     while (end > i + 1 && miss(end - 1) <= miss(end)) --end;

@@ -48,22 +48,23 @@ enum class DeltaUnit {
 struct RpeDelta {
   double value = 1;  ///< > 0; a whole number for frames
   DeltaUnit unit = DeltaUnit::kFrames;
-  /// Every pose starts a pair, or (frames only) each pair starts where the last one ended: 0 and
-  /// delta, delta and 2 delta, ... Meters and seconds always use all pairs.
+  /// If true, every pose starts a pair. If false (frames only), each pair starts where the last one
+  /// ended: 0 and delta, delta and 2 delta, ... Meters and seconds always use all pairs.
   bool all_pairs = false;
-  /// Meters and seconds: a start is used if some later pose is within this share of the delta.
+  /// For meters and seconds, a pose starts a pair only if the progress from it to some later pose
+  /// differs from the delta by at most this share of the delta.
   double tolerance = 0.1;
 };
 
 /// Returns index pairs (start, end), ordered by start. For meters and seconds the end is the later
-/// pose whose path length or time from the start is nearest to the delta, the earlier of two
-/// equally near.
+/// pose whose path length or time from the start is nearest to the delta (the earlier of two
+/// equally near).
 /// @throws InputError if the value is not positive or, for frames, not an integer.
 std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& estimate,
                                                              const RpeDelta& delta);
 
 /// Relative pose error of each pair: E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j) with truth Q and estimate P
-/// (Sturm et al., equation 1); its translation norm (m) and its angle (deg). Moving a
+/// (Sturm et al., equation 1); stores the norm of its translation (m) and its angle (deg). Moving a
 /// trajectory as a whole by an SE(3) changes neither.
 struct RelativeErrors {
   std::vector<double> translation_m;

@@ -27,14 +27,14 @@ struct RelativeScore {
 struct Evaluation {
   std::size_t truth_poses = 0;
   std::size_t estimate_poses = 0;
-  std::size_t pairs = 0;  ///< matched by stamp; at 0 every statistic below has count 0
+  std::size_t pairs = 0;  ///< matched by stamp; if 0, every statistic below has count 0
   double truth_path_m = 0, estimate_path_m = 0;  ///< through the matched poses
   Alignment alignment = Alignment::kSe3;
   /// truth_from_estimate; nullopt if it is undetermined (then ape_* have count 0).
   std::optional<Similarity> truth_from_estimate;
   ErrorStatistics ape_translation_m;  ///< its rmse is the ATE
   ErrorStatistics ape_rotation_deg;
-  ErrorStatistics ape_unaligned_m;  ///< without alignment, if both share a world
+  ErrorStatistics ape_unaligned_m;  ///< without alignment, for a shared world frame
   std::vector<RelativeScore> rpe;   ///< in the order of options.rpe_deltas
 };
 

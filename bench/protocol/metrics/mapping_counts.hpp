@@ -10,8 +10,8 @@ struct MappingCounts {
   double failures = 0;  ///< how often tracking was lost
   double restarts = 0;  ///< rewinds
   double dropped = 0;   ///< frames dropped for good
-  /// Share of the pairs compared with the local map whose labels disagree: how much labels
-  /// contribute. Absent if the system does not report it.
+  /// Share of pairs whose labels disagree, among all pairs compared with the local map. Shows how
+  /// much labels contribute. Absent if the system does not report it.
   std::optional<double> penalized;
 };
 

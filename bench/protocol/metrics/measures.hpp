@@ -13,7 +13,8 @@ namespace mh {
 /// episodes as "held_out.success", "episodes.success".
 std::span<const Metric> all_metrics();
 
-/// Returns a metric of a set of queries or episodes with its name among the metrics of a run.
+/// Returns a metric of a set of queries or of episodes under its name among the metrics of a run,
+/// "held_out.success".
 Metric under(std::string_view questions, Metric metric);
 
 /// Finds a metric that the gate may judge; nullptr if there is none with that name.

@@ -3,9 +3,9 @@
 
 // How figures are listed. Next to each struct of scores is the list of its fields: `fields(score,
 // visit)` calls visit(Metric, value) for each; the value is a double or, if it may be unknown, an
-// optional one. Its structured binding names every field of the struct, so that a field without a
-// line does not compile. Files, tables, exports and the gate are generated from these lists: a new
-// figure needs a field, its line in the list, and the code that computes it.
+// optional one. Its structured binding names every field of the struct, so that it does not compile
+// if a field is missing there. Files, tables, exports and the gate are generated from these lists:
+// a new figure needs a field, its line in the list, and the code that computes it.
 
 #include <functional>
 #include <optional>
@@ -28,8 +28,8 @@ struct Metric {
   std::string_view unit{};           ///< "m"; "%": a share, stored as 0 to 1 and printed times 100
   int decimals = 0;                  ///< in tables
   Better better = Better::kNeither;  ///< kNeither: the gate does not judge it
-  std::string count{};               ///< for a share: the figure that is its denominator
-  bool in_overview = false;          ///< also shown in tables of many places or settings
+  std::string count{};       ///< for a share: the name of the figure that is its denominator
+  bool in_overview = false;  ///< also shown in tables of many places or settings
 };
 
 struct Figure {
@@ -37,7 +37,7 @@ struct Figure {
   std::optional<double> value;
 };
 
-/// "0.0123", "87.50%"; "-" if unknown.
+/// The value as printed: "0.0123", "87.50%"; "-" if unknown.
 std::string shown(const Figure& figure);
 
 /// Returns a score's figures in the order of its fields().
@@ -51,7 +51,7 @@ std::vector<Figure> figures_of(const Score& score) {
   return figures;
 }
 
-/// Reduces many values, known or unknown, to one; unknown if it cannot be determined.
+/// Reduces many values, known or unknown, to one; the result is unknown if it cannot be determined.
 using Reduction = std::function<std::optional<double>(std::span<const std::optional<double>>)>;
 
 /// Reduces many scores to one, field by field.

@@ -9,7 +9,7 @@ namespace mh {
 enum class QuerySet {
   kHeldOut,     ///< test frames of the mapping tour
   kSecondTour,  ///< test frames of another tour
-  kGraded,      ///< drawn by distance and angle from the nearest mapped view
+  kGraded,      ///< drawn for given distances and angles from the nearest mapped view
 };
 inline constexpr QuerySet kQuerySets[] = {QuerySet::kHeldOut, QuerySet::kSecondTour,
                                           QuerySet::kGraded};
@@ -19,7 +19,7 @@ inline std::string_view name(QuerySet set) {
                                         : "graded";
 }
 
-/// The member for a set, of a record that has one for each set.
+/// Returns the member for one set from a record that has a member for each set.
 template <class Sets>
 auto& of_query_set(Sets& sets, QuerySet set) {
   return set == QuerySet::kHeldOut      ? sets.held_out
@@ -33,19 +33,19 @@ struct QuerySummary {
   double success = 0;  ///< share of all queries
   /// Shares of all queries; absent if none can be judged because the truth is unknown.
   std::optional<double> correct, false_positive;
-  std::optional<double> in_map;          ///< share whose place is in the map
-  std::optional<double> success_in_map;  ///< share of these that were answered
-  /// Over the answered queries, to the local truth; absent if none was answered.
+  std::optional<double> in_map;          ///< share of queries whose place is in the map
+  std::optional<double> success_in_map;  ///< share of those queries that were answered
+  /// Distance to the local truth, over the answered queries; absent if none was answered.
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
-  double attempts = 0;                            ///< mean
-  /// Candidate keyframes left after equations 3, 4, 5 and 6: mean counts over the queries for which
-  /// the system reports them; absent if it reports none.
+  double attempts = 0;                            ///< mean number per query
+  /// Keyframes in the map and candidates left after equations 3, 4, 5 and 6: mean counts over the
+  /// queries for which the system reports them; absent if it reports none.
   std::optional<double> keyframes, c1, c2, c3, final;
-  std::optional<double> single_candidate;  ///< share of queries with exactly one left
+  std::optional<double> single_candidate;  ///< share of queries with exactly one candidate left
   std::optional<double> label_mass;        ///< mean share of the query vector held by labels
   std::optional<double> gamma;             ///< mean weight of a label, equation 1
-  /// Means of the shares and the age in Candidates.
+  /// Means of the fields of the same names in Candidates.
   std::optional<double> unscored{}, stale{}, stale_weight{}, stale_age{};
 };
 

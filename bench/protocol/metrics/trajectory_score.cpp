@@ -12,7 +12,7 @@
 namespace mh {
 namespace {
 
-/// The root mean square of no errors is unknown, not 0.
+/// The RMSE; unknown, not 0, if there are no errors.
 std::optional<double> rmse(const ErrorStatistics& s) {
   return s.count > 0 ? std::optional(s.rmse) : std::nullopt;
 }
@@ -21,7 +21,7 @@ std::optional<double> rmse(const ErrorStatistics& s) {
 /// alignment's rotation about that direction: position errors change the rotation by about error /
 /// extent.
 bool turn_is_determined(const Trajectory& truth, double error_m) {
-  constexpr double kLeastExtent = 10;  // in multiples of the error: a turn of 0.1 rad
+  constexpr double kLeastExtent = 10;  // in multiples of the error: a rotation error of 0.1 rad
   Eigen::MatrixX3d at(static_cast<Eigen::Index>(truth.size()), 3);
   for (std::size_t i = 0; i < truth.size(); ++i)
     at.row(static_cast<Eigen::Index>(i)) = truth[i].world_from_camera.translation();

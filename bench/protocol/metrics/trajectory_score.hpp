@@ -6,13 +6,13 @@
 
 namespace mh {
 
-/// Quality of a mapping tour's trajectory. An error is absent if the path does not determine it:
-/// too short, or on a line.
+/// Quality of a mapping tour's trajectory. An error is absent if the path does not determine it
+/// because it is too short or straight.
 struct TrajectoryScore {
-  double offered = 0;  ///< frames
-  double tracked = 0;  ///< frames with a pose at the end, in the largest map
-  double scored = 0;   ///< of these, those with a true pose: ATE is computed over them
-  std::optional<double> ate_rmse_m;         ///< after SE(3) alignment without scale
+  double offered = 0;                ///< frames
+  double tracked = 0;                ///< frames that have a pose in the largest map at the end
+  double scored = 0;                 ///< tracked frames with a true pose: ATE is computed over them
+  std::optional<double> ate_rmse_m;  ///< after SE(3) alignment without scale
   std::optional<double> ate_median_m;       ///< median of the same errors
   std::optional<double> ate_rmse_deg;       ///< of orientations, after the same alignment
   std::optional<double> ate_first_pose_m;   ///< in the frame of dock_from_estimate
@@ -41,18 +41,18 @@ void fields(S& score, Visit& v) {
 }
 
 /// Computes ATE, RPE and completeness of an estimate, as evaluate() defines them.
-/// @param truth    every frame of the sequence
+/// @param truth    true poses of the frames of the sequence
 /// @param offered  frames that the system was supposed to map
 TrajectoryScore score_trajectory(const Trajectory& estimate, const Trajectory& truth,
                                  std::size_t offered);
 
 /// Where an estimate's world is in the true one.
 struct EstimateAlignment {
-  /// By least squares over all positions. A path that determines no alignment (too short, on a
-  /// line) is aligned by its first pose.
+  /// By least squares over all positions. A path that determines no alignment because it is too
+  /// short or straight is aligned by its first pose.
   SE3 truth_from_estimate;
-  /// Aligns the first tracked pose with the truth, nothing else: a robot knows where its dock is.
-  /// The occupancy map and images use this frame.
+  /// Aligns only the first tracked pose with the truth, since a robot knows where its dock is. The
+  /// occupancy map and images use this frame.
   SE3 dock_from_estimate;
 };
 EstimateAlignment align_estimate(const Trajectory& estimate, const Trajectory& truth);

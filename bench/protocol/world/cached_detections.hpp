@@ -6,8 +6,8 @@
 
 namespace mh {
 
-/// Caches what detectors found; keys include code and machine. Returns null for a cache without a
-/// folder.
+/// Caches what detectors found; its keys cover code, build and machine. Returns null for a cache
+/// without a folder.
 KeepDetections detections_in(const Cache& cache);
 
 }  // namespace mh

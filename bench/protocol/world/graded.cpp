@@ -23,10 +23,10 @@ namespace {
 
 constexpr std::uint64_t kGraded = 0x677261646564;  // own random stream for graded queries
 enum StreamName : std::uint64_t { kPlaces = 1, kScans = 2, kOrder = 3 };
-constexpr double kApart = 0.1;               // m + rad between any two queries
-constexpr std::size_t kDrawsPerQuery = 500;  // cells that need more draws stay incomplete
+constexpr double kApart = 0.1;               // minimum distance between two queries, m + rad
+constexpr std::size_t kDrawsPerQuery = 500;  // a cell that needs more draws is left incomplete
 constexpr std::size_t kHandheldScans = 8;
-constexpr double kLead_s = 2.0;     // after which the exposure control has settled
+constexpr double kLead_s = 2.0;     // time after which the exposure control has settled
 constexpr std::size_t kBehind = 3;  // frames after the query, for its rolling shutter
 
 constexpr Stamp kSecond_ns = 1'000'000'000;
@@ -38,7 +38,7 @@ struct Candidate {
   std::size_t at = 0;
 };
 
-/// Draws candidates, without end or until there are no more.
+/// Draws candidates one at a time; a source may be endless.
 class Source {
  public:
   virtual ~Source() = default;
@@ -116,8 +116,8 @@ std::unique_ptr<Source> source_of(const GradedSpec& spec, const GradedPlace& pla
   return std::make_unique<OnFloor>(place, stream.fork(kPlaces));
 }
 
-/// The candidate's view with the part of its scan before and after it, played at a multiple of its
-/// speed.
+/// The candidate's view with the part of its scan before and after it, played at a multiple of the
+/// scan's speed.
 GradedQuery clip_of(const Candidate& candidate, const QueryGrade& grade, double speed) {
   GradedQuery query{.clip = {}, .at = 0, .grade = grade};
   if (candidate.scan == nullptr) {

@@ -22,13 +22,13 @@ namespace mh {
 /// One graded query, with the motion around it (for blur, and for the lag of the exposure control).
 struct GradedQuery {
   Trajectory clip;
-  std::size_t at = 0;  ///< the query, in the clip
+  std::size_t at = 0;  ///< index of the query in the clip
   QueryGrade grade;
 };
 
 struct GradedQueries {
-  std::vector<GradedQuery> list;  ///< by cell, then by draw, then by speed
-  std::vector<GradedCell> cells;  ///< by distance, then by angle
+  std::vector<GradedQuery> list;  ///< ordered by cell, then by draw, then by speed
+  std::vector<GradedCell> cells;  ///< ordered by distance, then by angle
 };
 
 /// What graded queries are drawn from.
@@ -47,8 +47,8 @@ struct GradedPlace {
 /// @throws InputError if there is no floor.
 GradedQueries draw_graded(const GradedSpec& spec, const GradedPlace& place);
 
-/// The distance and angle of the nearest mapped view by true pose, where 1 rad counts as 1 m. Both
-/// are absent if there is none.
+/// The distance and angle to the nearest mapped view by true poses; to find the nearest, 1 rad
+/// counts as 1 m. Both are absent if nothing is mapped.
 QueryGrade grade_of(const Trajectory& mapped, const SE3& world_from_camera);
 
 /// The frames of graded queries, ten seconds apart.

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// The first frames of a sequence, with the truth of their time span.
+/// The first frames of a sequence, with the ground truth over their time span.
 /// @param truth  replaces the sequence's own
 /// @param gives_imu  whether its inertial readings, if there are any, are passed on
 std::shared_ptr<const Sequence> first_frames(std::unique_ptr<Sequence> all, std::size_t at_most,

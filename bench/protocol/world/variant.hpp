@@ -24,7 +24,7 @@ struct VariantPlace {
 
 /// The variants of a run's episodes.
 /// @param mapped  the place that was mapped
-/// @param inputs  receives what was read for them (input_name())
+/// @param inputs  receives what was read for the variants, named by input_name()
 /// @param light   bakes a scene's light
 /// @throws InputError as draw_starts() does, or if a scene's floor is not at z = 0 or the robot
 /// cannot drive on its own.

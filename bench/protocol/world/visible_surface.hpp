@@ -27,7 +27,7 @@ class VisibleSurface {
     SE3 camera_from_world;
     Grid2d<float> depth_m;
   };
-  Camera camera_, sparse_;  ///< of the path's views; of the view that is judged
+  Camera camera_, sparse_;  ///< for the path's views; for the view that is judged
   std::vector<View> views_;
 };
 

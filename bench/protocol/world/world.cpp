@@ -142,7 +142,7 @@ std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& wo
   return vocabulary;
 }
 
-/// Opens the recordings of a run, with the inputs of everything except an outside program.
+/// Opens the recordings of a run, and records all inputs except those of an outside program.
 World open_recordings(const RunSpec& spec) {
   const Environment& e = spec.environment;
   World world;
@@ -216,7 +216,7 @@ void append(std::vector<ImuReading>& readings, const Trajectory& path, const Sen
   readings.insert(readings.end(), more.begin(), more.end());
 }
 
-/// Builds the world with the inputs of everything except an outside program.
+/// Builds the world, and records all inputs except those of an outside program.
 World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say,
             const BakeWatch& baked) {
   const Environment& environment = spec.environment;
@@ -349,7 +349,7 @@ World build_world(const RunSpec& spec, int threads, const Cache& cache, const Sa
   if (spec.environment.is_recorded()) {
     const ReadScope scope;
     world = open_recordings(spec);
-    world.held = scope.record();  // includes the vocabulary's
+    world.held = scope.record();  // includes the files of the vocabulary
   } else {
     world = build(spec, threads, cache, say, baked);
   }

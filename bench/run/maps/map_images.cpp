@@ -18,7 +18,7 @@ using Eigen::Vector2i;
 constexpr int kMapMargin = 24;
 constexpr double kMapWidth = 1100;
 
-/// The cells of a grid that are known, from low (included) to high (excluded).
+/// The bounding box of a grid's known cells: low (included) and high (excluded).
 std::pair<Vector2i, Vector2i> known_part(const OccupancyGrid& grid) {
   constexpr int kFar = std::numeric_limits<int>::max();
   Vector2i low(kFar, kFar), high(0, 0);
@@ -66,7 +66,8 @@ std::vector<MapPoint> points_of(const VoxelMap& map) {
 cv::Mat draw_classes_over(const OccupancyGrid& grid, const std::vector<MapPoint>& points,
                           double ceiling_m) {
   constexpr Rgb8 kFloorTone{232, 234, 237}, kWallTone{90, 90, 90};
-  constexpr double kSlant = 0.62, kRise = 0.78;  // px on the image per px of depth and of height
+  constexpr double kSlant = 0.62,
+                   kRise = 0.78;  // foreshortening along y and of heights
   const auto [low, high] = known_part(grid);
   const Vector2i size = high - low;
   const double px = (kMapWidth - 2 * kMapMargin) / std::max(1, size.x());  // per cell
@@ -100,7 +101,8 @@ cv::Mat draw_classes_over(const OccupancyGrid& grid, const std::vector<MapPoint>
       canvas.fill(kMapMargin + (x - low.x()) * px, top + (high.y() - 1 - y) * px * kSlant, px + 0.5,
                   px * kSlant + 0.5, cell == kOccupiedCell ? kWallTone : kFloorTone);
     }
-  // The farthest first, so that what is in front covers it; then the lowest.
+  // Draws the farthest points first, so that nearer ones cover them, and equally far ones from the
+  // lowest up.
   std::ranges::stable_sort(shown, [](const MapPoint& a, const MapPoint& b) {
     return std::make_pair(-a.point_m.y(), a.point_m.z()) <
            std::make_pair(-b.point_m.y(), b.point_m.z());

@@ -10,7 +10,7 @@ namespace mh {
 
 /// Writes a map for RViz and Foxglove, one message per topic, in frame `map`, at time 0: `/map`
 /// (the grid), `/global_costmap/costmap` (its costs as Nav2 publishes them), `/objects` (a box and
-/// a name for each object), `/voxels` (the occupied ones in the colors of their classes).
+/// a name for each object), `/voxels` (the occupied voxels in the colors of their classes).
 /// @throws as the writer does
 void write_map_messages(MessageWriter& file, const VoxelMap& map, const MapStudy& study);
 

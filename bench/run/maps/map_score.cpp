@@ -76,7 +76,7 @@ ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scen
                                .center_m = 0.5 * (low + high),
                                .size_m = high - low});
   }
-  // Nearest pairs first; each object is found once and finds one.
+  // Pairs true and found objects, the nearest first; each object is in at most one pair.
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
   for (std::size_t t = 0; t < score.objects.size(); ++t)
     for (std::size_t f = 0; f < found.size(); ++f) {
@@ -93,7 +93,8 @@ ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scen
       score.objects[t].found = true;
       used[f] = true;
     }
-  // Matched before small ones are left out: voxels can enlarge an object beyond that limit.
+  // Small objects are left out only after matching, since voxels can enlarge an object beyond
+  // least_m.
   std::erase_if(score.objects, [&](const TrueObject& o) { return o.size_m.maxCoeff() < least_m; });
   for (const TrueObject& object : score.objects) score.recall.add(object.found);
   for (std::size_t f = 0; f < found.size(); ++f)

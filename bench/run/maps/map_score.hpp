@@ -26,14 +26,15 @@ struct Share {
 /// true poses of the same keyframes, within the depth model's range, through pixels in which the
 /// sensor had a return.
 struct VoxelScore {
-  Share occupied_precision;  ///< occupied voxels with a true surface within one cell
-  Share occupied_recall;  ///< true surfaces that were seen, with an occupied voxel within one cell
-  Share free_precision;   ///< free voxels that no surface touches, in open space
-  Share free_within_one;  ///< free voxels with open space within one cell
-  Share free_recall;      ///< open space that was seen free and is free in the map
+  Share occupied_precision;  ///< share of the occupied voxels within one cell of a true surface
+  Share occupied_recall;  ///< share of the seen true surfaces within one cell of an occupied voxel
+  Share free_precision;  ///< share of the free voxels that are in open space, touched by no surface
+  Share free_within_one;  ///< share of the free voxels within one cell of open space
+  Share free_recall;      ///< share of the open space seen as free that is free in the map
 };
 
-/// @param exact  the same keyframes with exact depth at their true poses: what could be seen
+/// @param exact  a map of what could be seen: the same keyframes with exact depth at their true
+/// poses
 VoxelScore score_voxels(const VoxelMap& map, const VoxelMap& exact, const TrueSpace& truth);
 
 /// A grid compared with the true floor plan, over the cells of the plan.
@@ -41,30 +42,30 @@ struct GridScore {
   Share iou;       ///< of free cells: free in both / free in either
   Share iou_seen;  ///< the same, over cells that are known in the grid
 };
-/// @pre equal resolutions, origins at multiples of it
+/// @pre equal resolutions; origins at multiples of the resolution
 GridScore score_grid(const OccupancyGrid& grid, const OccupancyGrid& plan);
 
-/// A true object and the nearest found one.
+/// A true object, and how far away the nearest found object of its class is.
 struct TrueObject {
   std::string name;
   ClassId class_id = kVoid;
   Eigen::Vector3d center_m, size_m;
   bool found = false;
-  double away_m = -1;  ///< distance to the nearest object of its class; -1: there is none
+  double away_m = -1;  ///< distance to the nearest found object of its class; -1 if there is none
 };
 
 struct ObjectScore {
-  /// Share of the true objects (at least least_m long) with a found object of their class within
+  /// Share of the true objects at least least_m long that have a found object of their class within
   /// reach_m.
   Share recall;
-  /// Share of the found objects (likewise) within reach_m of a true object of their class, of any
-  /// size.
+  /// Share of the found objects at least least_m long that have a true object of their class, of
+  /// any size, within reach_m.
   Share precision;
   std::vector<TrueObject> objects;
 };
 
 /// @param least_m  minimum length of an object's longest side
-/// @param reach_m  between centers
+/// @param reach_m  maximum distance between centers
 ObjectScore score_objects(const std::vector<MapObject>& found, const Scene& scene,
                           double least_m = 0.4, double reach_m = 0.25);
 

@@ -54,7 +54,8 @@ const TimedPose* pose_at(const Trajectory& trajectory, Stamp stamp_ns);
 std::optional<FloorFrame> floor_of(const OccupancyMapper& mapper,
                                    const Trajectory& world_from_camera);
 
-/// Scores of a map against the exact mesh, and of a map made from the same frames at true poses.
+/// The scores of a map against the exact mesh, and those of a map made from the same frames at
+/// their true poses.
 struct MapScores {
   std::size_t keyframes = 0;
   VoxelScore voxels, voxels_true_poses;
@@ -70,8 +71,8 @@ struct MapScoreConfig {
 };
 
 /// @param mapper  holds the map of `study` and the depth of its keyframes; in the scene's frame
-/// @param truth   poses of the keyframes; those without one are left out
-/// @param lasers  whose scans are in the study's grid; may be null
+/// @param truth   true poses of the keyframes; keyframes without one are left out
+/// @param lasers  the lasers whose scans are in the study's grid; may be null
 MapScores score_map(const Scene& scene, const OccupancyMapper& mapper, const Trajectory& truth,
                     const MapStudy& study, const MapScoreConfig& config,
                     const SceneLasers* lasers = nullptr);

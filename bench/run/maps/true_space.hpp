@@ -18,15 +18,16 @@ class TrueSpace {
   enum class State : std::uint8_t {
     kClosed,   ///< inside of solids, behind walls, or outside of the scene
     kOpen,     ///< space that is connected to a seed
-    kSurface,  ///< a face touches the voxel; panes of glass, which depth cameras do not see, do not
+    kSurface,  ///< a face touches the voxel; panes of glass do not count: depth cameras do not see
+               ///< them
   };
 
-  /// @param seeds  places in open space, such as those of the camera
+  /// @param seeds  places in open space, such as camera positions
   TrueSpace(const Scene& scene, double resolution_m, std::span<const Eigen::Vector3d> seeds);
 
-  /// By index of the voxel, as in VoxelMap; kClosed outside of the scene.
+  /// The state of the voxel with an index, as in VoxelMap; kClosed outside of the scene.
   State at(const Eigen::Vector3i& voxel) const;
-  /// Whether a voxel within one cell along each axis has that state.
+  /// Whether this voxel, or one at most one cell away along each axis, has that state.
   bool is_near(const Eigen::Vector3i& voxel, State state) const;
   /// The true floor plan between two heights: occupied where a surface is, free where a cell is
   /// connected to a seed without crossing an occupied cell, else unknown. Cut to the box of the
@@ -41,7 +42,7 @@ class TrueSpace {
 
   double resolution_m_;
   Eigen::Vector3i low_, size_;
-  Eigen::Vector2i plan_low_, plan_high_;  ///< cells of the rooms, the last excluded
+  Eigen::Vector2i plan_low_, plan_high_;  ///< first and last cell of the rooms, the last excluded
   std::vector<State> cells_;
 };
 

@@ -14,15 +14,15 @@
 
 namespace mh {
 
-/// An episode of the first variant that is watched.
+/// An episode to be watched, of the first variant.
 struct WatchedEpisode {
   std::size_t start = 0;
-  /// Makes its observer once the robot has its map.
+  /// Makes the episode's observer; called once the robot has its map.
   std::function<EpisodeObserver(const RobotMap&, const EpisodeStart&)> observer;
 };
 
-/// What the episodes of a run receive; `only` changes which ones are run, and nothing changes a
-/// score.
+/// What the episodes of a run receive in addition to its spec and world. `only` selects which ones
+/// are run; no member changes a score.
 struct EpisodeTools {
   /// Scores of episodes that have ended are kept here, so that an interrupted run does not repeat
   /// them.
@@ -34,10 +34,10 @@ struct EpisodeTools {
   std::function<void()> done = [] {};  ///< called after each episode
 };
 
-/// Kidnaps a run's robot at each start of each variant, variant by variant. Its map is made from
-/// the mapped frames at the estimated poses.
+/// Kidnaps a run's robot at each start of each variant, variant by variant. The robot's map is made
+/// from the mapped frames at the estimated poses.
 /// @param estimate             of the mapping
-/// @param truth_from_estimate  for the scores only
+/// @param truth_from_estimate  used for the scores only
 /// @param noise                of the mapped frames
 /// @throws OutsideError
 std::vector<EpisodeScore> ask_episodes(const RunSpec& spec, const World& world,

@@ -17,7 +17,7 @@
 namespace mh {
 namespace {
 
-/// The recording that answers a set of queries; empty: they are simulated.
+/// The recording that a set's queries are frames of; empty if they are simulated.
 std::string recording_of(const Environment& environment, QuerySet set) {
   return set == QuerySet::kSecondTour ? environment.queries.value_or("") : environment.sequence;
 }
@@ -58,10 +58,11 @@ class QueryRound {
       }
       const Trajectory* truth = run_.truth.empty() ? nullptr : frames_.truth();
       const QueryMoment moment = moment_of(frames_.stamp_ns(index), truth);
-      // If there is a truth, skip frames without one: no answer to them could be judged.
+      // If the ground truth is known, skip frames without a true pose: no answer to them could be
+      // judged.
       if (truth != nullptr && !moment.true_world_from_camera) continue;
       const auto in_map = is_in_any_map(moment);
-      const bool once = end - first == 1;  // nothing to share
+      const bool once = end - first == 1;  // one point only: no work to share
       const FramesMadeOnce shared(frames_);
       const Sequence& frames = once ? static_cast<const Sequence&>(frames_) : shared;
       const std::unique_ptr<QueryMemo> memo = once ? nullptr : frozen.make_memo();
@@ -84,7 +85,7 @@ class QueryRound {
   }
 
  private:
-  /// @param anchors  of this query, by map: each is found once
+  /// @param anchors  the query's anchors, by map, so that each is computed only once
   QueryScore judged(const QueryAnswer& answer, const QueryMoment& moment,
                     std::map<std::uint32_t, std::optional<Anchor>>& anchors) const {
     std::optional<Anchor> anchor;
@@ -112,8 +113,8 @@ class QueryRound {
   RandomStream stream_;
 };
 
-/// Returns the end of the points from `first` on that describe keyframes identically (equation 1),
-/// so that switching between them costs nothing.
+/// Returns the end of the group of points, starting at `first`, that describe keyframes identically
+/// (equation 1), so that switching between them costs nothing.
 std::size_t end_of_alike(const std::vector<SemanticConfig>& points, std::size_t first) {
   std::size_t end = first + 1;
   while (end < points.size() && points[end].gamma == points[first].gamma &&

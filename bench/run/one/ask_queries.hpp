@@ -13,7 +13,7 @@ namespace mh {
 /// Whether the system is shown the labels that the frames have.
 bool shows_labels(const RunSpec& spec);
 
-/// How many frames are asked, over all sets, under each parameter point.
+/// How many queries are asked under each parameter point, over all sets.
 std::size_t count_queries(const RunSpec& spec, const World& world);
 
 /// Queries a frozen system with each set of queries under each parameter point, and adds the scored

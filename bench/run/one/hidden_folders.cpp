@@ -31,7 +31,7 @@ std::set<fs::path> ancestors_of(const fs::path& folder) {
   return all;
 }
 
-/// Adds the folders that modelhouse wrote, out of this one and those in it.
+/// Adds a folder and the folders in it, but only those that modelhouse wrote.
 /// @param depth  how many levels deeper to look
 void add_written(const fs::path& folder, int depth, std::vector<fs::path>& written) {
   std::error_code error;
@@ -42,7 +42,7 @@ void add_written(const fs::path& folder, int depth, std::vector<fs::path>& writt
       add_written(it->path(), depth - 1, written);
 }
 
-/// Adds the folders that other runs have made for their programs.
+/// Adds the folders that other runs made for their programs.
 void add_of_other_runs(std::vector<fs::path>& hidden) {
   std::error_code error;
   const std::string own = fmt::format(".{}.", getpid());
@@ -65,7 +65,7 @@ void add_linked(const ReadRecord& read, const fs::path& recording, std::vector<f
   }
 }
 
-/// Where a run's inputs are stored, by their names; generated inputs are not stored.
+/// The paths of a run's inputs, by the inputs' names; generated inputs have none.
 std::map<std::string, fs::path> sources_of(const RunSpec& spec) {
   const Environment& e = spec.environment;
   std::map<std::string, fs::path> all;

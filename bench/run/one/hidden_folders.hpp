@@ -9,10 +9,11 @@
 
 namespace mh {
 
-/// The outside program of a run, with what is hidden from it: the bench's own folders, others that
-/// modelhouse wrote near these or near the suite, those of other runs' programs, and the recording
-/// or scene that its frames are made from, with its tours and the targets of its links.
-/// @param of_bench  output folder and cache
+/// The outside program of a run, with the list of what is hidden from it: the bench's own folders,
+/// other folders that modelhouse wrote near them or near the suite, the folders of other runs'
+/// programs, and the recording or scene that the frames are made from, tours and targets of links
+/// included.
+/// @param of_bench  the bench's output folder and cache
 OutsideProgram program_of(const RunSpec& spec, const World& world,
                           const std::vector<std::filesystem::path>& of_bench);
 

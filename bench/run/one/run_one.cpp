@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kFramesOfEpisode = 80;  // frames mapped in the time of an episode
+constexpr std::size_t kFramesOfEpisode = 80;  // mapped frames that cost as much as an episode
 
 /// Counts units of work and reports their share.
 class WorkDone {
@@ -56,7 +56,7 @@ std::string status_of(const MappedFrame& call, std::size_t frames) {
 }
 
 std::size_t pieces_of_work(const RunSpec& spec, const World& world) {
-  // A program that returns a trajectory: each frame is written and then read.
+  // For a program that returns a trajectory, each frame is first written and then read.
   if (!spec.system.is_asked())
     return 2 * offered_frames(world.mapping->size(), spec.protocol).size();
   const std::size_t episodes = spec.episodes ? spec.episodes->count() : 0;
@@ -124,7 +124,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
     run.volume = std::make_shared<const VoxelMap>(std::move(mapper).take_map());
   };
 
-  // Watched from before the program starts, since what it reads is not seen here.
+  // The program's files are watched from before it starts, since its own reads of them are not seen
+  // here.
   std::vector<fs::path> of_program;
   if (spec.system.is_outside())
     for (const ProgramFile& file : files_of(*spec.system.outside)) of_program.push_back(file.file);

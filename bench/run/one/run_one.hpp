@@ -40,17 +40,17 @@ struct RunTools {
   /// Makes the system instead of make_system(): for tests.
   std::function<std::unique_ptr<System>(const RunSpec&, const World&)> system = {};
   MappingObserver observe = {};  ///< called for each mapped frame
-  std::size_t first = 0;         ///< frames before it were already mapped, by this same system
-  bool occupancy = true;         ///< false: RunResult::volume stays null and its grid empty
+  std::size_t first = 0;         ///< earlier frames were already mapped, by this same system
+  bool occupancy = true;         ///< if false, the result has no volume and an empty grid
   Cache maps = Cache();  ///< finished maps of the same mapping are loaded from and stored here
-  EpisodeTools episodes = {};  ///< where scores are kept, and which to run; the run sets the rest
+  EpisodeTools episodes = {};  ///< where scores are kept and which to run; run_one() sets the rest
 };
 
 /// Executes one run from the first frame to the last query: maps the tour, freezes, scores the
 /// trajectory, builds the occupancy map, makes the queries under each parameter point, runs the
 /// episodes.
 /// @throws InputChanged if a file that it reads on demand was changed since the world was built;
-/// neither a map nor a result of it is kept.
+/// then neither the run's map nor its result is kept.
 RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools);
 
 }  // namespace mh

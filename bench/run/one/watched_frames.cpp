@@ -55,7 +55,7 @@ RgbdFrame WatchedFrames::checked(std::size_t i, RandomStream noise) const {
     files_.require(reading.record());
     return frame;
   } catch (const InputError&) {
-    files_.require(reading.record());  // throws if it cannot be read because it was changed
+    files_.require(reading.record());  // throws if the file is unreadable because it was changed
     throw;
   }
 }

@@ -11,7 +11,7 @@
 
 namespace mh {
 
-/// Forwards another sequence's frames, so that they can be observed.
+/// Forwards another sequence's frames, so that subclasses can observe them.
 class SequenceView : public Sequence {
  public:
   explicit SequenceView(const Sequence& inner) : inner_(inner) {}
@@ -32,8 +32,8 @@ class SequenceView : public Sequence {
 class FilesAsKeyed {
  public:
   explicit FilesAsKeyed(const ReadRecord& held);
-  /// @throws InputChanged if any file that was just read differs, even if it has been restored
-  /// since
+  /// @throws InputChanged if any file that was just read differs from that state, even if it has
+  /// been restored since
   void require(const ReadRecord& now) const;
 
  private:
@@ -44,9 +44,9 @@ class FilesAsKeyed {
 /// counted.
 class WatchedFrames : public SequenceView {
  public:
-  /// @param recording  that they come from; empty: they are simulated
+  /// @param recording  the recording that they come from; empty if they are simulated
   /// @param labeled  whether they are shown with labels
-  /// @param spent_s  grows by the time spent
+  /// @param spent_s  grows by the CPU time spent on making frames
   WatchedFrames(const Sequence& inner, std::string recording, bool labeled,
                 const FilesAsKeyed& files, double& spent_s);
   RgbdFrame frame(std::size_t i, RandomStream noise) const override;

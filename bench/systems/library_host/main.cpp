@@ -185,7 +185,7 @@ MakeSystem load(const fs::path& file) {
   return make;
 }
 
-/// A system of the library, which exists from `hello` on.
+/// The library's system, created from the request `hello`.
 class HostedSystem {
  public:
   HostedSystem(const Json& hello, const fs::path& library, std::uint64_t seed, std::string settings)
