@@ -52,7 +52,7 @@ struct FiledBoxes {
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
 constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: larger numbers are pixels
-constexpr std::size_t kMostFrames = 100'000'000;  // larger numbers are stamps in nanoseconds
+constexpr std::size_t kMostFrames = 100'000'000;  // larger frame numbers are stamps in nanoseconds
 
 /// The boxes of a frame that a file calls "17" or "1305031229.528748" (a stamp, s).
 std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,

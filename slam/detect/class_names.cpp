@@ -76,7 +76,7 @@ ClassNames with_ids(std::vector<std::string> names) {
   return all;
 }
 
-/// A quoted string at the start of `rest`, which is moved past it; nullopt if there is none.
+/// Takes a quoted string from the start of `rest`; nullopt if there is none.
 std::optional<std::string> take_quoted(std::string_view& rest) {
   const char quote = rest.empty() ? '\0' : rest.front();
   if (quote != '\'' && quote != '"') return std::nullopt;
@@ -100,7 +100,8 @@ bool take(std::string_view& rest, char expected) {
   return true;
 }
 
-/// An index with its colon, such as `12:`, at the start of `rest`, which is moved past it.
+/// Takes an index with its colon, such as `12:`, from the start of `rest`; nullopt if there is
+/// none.
 std::optional<std::size_t> take_index(std::string_view& rest) {
   const bool quoted = !rest.empty() && (rest.front() == '\'' || rest.front() == '"');
   std::string_view digits = rest.substr(quoted ? 1 : 0);

@@ -36,7 +36,7 @@ struct OnnxNode {
   std::string op;
   std::vector<std::string> inputs, outputs;
   std::map<std::string, std::string, std::less<>> attributes;  ///< bytes of each AttributeProto
-  std::string others;                                          ///< the other fields as they are
+  std::string others;  ///< bytes of the other fields, unchanged
 
   std::int64_t integer(std::string_view name, std::int64_t otherwise) const;
   std::optional<OnnxShape> integers(std::string_view name) const;
@@ -54,7 +54,7 @@ struct OnnxGraph {
   std::vector<OnnxNode> nodes;  ///< in an order in which they can be computed
   std::map<std::string, std::string_view, std::less<>> weights;  ///< TensorProto by name
   std::map<std::string, OnnxTensor> constants;                   ///< additional weights
-  std::map<std::string, OnnxShape> inputs;                       ///< without weights
+  std::map<std::string, OnnxShape> inputs;                       ///< of inputs that are not weights
   std::vector<std::string> outputs;
   std::string_view model;  ///< the bytes from which the graph was read
 };

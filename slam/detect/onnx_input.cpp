@@ -113,7 +113,8 @@ std::optional<OnnxInput> onnx_input(std::string_view model) {
         for (const ProtoField& tensor : proto_fields(type.bytes, kTensor))
           for (const ProtoField& shape : proto_fields(tensor.bytes, kShape)) {
             const std::vector<ProtoField> dims = proto_fields(shape.bytes, kDim);
-            // Weights may be listed as inputs: an image has three channels, or leaves them open.
+            // Weights may be listed as inputs, too. An image has three channels, or their number is
+            // left open.
             if (dims.size() != 4 || (size_of(dims[1]) != 3 && size_of(dims[1]) != 0)) continue;
             return OnnxInput{size_of(dims[0]), size_of(dims[3]), size_of(dims[2])};
           }
