@@ -20,7 +20,7 @@ struct PoseColumns {
   /// it.
   std::optional<int> unit = {};
   std::array<std::size_t, 7> pose = {1, 2, 3, 4, 5, 6, 7};  ///< of x y z qx qy qz qw
-  std::size_t least = 8, most = 8;                          ///< values in a line
+  std::size_t least = 8, most = 8;                          ///< numbers of values in a line
 };
 
 /// The words of a line, separated by whitespace, commas or semicolons, without the whitespace and

@@ -125,7 +125,7 @@ void resize_exactly(const cv::Mat& from, cv::Mat& to) {
   }
   const std::vector<Group> columns = groups(from.cols, to.cols);
   const std::vector<Tap> rows = taps(from.rows, to.rows);
-  // The two most recent rows; most are used for two target rows.
+  // The two source rows resized last; most source rows are used for two target rows.
   struct Row {
     int y = -1;
     std::vector<std::int32_t> values;
