@@ -58,8 +58,8 @@ inline std::optional<SE3> finite_pose(const cv::Mat& rotation, const cv::Mat& tr
   return SE3(so3_exp(r), t);
 }
 
-/// Number of iterations after which three observations without an outlier were drawn with the given
-/// confidence (Fischler and Bolles 1981), capped at max_iterations.
+/// Number of iterations needed to draw three observations without an outlier at least once, with
+/// the given confidence (Fischler and Bolles 1981), capped at max_iterations.
 /// @param share  of observations that are inliers
 inline int iterations_needed(double share, const RansacConfig& config) {
   const double miss = 1.0 - share * share * share;

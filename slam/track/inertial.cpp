@@ -20,7 +20,8 @@ constexpr double kAccelNoise = 1e-2, kAccelWalk = 3e-3;  // m/s^2/sqrt(Hz), m/s^
 
 constexpr double kAnySpeed_m_per_s = 2;
 constexpr double kGyroOffset_rad_per_s = 0.03, kAccelOffset_m_per_s2 = 0.2;
-constexpr double kShaken_m_per_s2 = 1;  // how far a handheld accelerometer is from gravity
+constexpr double kShaken_m_per_s2 =
+    1;  // how far the reading of a handheld accelerometer is from gravity
 constexpr double kGravity_m_per_s2 = 9.81;
 
 constexpr double kNanosecond_s = 1e-9, kLongestGap_s = 0.1;

@@ -41,7 +41,7 @@ struct InertialMotion {
                               const SE3& camera_from_world, const std::optional<Known>& known);
 
   /// Advances the state to a later time.
-  /// @param readings  since the last one, in order
+  /// @param readings  since the last update, in order
   /// @returns camera_now_from_camera_before, where the latter is the tracked pose; nullopt if
   /// readings are missing for too long
   std::optional<SE3> advance(std::span<const ImuReading> readings, Stamp from_ns, Stamp to_ns);

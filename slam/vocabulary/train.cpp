@@ -97,8 +97,9 @@ class VocabularyTrainer {
       next[first_pending + clusters.cluster_of[i]].members.push_back(parent.members[i]);
   }
 
-  // Inverse document frequency. Members were assigned to the final centers at every node, so each
-  // word is that of the descriptors that formed it, and every word occurs in some image.
+  // Computes the inverse document frequencies. At every node, descriptors were assigned to the
+  // final centers, so quantizing a training descriptor gives the word that it helped to form, and
+  // every word occurs in some image.
   void weigh_words(const Vocabulary& unweighted) {
     std::vector<std::uint32_t> images_with(tree_.idf.size(), 0);
     std::vector<std::uint32_t> last_image(tree_.idf.size(), UINT32_MAX);
