@@ -16,7 +16,7 @@ struct LoopConfig {
   /// similar strong neighbor.
   double min_similarity_share = 0.5;
   int agreeing = 2;            ///< keyframes that must agree on the same drift,
-  int patience = 5;            ///< each at most this many keyframes after the previous one
+  int patience = 5;            ///< each of them at most this many keyframes after the one before
   double same_drift_m = 0.10;  ///< tolerance for "the same" drift
   double same_drift_rad = 0.05;
   /// Largest plausible drift: absolute, and as a share of the path between the ends. Anything

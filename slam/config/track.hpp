@@ -13,11 +13,11 @@ struct TrackConfig {
   double search_radius_px = 15;  ///< around the predicted position, at octave 0
   double local_radius_px = 5;  ///< around the position predicted from the tracked pose, at octave 0
   int local_keyframes = 60;    ///< maximum number in the local map
-  double near_distance_m = 2.5;  ///< keyframes this near join the local map,
+  double near_distance_m = 2.5;  ///< keyframes within this distance join the local map,
   double near_angle_rad =
       0.9;  ///< if they face the same way to within this angle, even without shared landmarks
   double sure_position_m =
-      0.015;  ///< if the image alone leaves a pose a standard deviation above this
+      0.015;  ///< if the standard deviation of a pose from the image alone is above this
   double sure_angle_rad = 0.01;  ///< or this, the pose is fused with the predicted motion
   /// A frame whose image gives no pose is placed by wheel odometry or an inertial sensor, if
   /// available, up to this drift (one standard deviation).

@@ -27,7 +27,7 @@ using Words = std::vector<std::string_view>;
 
 double parse_number(std::string_view word, const char* field, const LinePlace& place) {
   const auto value = number_in(without_plus(word));
-  // An empty value between commas is how tables write NaN.
+  // In tables, NaN is written as an empty value between commas.
   if (!value)
     place.fail(fmt::format("{}: '{}' is not a number", field, word),
                word.empty() ? PoseFault::kNotFinite : PoseFault::kNoPose);

@@ -36,7 +36,8 @@ Trajectory read_trajectory(const std::filesystem::path& file,
 /// The same, but the result may be empty.
 Trajectory parse_valid_poses(const std::string& text, const std::string& name,
                              std::vector<std::string>& notes);
-/// Writes doubles so that they read back to the same value. @pre stamps are not negative.
+/// Writes the poses in TUM's format, with doubles that read back to the same value. @pre stamps are
+/// not negative.
 std::string format_tum(const Trajectory& trajectory);
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory);
 

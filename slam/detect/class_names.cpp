@@ -51,7 +51,7 @@ constexpr std::array<const char*, 80> kCoco80 = {"person",        "bicycle",    
 // The category ids up to 90 that COCO's annotations leave out.
 constexpr std::array kNoCategory = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 
-// Networks' names for classes that class_by_name() knows by another name.
+// Names that networks give to classes for which class_by_name() knows a different name.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kAlsoCalled = {{
     {"tvmonitor", "television"},
     {"pottedplant", "potted plant"},

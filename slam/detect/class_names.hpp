@@ -12,10 +12,10 @@
 
 namespace mh {
 
-/// The classes of a network, by its own index.
+/// The classes of a network, in the order of its own indices.
 struct ClassNames {
   std::vector<std::string> names;
-  std::vector<ClassId> ids;  ///< our class of that name; void if there is none
+  std::vector<ClassId> ids;  ///< our class for each name; void if there is none
   std::size_t size() const { return names.size(); }
   /// A line for the user if none of the classes is ours; otherwise empty.
   std::string unknown_note(const std::filesystem::path& of) const;

@@ -31,9 +31,8 @@ struct Detected {
 };
 
 /// Labels of each pixel. Each box is one palette entry, boxes with higher scores cover those with
-/// lower ones, and pixels outside all boxes are background. BoxFill::kForeground leaves out the
-/// pixels of a box whose depth is known and not within that of the box's surface: see
-/// foreground_depth().
+/// lower ones, and pixels outside all boxes are background. BoxFill::kForeground leaves out those
+/// pixels of a box that have a depth, but not one of the box's surface: see foreground_depth().
 /// @param depth_m  of the same pixels; may be empty with BoxFill::kBox
 SemanticImage labels_of(const Detected& detected, const Grid2d<float>& depth_m, int width,
                         int height, BoxFill fill);
@@ -52,7 +51,8 @@ struct DepthRange {
 /// farther one is kept instead. This is repeated up to three times.
 DepthRange foreground_depth(const DetectedBox& box, const Grid2d<float>& depth_m);
 
-/// Bytes for a cache, and back. @throws InputError if the bytes are not a valid encoding.
+/// Encodes detections for a cache, and decodes them. @throws InputError if the bytes are not a
+/// valid encoding.
 std::string encode(const Detected& detected);
 Detected decode_detected(std::string_view bytes);
 

@@ -44,7 +44,7 @@ std::vector<Cell> cells_of(int boxes, const InputSize& input) {
   return {};
 }
 
-/// A matrix of `rows` x `columns`, of any layout.
+/// A matrix of `rows` x `columns`, stored row by row or column by column.
 struct Matrix {
   int rows = 0, columns = 0;
   std::span<const float> values;

@@ -33,7 +33,8 @@ bool gives_boxes_and_masks(std::span<const Tensor> outputs, const InputSize& inp
 /// The output of a segmenting head: the first with a channel per class; null if there is none.
 const Tensor* segmentation_in(std::span<const Tensor> outputs, const InputSize& input);
 
-/// The number of classes of a head with these outputs; 0 if they cannot be its outputs.
+/// The number of classes of a network that has this head and these outputs; 0 if the head cannot
+/// have such outputs.
 int class_count(Head head, std::span<const Tensor> outputs, const InputSize& input);
 
 /// A box in a network's output, before the image is known.

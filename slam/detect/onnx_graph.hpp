@@ -48,13 +48,13 @@ struct OnnxNode {
   void set(const std::string& name, float value);
 };
 
-/// A network's graph. Views the bytes that it was read from.
+/// A network's graph. Points into the bytes from which it was read.
 struct OnnxGraph {
   std::int64_t opset = 0;
   std::vector<OnnxNode> nodes;  ///< in an order in which they can be computed
   std::map<std::string, std::string_view, std::less<>> weights;  ///< TensorProto by name
   std::map<std::string, OnnxTensor> constants;                   ///< additional weights
-  std::map<std::string, OnnxShape> inputs;                       ///< of inputs that are not weights
+  std::map<std::string, OnnxShape> inputs;  ///< shapes of the inputs that are not weights
   std::vector<std::string> outputs;
   std::string_view model;  ///< the bytes from which the graph was read
 };

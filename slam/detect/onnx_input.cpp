@@ -97,7 +97,7 @@ std::string fault_of(std::string_view tensor) {
   return fmt::format("weights {} hold {} values, but their shape needs {}", name, held, values);
 }
 
-/// 0 if a dimension is dynamic: named, or -1.
+/// The size of a dimension; 0 if it is dynamic, that is, named or -1.
 std::uint64_t size_of(const ProtoField& dim) {
   for (const ProtoField& value : proto_fields(dim.bytes, kValue))
     if (value.is_number && static_cast<std::int64_t>(value.number) > 0) return value.number;

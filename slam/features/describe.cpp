@@ -11,7 +11,7 @@ namespace mh {
 namespace {
 
 constexpr int kRadius_px = 15;
-constexpr int kRowLength = 32;  // 31 pixels and a masked one: whole SIMD registers
+constexpr int kRowLength = 32;  // 31 pixels and a masked one fill whole SIMD registers
 
 // 255 inside the disk, 0 outside; row v + radius, column u + radius. The outline is a circle
 // rounded to pixels, made symmetric about the diagonals.

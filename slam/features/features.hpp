@@ -25,7 +25,7 @@ inline int hamming(const Descriptor& a, const Descriptor& b) {
 inline constexpr int kPatchReach_px = 19;
 
 struct Keypoint {
-  float u_px = 0, v_px = 0;  ///< undistorted, at full resolution
+  float u_px = 0, v_px = 0;  ///< undistorted, in pixels of the full-resolution image
   float depth_m = 0;         ///< 0 = none
   float angle_rad = 0;       ///< orientation by intensity centroid, [0, 2 pi)
   std::int32_t octave = 0;   ///< pyramid level, 0 = finest

@@ -29,7 +29,8 @@ struct FileObservation {
     kOther,   ///< looked for and found, but neither file nor folder: a pipe, a device
     kListed,  ///< the names in a folder that match a pattern; path = folder / pattern
     kRead,    ///< the whole content of a file
-    kHeld,    ///< a file that may be read, or looked for in vain, again later; not part of digests
+    kHeld,  ///< a file that may be read again later, or is missing and may be looked for again; not
+            ///< part of digests
   };
   Kind kind = Kind::kAbsent;
   std::filesystem::path path;  ///< as it was spelled by the caller

@@ -13,10 +13,11 @@ namespace mh {
 /// Where a piece of the map may be in another one, and what supports it.
 struct PiecePlace {
   KeyframeId origin, other;  ///< Keyframe::origin of the two pieces
-  SE3 other_from_own;        ///< between their worlds, from the last keyframe that agreed
-  KeyframeId keyframe;       ///< the last keyframe that agreed
-  int agreeing = 0;          ///< keyframes that agreed so far
-  double way_m = 0;          ///< length of the path through the keyframes that agreed
+  SE3 other_from_own;   ///< between the two pieces' worlds, according to the last keyframe that
+                        ///< agreed
+  KeyframeId keyframe;  ///< the last keyframe that agreed
+  int agreeing = 0;     ///< keyframes that agreed so far
+  double way_m = 0;     ///< length of the path through the keyframes that agreed
 };
 
 /// What loop detection remembers between keyframes.
@@ -46,7 +47,7 @@ struct Loop {
 std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const SlamContext& context,
                                 RandomStream stream);
 
-/// Looks for the newest keyframe's place in other pieces of the map. A place counts once
+/// Looks for the newest keyframe's place in other pieces of the map. A place is accepted once
 /// LoopConfig::joining keyframes agree on it, over a path of LoopConfig::joining_m, and no other
 /// place is supported by half as many keyframes or more.
 /// @param is_reachable  whether the newest keyframe's piece can be where the place puts it. The

@@ -24,8 +24,8 @@ namespace mh {
 
 struct Keyframe {
   KeyframeId id;
-  /// The first keyframe of its piece of the map, which defines that piece's world: nothing ties the
-  /// worlds of different pieces yet.
+  /// The first keyframe of its piece of the map, which defines that piece's world: the relative
+  /// pose of the worlds of different pieces is not known yet.
   KeyframeId origin{0};
   Stamp stamp_ns = 0;
   SE3 camera_from_world;

@@ -45,7 +45,8 @@ struct MatchDecision {
   std::uint32_t other_feature = MatchedPair::kNone;  ///< of that keyframe
 };
 
-/// Decisions of a step, in order: relocalization by words and by pose, and the local map.
+/// Decisions of a step, in order. They are made by relocalization, which searches by words and by
+/// pose, and by the search in the local map.
 using DecisionTrace = std::vector<MatchDecision>;
 
 }  // namespace mh

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// Structure, and classes that are not objects.
+/// Classes that are structure or otherwise not objects.
 constexpr std::array<ClassId, 10> kNotThings = {
     kVoid,      1 /*wall*/,     2 /*floor*/,           8 /*door*/,    9 /*window*/,
     20 /*mat*/, 22 /*ceiling*/, 38 /*otherstructure*/, 31 /*person*/, kBackground};

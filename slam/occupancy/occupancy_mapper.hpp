@@ -22,7 +22,7 @@ struct OccupancyConfig {
   double pose_step_m = 0.005, pose_step_rad = 0.00125;
 };
 
-/// What an update changed, in keyframes.
+/// Numbers of keyframes that an update added, moved, removed, and kept as they were.
 struct OccupancyUpdate {
   std::size_t added = 0, moved = 0, removed = 0, kept = 0;
 };

@@ -68,8 +68,8 @@ class VoxelMap {
   void set_detected(DetectedObjects objects);
   const DetectedObjects& detected() const;
 
-  /// Whether z = 0 of its frame is a floor (z up). If no floor was found, the frame is a camera's,
-  /// and heights in it are meaningless. Default: true.
+  /// Whether z = 0 of the map's frame is a floor (z up). If no floor was found, the frame is a
+  /// camera's, and heights in it are meaningless. Default: true.
   void set_on_floor(bool on_floor);
   bool on_floor() const;
 

@@ -16,7 +16,7 @@ namespace mh {
 
 // What RANSAC needs for any of OpenCV's minimal solvers.
 
-/// N different indices below count, for one iteration. @pre count >= N
+/// Draws N different indices below `count` for one iteration. @pre count >= N
 template <std::size_t N>
 std::array<std::size_t, N> draw_different(RandomStream stream, int iteration, std::size_t count) {
   std::array<std::size_t, N> drawn{}, taken{};  // `taken` is ordered

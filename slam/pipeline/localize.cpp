@@ -32,7 +32,7 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
 
 struct LocalizeMemo::Content {
   /// Result of refining the winning candidate's pose in the local map, with the match counts of
-  /// that.
+  /// this refinement.
   struct Refined {
     std::optional<SE3> camera_from_world;
     int inliers = 0;

@@ -76,8 +76,8 @@ std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tr
   const MapPose guess{state.map.at(tracker.reference).origin, reckoned.camera_from_world};
   if (auto located = find_near(guess, radius_px, frame, context, observers))
     if (reckoned.allows(located->tracked, config)) return located;
-  // The image does not confirm the pose. If that is well known, the last frame's points should be
-  // in view and the frame shows many features, then the wheels slipped or the robot was carried
+  // The image does not confirm the pose. If the pose is well known, the last frame's points should
+  // be in view, and the frame shows many features, then the wheels slipped or the robot was carried
   // away.
   constexpr double kKnown_m = 0.05, kKnown_rad = 0.03;
   if (sigma.position_m <= kKnown_m && sigma.angle_rad <= kKnown_rad &&

@@ -60,7 +60,7 @@ bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& othe
   constexpr double kLeast_m = 0.15, kLeast_rad = 0.15, kTurn_rad_s = 0.25;
   constexpr double kMostSigmas = 2, kMost_rad = 1.2;
   const SE3& other_from_own = other.camera_from_world;
-  SE3 other_from_piece;   // piece: the one that the camera is in; the transform is an estimate
+  SE3 other_from_piece;   // estimated; "piece" is the one that the camera is in
   std::vector<Gap> gaps;  // since the camera was in the other piece
   bool was_there = false;
   const auto& frames = state.tracked_frames;

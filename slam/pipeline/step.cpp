@@ -22,8 +22,9 @@ namespace {
 constexpr int kMinInitialPoints =
     100;  // number of points with depth that a frame needs to define the origin
 
-/// Begins a piece of the map with a frame that has enough depth, which defines the piece's world.
-/// @param place  camera_from_world; absent: it is the origin
+/// Begins a piece of the map with a frame, if it has enough depth. The frame defines the piece's
+/// world.
+/// @param place  camera_from_world of the frame; absent: the identity
 StepReport begin_piece(SlamState& state, PreparedFrame frame, const std::optional<SE3>& place,
                        const StepObservers& observers, StepReport report) {
   const int with_depth = points_with_depth(frame.features);

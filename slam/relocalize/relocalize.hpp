@@ -26,7 +26,7 @@ struct RelocalizationResult {
   KeyframeId keyframe;  ///< the candidate that led to the pose
 };
 
-/// N_k of equation 5: a keyframe and its best covisible ones, at most ten.
+/// N_k of equation 5: a keyframe and its best covisible keyframes, at most ten of them.
 /// @param belongs  which keyframes are eligible; empty = all
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs = {});

@@ -106,7 +106,7 @@ InertialMotion InertialMotion::begin(const ImuReading& reading, const Matrix6d& 
 
 std::optional<SE3> InertialMotion::advance(std::span<const ImuReading> readings, Stamp from_ns,
                                            Stamp to_ns) {
-  SE3 before_from_now;  // between the filter's own poses
+  SE3 before_from_now;  // transform between the filter's own poses
   Stamp at_ns = from_ns;
   const auto go_to = [&](Stamp stamp_ns, const Vector3d& turn, const Vector3d& force) {
     const double t = static_cast<double>(stamp_ns - at_ns) * kNanosecond_s;

@@ -36,7 +36,7 @@ struct InertialMotion {
   Known known(const SE3& camera_from_world) const;
 
   /// State at a pose about which nothing else is known: the velocity is unknown, and gravity is
-  /// what the accelerometer shows unless something better was learned before.
+  /// taken from the accelerometer unless a better value was learned before.
   static InertialMotion begin(const ImuReading& reading, const Matrix6d& pose_covariance,
                               const SE3& camera_from_world, const std::optional<Known>& known);
 

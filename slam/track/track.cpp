@@ -55,7 +55,8 @@ std::vector<LastPoint> points_in_view(const LastFrame& last, const SE3& camera_f
   return points;
 }
 
-/// Keyframes with the number of landmarks they share with the frame, most first, then earliest.
+/// Keyframes with the number of landmarks that they share with the frame; the most first, and the
+/// earliest first among equals.
 std::vector<std::pair<KeyframeId, int>> by_shared_landmarks(const TrackedPose& tracked,
                                                             const Map& map) {
   std::vector<int> votes(map.keyframes().size(), 0);

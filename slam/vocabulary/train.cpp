@@ -74,7 +74,8 @@ class VocabularyTrainer {
       const RandomStream random = RandomStream(config_.seed).fork(pending.node);
       const Clusters clusters =
           cluster(descriptors_, pending.members, config_.branching, config_.max_iterations, random);
-      // All equal: splitting further would only make a chain. The root must have a child, though.
+      // All descriptors are equal: splitting further would only make a chain. The root must have a
+      // child, though.
       if (clusters.centers.size() == 1 && depth > 0) continue;
       add_children(pending, clusters, next);
     }
