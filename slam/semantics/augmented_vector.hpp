@@ -101,7 +101,7 @@ AugmentedVector augmented_vector(std::span<const Label> labels,
 /// @param shares_at_one  AugmentedVector::label_mass() of each vector at gamma = 1
 /// @param wished         requested share, in [0, 1)
 /// @param most           returned if no smaller gamma is enough, as may happen if some vectors have
-/// no labels
+///                       no labels
 /// @returns 0 if no vector has labels
 inline double gamma_for_label_mass(std::span<const double> shares_at_one, double wished,
                                    double most) {
