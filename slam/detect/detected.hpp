@@ -31,8 +31,9 @@ struct Detected {
 };
 
 /// Labels of each pixel. Each box is one palette entry, boxes with higher scores cover those with
-/// lower ones, and pixels outside all boxes are background. BoxFill::kForeground leaves out those
-/// pixels of a box that have a depth, but not one of the box's surface: see foreground_depth().
+/// lower ones, and pixels outside all boxes are background. BoxFill::kForeground leaves out pixels
+/// of a box if their depth is known and outside the depths of the box's surface: see
+/// foreground_depth().
 /// @param depth_m  of the same pixels; may be empty with BoxFill::kBox
 SemanticImage labels_of(const Detected& detected, const Grid2d<float>& depth_m, int width,
                         int height, BoxFill fill);

@@ -26,10 +26,10 @@ namespace mh {
 std::optional<double> depth_disagreement(std::span<const PoseObservation> observations,
                                          const SE3& camera_from_world, const Camera& camera);
 
-/// The standard deviation of disparity after one more frame. The frames that agree best determine
-/// it, since in others the map may be at fault: a quarter of all frames should have a disagreement
-/// below 1. Stochastic approximation (Robbins and Monro 1951) of this quantile on a logarithmic
-/// scale.
+/// The standard deviation of disparity after one more frame. It is determined by the frames that
+/// agree best, since in others the map may be at fault: a quarter of all frames should have a
+/// disagreement below 1. Stochastic approximation (Robbins and Monro 1951) of this quantile on a
+/// logarithmic scale.
 /// @param frames  number of frames on which the estimate is based so far
 double learned_disparity_sigma_px(double disparity_sigma_px, int frames, double disagreement);
 
