@@ -6,11 +6,12 @@
 namespace mh {
 
 struct BundleConfig {
-  int iterations = 5;               ///< iterations with Huber's loss; then outliers are dropped
-  int refine_iterations = 10;       ///< at most this many more iterations, without Huber's loss
-  double relative_decrease = 1e-3;  ///< of the cost; a smaller one ends the phase
-  double chi2_mono = 5.991;         ///< 95 % of chi-square, 2 degrees of freedom
-  double chi2_stereo = 7.815;       ///< 95 % of chi-square, 3 degrees of freedom
+  int iterations = 5;          ///< iterations with Huber's loss; then outliers are dropped
+  int refine_iterations = 10;  ///< at most this many more iterations, without Huber's loss
+  double relative_decrease =
+      1e-3;  ///< a phase ends when a step reduces the cost by no more than this share
+  double chi2_mono = 5.991;    ///< 95 % quantile of chi-square, 2 degrees of freedom
+  double chi2_stereo = 7.815;  ///< 95 % quantile of chi-square, 3 degrees of freedom
   friend bool operator==(const BundleConfig&, const BundleConfig&) = default;
 };
 

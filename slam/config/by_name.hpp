@@ -10,8 +10,8 @@
 
 namespace mh {
 
-// SLAM settings by full name: "features.count". @pre A name passed in is one of setting_names();
-// otherwise std::logic_error.
+// Access to SLAM settings by full name, such as "features.count". @pre Every name passed in is one
+// of setting_names(); otherwise, std::logic_error is thrown.
 
 /// All full names, in the order of the settings file.
 std::vector<std::string> setting_names();
@@ -25,7 +25,8 @@ double setting_value(const SlamConfig& config, std::string_view name);
 /// Whether the setting is numeric, that is, neither a switch nor a word.
 bool is_number(std::string_view name);
 
-/// Reads the value of a setting. @throws InputError at its place in the file if it is out of range.
+/// Reads the value of a setting. @throws InputError with its place in the file if it is out of
+/// range.
 void read_setting(SlamConfig& config, std::string_view name, const YamlReader& value);
 /// Interpolates a setting: low at share 0, high at share 1; integers are rounded to the nearest. No
 /// effect on settings that are not numbers.

@@ -8,7 +8,7 @@ namespace mh {
 struct FeatureConfig {
   int count = 1000;            ///< keypoints per frame, at most
   int levels = 8;              ///< pyramid levels
-  double scale = 1.2;          ///< between levels
+  double scale = 1.2;          ///< ratio of the image sizes of successive levels
   int fast_threshold = 20;     ///< gray levels
   int fast_threshold_low = 7;  ///< used in cells where the first threshold finds nothing
   double max_depth_m = 8.0;    ///< larger depths are dropped

@@ -8,10 +8,12 @@ namespace mh {
 struct KeyframeConfig {
   int max_interval = 30;           ///< frames after which untracked close points alone call for a
                                    ///< keyframe
-  double min_tracked_share = 0.5;  ///< of the reference keyframe's landmarks
-  int min_close_tracked = 100;     ///< fewer tracked close points than this, and
-  int min_close_new = 70;          ///< more untracked close points than this: a keyframe is needed
-  double close_depth_m = 3.5;      ///< up to this depth, landmarks are created at once
+  double min_tracked_share = 0.5;  ///< a keyframe is needed if a smaller share of the reference
+                                   ///< keyframe's landmarks is tracked
+  int min_close_tracked =
+      100;                 ///< a keyframe is needed if fewer close points than this are tracked and
+  int min_close_new = 70;  ///< more close points than this are untracked
+  double close_depth_m = 3.5;  ///< up to this depth, landmarks are created at once
   double redundant_share =
       0.9;  ///< a keyframe is culled if 3 others see this share of its landmarks
   friend bool operator==(const KeyframeConfig&, const KeyframeConfig&) = default;

@@ -8,25 +8,25 @@ namespace mh {
 struct LoopConfig {
   bool enabled = true;
   bool augmented = false;  ///< candidates by equation 1 with labels; otherwise by words alone
-  int min_gap = 10;        ///< keyframes between the two ends, at least
-  /// The ends of a loop share fewer landmarks than this: chance matches across a drift of a few
-  /// centimeters tie them too loosely to correct it.
+  int min_gap = 10;        ///< minimum number of keyframes between the two ends
+  /// The ends of a loop must share fewer landmarks than this. Despite a drift of a few centimeters,
+  /// they may share some by chance, but too few to correct the drift.
   int loosely_shared = 60;
-  /// Minimum similarity of a candidate, as a share of the similarity of the least similar strong
-  /// neighbor.
+  /// Minimum similarity of a candidate, as a share of the similarity of the newest keyframe's least
+  /// similar strong neighbor.
   double min_similarity_share = 0.5;
   int agreeing = 2;            ///< keyframes that must agree on the same drift,
-  int patience = 5;            ///< each at most this many keyframes after the previous one
+  int patience = 5;            ///< each of them at most this many keyframes after the one before
   double same_drift_m = 0.10;  ///< tolerance for "the same" drift
   double same_drift_rad = 0.05;
   /// Largest plausible drift: absolute, and as a share of the path between the ends. Anything
   /// larger is a different place that looks the same.
   double max_drift_m = 0.3, max_drift_share = 0.03;
   double max_drift_rad = 0.35;
-  double negligible_m = 0.01;  ///< below this, landmarks are merged but poses stay
+  double negligible_m = 0.01;  ///< a smaller drift merges landmarks but does not move poses
   double negligible_rad = 0.003;
-  /// Pieces of a map are joined once this many keyframes agree on their relative pose, over this
-  /// length of the camera's path.
+  /// Pieces of a map are joined once `joining` keyframes agree on their relative pose, over at
+  /// least `joining_m` of the camera's path.
   int joining = 5;
   double joining_m = 1.5;
   /// If not 0, pieces are joined only if the camera's motion between them is known this accurately

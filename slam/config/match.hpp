@@ -6,9 +6,9 @@
 namespace mh {
 
 struct MatchConfig {
-  int max_distance = 50;          ///< bits; tight gate (appearance only, fusion)
-  int max_distance_loose = 100;   ///< bits; loose gate where geometry already restricts the search
-  double ratio = 0.75;            ///< best over second best, appearance only
+  int max_distance = 50;         ///< bits; tight gate (appearance only, fusion)
+  int max_distance_loose = 100;  ///< bits; loose gate where geometry already restricts the search
+  double ratio = 0.75;           ///< largest ratio of best to second-best distance, appearance only
   double ratio_projection = 0.8;  ///< the same ratio where geometry already restricts the search
   friend bool operator==(const MatchConfig&, const MatchConfig&) = default;
 };

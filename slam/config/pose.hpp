@@ -8,8 +8,8 @@ namespace mh {
 struct PoseConfig {
   int rounds = 4;              ///< after each round, the inlier set is recomputed
   int iterations = 10;         ///< Gauss-Newton steps per round
-  double chi2_mono = 5.991;    ///< 95 % of chi-square, 2 degrees of freedom
-  double chi2_stereo = 7.815;  ///< 95 % of chi-square, 3 degrees of freedom
+  double chi2_mono = 5.991;    ///< 95 % quantile of chi-square, 2 degrees of freedom
+  double chi2_stereo = 7.815;  ///< 95 % quantile of chi-square, 3 degrees of freedom
   int min_inliers = 10;
   friend bool operator==(const PoseConfig&, const PoseConfig&) = default;
 };

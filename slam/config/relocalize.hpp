@@ -12,8 +12,7 @@ namespace mh {
 
 /// What it takes to accept a candidate keyframe's pose.
 enum class Acceptance {
-  kOurs,     ///< any consensus of at least ransac.min_inliers; guided searches follow, whatever its
-             ///< size
+  kOurs,     ///< guided searches follow any consensus of at least ransac.min_inliers, however small
   kOrbSlam2  ///< by ORB-SLAM2's rules (Mur-Artal and Tardos 2017): see candidate_trial.hpp
 };
 constexpr std::array<std::pair<std::string_view, Acceptance>, 2> words(Acceptance) {
@@ -23,10 +22,10 @@ constexpr std::array<std::pair<std::string_view, Acceptance>, 2> words(Acceptanc
 /// The similarity, in equation 5, of a neighbor that shares words with the query but fails equation
 /// 4.
 enum class NeighborScores {
-  kFresh,      ///< computed with this query
-  kCleared,    ///< 0: ORB-SLAM2's mRelocScore if it were cleared before each query
-  kAsReleased  ///< what an earlier query left, or 0: ORB-SLAM2's mRelocScore as released. Replies
-               ///< then depend on the order of the queries.
+  kFresh,      ///< computed for this query
+  kCleared,    ///< 0, as if ORB-SLAM2's mRelocScore were cleared before each query
+  kAsReleased  ///< what an earlier query left, or 0, as in ORB-SLAM2's mRelocScore as released.
+               ///< Replies then depend on the order of the queries.
 };
 constexpr std::array<std::pair<std::string_view, NeighborScores>, 3> words(NeighborScores) {
   return {{{"fresh", NeighborScores::kFresh},
@@ -41,15 +40,15 @@ struct RelocalizeConfig {
   int min_inliers = 50;    ///< to accept a pose
   double rival_share = 0;  ///< a pose is refused if a rival elsewhere has at least this share of
                            ///< its inliers; 0: the first pose is taken
-  /// Around the position that a pose from few matches predicts for a landmark; the second search
-  /// uses 4 px.
+  /// Radius of the first guided search, around the position at which a pose from few matches
+  /// predicts a landmark; the second search uses 4 px.
   double search_radius_px = 10;
-  /// Standard deviation of a true pair's disparity error (in addition to the keypoint's own, as in
-  /// Camera) before the pose is refined on the local map; never less than the camera's own. The
-  /// camera's value describes a single reading. Here the landmark comes from another reading (0.1
-  /// px), the pose from a handful of points (1 cm at 1.4 m: 0.2 px), color and depth are not
-  /// captured at the same instant, and structured-light sensors warp (0.2 px): 0.3 px together,
-  /// which is what pairs in real recordings show (docs/slam.md).
+  /// Standard deviation of a correct match's disparity error at octave 0 (as in Camera), used until
+  /// the pose is refined against the local map; the camera's own value is used if it is larger. The
+  /// camera's value describes a single reading. Here, in addition, the landmark comes from another
+  /// reading (0.1 px), the pose from a handful of points (1 cm at 1.4 m: 0.2 px), color and depth
+  /// are not captured at the same instant, and structured-light sensors warp depth (0.2 px).
+  /// Together, these give 0.3 px, as matches in real recordings do (docs/slam.md).
   double disparity_sigma_px = 0.3;
   RansacConfig ransac;
   friend bool operator==(const RelocalizeConfig&, const RelocalizeConfig&) = default;

@@ -25,7 +25,7 @@ constexpr std::array<std::pair<std::string_view, Overlap>, 3> words(Overlap) {
 /// Which candidates relocalization tries.
 enum class CandidateLists {
   kOne,        ///< those of Algorithm 1
-  kSideBySide  ///< interleaved with those of Algorithm 1 over words alone
+  kSideBySide  ///< those of Algorithm 1, interleaved with those that it selects from words alone
 };
 
 constexpr std::array<std::pair<std::string_view, CandidateLists>, 2> words(CandidateLists) {
@@ -45,8 +45,9 @@ constexpr std::array<std::pair<std::string_view, WiderSearch>, 3> words(WiderSea
            {"all", WiderSearch::kAll}}};
 }
 
-/// The paper's parameters, and rules beyond it (slam/relocalize/beyond_paper.hpp): `label_mass`,
-/// and `candidates` and everything after it.
+/// The paper's parameters, and settings of rules that go beyond the paper
+/// (slam/relocalize/beyond_paper.hpp): `label_mass`, `candidates` and all members after
+/// `candidates`.
 struct SemanticConfig {
   double gamma = 1.0;
   double label_mass = 0.0;

@@ -13,8 +13,8 @@
 
 namespace mh {
 
-/// Configuration of one SLAM run: everything besides vocabulary and frames that determines its
-/// result.
+/// Configuration of one SLAM run: everything that determines its result, except the vocabulary and
+/// the frames.
 struct SlamConfig {
   FeatureConfig features;
   SemanticConfig semantics;
@@ -54,7 +54,7 @@ void for_each_setting(C& config, Visit&& visit) {
   fields(config, part);
 }
 
-/// @throws InputError naming the field and its value.
+/// Checks every setting. @throws InputError naming a field that is out of range, and its value.
 void validate(const SlamConfig& config);
 
 }  // namespace mh

@@ -6,18 +6,18 @@
 namespace mh {
 
 struct TrackConfig {
-  int min_inliers = 20;  ///< inliers in the local map that make a frame count as tracked
-  int min_inliers_sparse =
-      10;                     ///< lower limit if a sixth of the keypoints is fewer than min_inliers
-  int min_inliers_frame = 8;  ///< inliers needed before the local map is searched
+  int min_inliers = 20;          ///< inliers in the local map that make a frame count as tracked
+  int min_inliers_sparse = 10;   ///< if a sixth of the keypoints is fewer than min_inliers, that
+                                 ///< sixth is enough, but at least this
+  int min_inliers_frame = 8;     ///< inliers needed before the local map is searched
   double search_radius_px = 15;  ///< around the predicted position, at octave 0
   double local_radius_px = 5;  ///< around the position predicted from the tracked pose, at octave 0
-  int local_keyframes = 60;    ///< at most, in the local map
-  double near_distance_m = 2.5;  ///< keyframes this near join the local map,
+  int local_keyframes = 60;    ///< maximum number in the local map
+  double near_distance_m = 2.5;  ///< keyframes within this distance join the local map,
   double near_angle_rad =
       0.9;  ///< if they face the same way to within this angle, even without shared landmarks
   double sure_position_m =
-      0.015;  ///< if the image alone leaves a pose a standard deviation above this
+      0.015;  ///< if the standard deviation of a pose from the image alone is above this
   double sure_angle_rad = 0.01;  ///< or this, the pose is fused with the predicted motion
   /// A frame whose image gives no pose is placed by wheel odometry or an inertial sensor, if
   /// available, up to this drift (one standard deviation).
@@ -32,8 +32,8 @@ struct TrackConfig {
   /// never. LoopConfig::joining states when pieces are joined.
   double new_piece_after_s = 0;
   double coast_s = 1.0;  ///< how long a lost camera is searched for along its predicted motion
-  /// Rolling-shutter readout from the first row to the last; the stamp is that of the middle row.
-  /// 0: global shutter.
+  /// Time that a rolling shutter takes from the first row to the last; the stamp is that of the
+  /// middle row. 0: global shutter.
   double readout_s = 0;
   friend bool operator==(const TrackConfig&, const TrackConfig&) = default;
 };

@@ -17,7 +17,8 @@ namespace {
 Eigen::Matrix2d jacobian_of(const Distortion& d, const Eigen::Vector2d& p) {
   const double x = p.x(), y = p.y(), r2 = x * x + y * y, radial = d.radial(r2);
   const double below = 1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6));
-  // Twice the derivatives with respect to r^2: of numerator and denominator, then of the quotient.
+  // Twice the derivatives of the numerator and the denominator with respect to r^2, then that of
+  // their quotient.
   const double above_slope = 2.0 * (d.k1 + r2 * (2.0 * d.k2 + 3.0 * r2 * d.k3)),
                below_slope = 2.0 * (d.k4 + r2 * (2.0 * d.k5 + 3.0 * r2 * d.k6));
   const double slope = (above_slope - radial * below_slope) / below;
@@ -38,7 +39,7 @@ void validate(const Camera& camera) {
   };
   require(camera.width_px > 0, "width_px", camera.width_px);
   require(camera.height_px > 0, "height_px", camera.height_px);
-  // A pinhole that sees less than 174 degrees and more than three arc minutes.
+  // Whether a focal length gives a field of view below 174 degrees and above three arc minutes.
   const auto is_focal = [&](double f) {
     return f > 0.05 * camera.width_px / 2 && f < 1e3 * camera.width_px;
   };

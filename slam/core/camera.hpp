@@ -17,18 +17,18 @@ struct Distortion {
   bool none() const {
     return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0 && !is_rational();
   }
-  /// Factor of the radius, from its square: (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 +
-  /// k6 r^6).
+  /// Factor on the radius, as a function of its square: (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4
+  /// r^2 + k5 r^4 + k6 r^6).
   double radial(double r2) const {
     return (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
   }
-  /// Where the lens shows a point of the plane at unit depth.
+  /// Applies the distortion to a point of the plane at unit depth.
   Eigen::Vector2d distorted(double x, double y) const {
     const double r2 = x * x + y * y, factor = radial(r2);
     return {x * factor + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
             y * factor + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
   }
-  /// The inverse, by Newton's method; NaN if the lens maps no point there.
+  /// The inverse of distorted(), by Newton's method; NaN if the lens maps no point there.
   Eigen::Vector2d undistorted(double x, double y) const;
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
@@ -48,13 +48,14 @@ struct Camera {
   double cx_px = 319.5, cy_px = 239.5;
   Distortion distortion;
   double rate_hz = 30.0;
-  /// Baseline of the depth sensor's triangulation: a depth z has disparity fx * b / z, whose error
-  /// determines how much the depth weighs. 0.075 m: Khoshelham and Elberink, Sensors 2012.
+  /// Baseline b of the depth sensor's triangulation. A depth z has disparity fx * b / z; the error
+  /// of this disparity determines how much the depth weighs. 0.075 m: Khoshelham and Elberink,
+  /// Sensors 2012.
   double baseline_m = 0.075;
-  /// Standard deviation of the disparity at a keypoint of octave 0; at higher octaves it grows like
-  /// that of the keypoint's position, since a misplaced keypoint reads its depth at the wrong
-  /// pixel. If none is given, SLAM begins with this value and learns it
-  /// (slam/optimize/depth_trust.hpp).
+  /// Standard deviation of the disparity at a keypoint of octave 0; at higher octaves, it grows
+  /// like the standard deviation of the keypoint's position, since the depth of a misplaced
+  /// keypoint is read at the wrong pixel. If no value is given, SLAM begins with this default and
+  /// learns the value (slam/optimize/depth_trust.hpp).
   double disparity_sigma_px = 0.3;
   bool disparity_sigma_is_given = false;
 
@@ -81,7 +82,7 @@ struct Camera {
 /// principal point inside the image.
 void validate(const Camera& camera);
 
-/// The camera whose image shows the same view at a different size.
+/// The same camera with its image scaled to a different size.
 Camera resized(Camera camera, int width_px, int height_px);
 
 }  // namespace mh

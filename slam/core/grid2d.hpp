@@ -21,8 +21,9 @@ struct LineAllocator {
   LineAllocator() = default;
   template <class U>
   LineAllocator(const LineAllocator<U>&) noexcept {}
-  /// The byte before the aligned start stores the offset. (glibc 2.36 does not reuse freed memory
-  /// in its aligned allocation: the memory of a long run grew with every frame.)
+  /// The byte before the aligned start stores its offset in the allocated memory. (An aligned
+  /// operator new is not used: glibc 2.36 does not reuse memory freed by aligned allocations, so
+  /// the memory of a long run grew with every frame.)
   T* allocate(std::size_t count) {
     auto* memory = static_cast<unsigned char*>(::operator new(count * sizeof(T) + kLine));
     const std::size_t shift = kLine - reinterpret_cast<std::uintptr_t>(memory) % kLine;

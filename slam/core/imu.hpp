@@ -17,7 +17,8 @@ struct ImuPath {
   std::vector<Eigen::Vector3d> velocities_m_per_s;  ///< at each pose of the path, in the world
 };
 
-/// The readings after one stamp and up to another. @pre `readings` are in order of stamps
+/// The readings later than one stamp and no later than another. @pre `readings` are in order of
+/// stamps
 std::span<const ImuReading> imu_between(std::span<const ImuReading> readings, Stamp after_ns,
                                         Stamp to_ns);
 

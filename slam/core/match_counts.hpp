@@ -29,7 +29,8 @@ struct MatcherCounts {
   std::int64_t compared = 0;  ///< descriptor pairs
   std::int64_t penalized =
       0;  ///< those whose labels are known and differ: xi multiplies their distance
-  std::int64_t rejected_by_xi = 0;  ///< best pairs below the threshold before xi, above it after
+  std::int64_t rejected_by_xi =
+      0;  ///< best pairs whose distance was below the threshold before xi and is above it after
   std::int64_t ratio_helped =
       0;  ///< pairs that pass the ratio test only because xi inflated the second best
   MatcherCounts& operator+=(const MatcherCounts& other);

@@ -14,7 +14,7 @@
 namespace mh {
 namespace {
 
-/// In the order of PoseFault.
+/// What a message says about one line and about several, in the order of PoseFault.
 constexpr std::array<std::pair<const char*, const char*>, 4> kOneAndMore = {
     {{"is not finite", "are not finite"},
      {"has no rotation", "have no rotation"},

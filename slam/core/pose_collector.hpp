@@ -34,10 +34,10 @@ struct LinePlace {
 /// The poses of a file in the order of their stamps, and what was left out.
 class PoseCollector {
  public:
-  /// @param strict  nothing may be left out, and stamps must be in order
+  /// @param strict  if true, nothing may be left out, and stamps must be in order
   PoseCollector(const std::string& file, bool strict) : file_(file), strict_(strict) {}
 
-  /// @param stamp  as written @throws BadPose if it repeats one
+  /// @param stamp  as written in the file @throws BadPose if an earlier line has the same stamp
   void add(const TimedPose& pose, std::string_view stamp, const LinePlace& place);
   /// @throws InputError if strict
   void leave_out(const BadPose& line);
@@ -57,7 +57,7 @@ class PoseCollector {
   Trajectory poses_;
   std::set<Stamp> stamps_;
   Stamp latest_ns_ = 0;
-  std::size_t early_ = 0;  ///< poses that follow a later one
+  std::size_t early_ = 0;  ///< poses that follow one with a later stamp
   std::array<std::size_t, 4> counts_{};
   std::string first_fault_, first_no_pose_;
 };

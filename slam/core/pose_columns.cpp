@@ -44,7 +44,7 @@ std::vector<Name> names_in(std::string_view line, char separator) {
   return names;
 }
 
-/// Whether three consecutive names are a common prefix, maybe empty, followed by x, y, z.
+/// Whether three consecutive names end in x, y, z after a common prefix, which may be empty.
 bool is_vector(std::span<const Name> names, std::size_t first) {
   if (first + 3 > names.size()) return false;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -61,13 +61,13 @@ bool begin_alike(const std::string& a, const std::string& b) {
   return std::string_view(a).substr(0, a.size() - 1) == std::string_view(b).substr(0, b.size() - 1);
 }
 
-/// Columns of x y z qx qy qz qw: a name that ends in w with its vector after or before it, and the
-/// first other vector.
+/// Finds the columns of x y z qx qy qz qw. The rotation is a name that ends in w and the vector
+/// with the same prefix directly after or before it; the position is the first other vector.
 std::optional<std::array<std::size_t, 7>> pose_in(std::span<const Name> names) {
   for (std::size_t w = 0; w < names.size(); ++w) {
     if (!names[w].text.ends_with('w')) continue;
-    // "x y z w x y z": if position and rotation have the same names, the vector that belongs to w
-    // follows it.
+    // If position and rotation have the same names, as in "x y z w x y z", the rotation's vector
+    // follows w.
     for (const bool behind : {true, false}) {
       if (!behind && w < 3) continue;
       const std::size_t q = behind ? w + 1 : w - 3;
@@ -184,7 +184,8 @@ std::optional<PoseColumns> columns_named_by(std::string_view line, char separato
           listed(names)));
     return std::nullopt;
   }
-  // Seven names in a row, after words that do not name columns.
+  // The seven names must be adjacent and follow the stamp's name; words before it do not name
+  // columns.
   const auto [first, last] = std::ranges::minmax(*pose);
   if (last - first != 6 || first == 0) return std::nullopt;
   for (std::size_t k = 0; k < 7; ++k) columns.pose[k] = (*pose)[k] - first + 1;

@@ -22,9 +22,9 @@ struct Rgb8 {
 };
 
 /// Per-pixel class distributions, stored as a palette: pixel (x, y) has distribution
-/// palette[index(x, y)]. Pixels of one entry belong together: a detector has an entry for each
-/// detection, exact labels one for each visible object, labels of a recording one for each class.
-/// An empty index grid means that the frame has no labels.
+/// palette[index(x, y)]. Pixels with the same entry belong together: there is one entry for each
+/// detection of a detector, for each visible object in exact labels, and for each class in a
+/// recording's labels. An empty index grid means that the frame has no labels.
 struct SemanticImage {
   Grid2d<std::uint8_t> index;
   std::vector<ClassDistribution> palette;
@@ -47,11 +47,11 @@ struct ImuReading {
   friend bool operator==(const ImuReading&, const ImuReading&) = default;
 };
 
-/// A fan of rays that a laser measured, in a plane through its origin; ray k leaves along x turned
-/// about z by first_rad + k * step_rad.
+/// A fan of rays that a laser measured, in a plane through its origin; ray k points along the
+/// laser's x axis, turned about z by first_rad + k * step_rad.
 struct LaserScan {
   std::string name;
-  SE3 camera_from_laser;  ///< at the frame's stamp, from the joints between the two
+  SE3 camera_from_laser;  ///< at the frame's stamp, from the joints between camera and laser
   double first_rad = 0, step_rad = 0;
   double min_range_m = 0, max_range_m = 0;
   std::vector<float> ranges_m;  ///< 0 = nothing in range

@@ -29,8 +29,8 @@ class Sequence {
   /// Ground-truth camera poses, ordered by stamp; null if unknown. Frames without a valid pose are
   /// absent.
   virtual const Trajectory* truth() const = 0;
-  /// All that an inertial sensor delivered, in order of stamps; empty: there is none. Frames do not
-  /// contain it: which readings belong to a frame depends on the frame that a system was shown
+  /// All that an inertial sensor delivered, in order of stamps; empty if there is none. Frames do
+  /// not contain it: which readings belong to a frame depends on the frame that a system was shown
   /// before it.
   virtual std::span<const ImuReading> imu() const { return {}; }
 };

@@ -27,7 +27,7 @@ using Words = std::vector<std::string_view>;
 
 double parse_number(std::string_view word, const char* field, const LinePlace& place) {
   const auto value = number_in(without_plus(word));
-  // An empty value between commas is how tables write NaN.
+  // In tables, NaN is written as an empty value between commas.
   if (!value)
     place.fail(fmt::format("{}: '{}' is not a number", field, word),
                word.empty() ? PoseFault::kNotFinite : PoseFault::kNoPose);
@@ -62,7 +62,7 @@ Words words_of_data(std::string_view line, char separator) {
 }
 
 /// Whether a line holds names: no word is a number, and the first is empty or begins with a letter,
-/// or with _ or / as PlotJuggler's do.
+/// or with _ or / as in PlotJuggler's files.
 bool is_of_names(const Words& words) {
   const auto is_number = [](std::string_view word) {
     return number_in(without_plus(word)).has_value();
@@ -80,8 +80,8 @@ struct Layout {
   bool is_table = false;  ///< values are separated by commas or semicolons
 };
 
-/// Data begin at the first line that is neither a comment nor names. The columns are those that an
-/// earlier line names, if any.
+/// Data begin at the first line that is neither a comment nor a line of names. The columns are
+/// those that an earlier line names, if any.
 Layout layout_of(const std::string& text, const std::string& name) {
   Layout layout;
   Words first;
@@ -136,7 +136,7 @@ Words words_of_pose(std::string_view line, const Layout& layout, const LinePlace
   return words;
 }
 
-/// What the stamps of a file together imply about their unit.
+/// Properties of a file's stamps from which their unit is inferred.
 struct StampRange {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   std::size_t count = 0;
@@ -162,8 +162,9 @@ StampRange range_of_stamps(const std::string& text, const Layout& layout) {
 }
 
 /// The unit of stamps if no name states it, as a power of ten of a second. Times since 1970 reveal
-/// it by their size. Smaller ones are seconds, unless they are whole numbers and either EuRoC's, in
-/// nanoseconds, or would be hours apart if they were seconds.
+/// it by their size. Smaller stamps are seconds unless they are whole numbers that, as seconds,
+/// would be 1e6 s apart, or 1e3 s in a file with commas (such as EuRoC's). Those are nanoseconds,
+/// and so is a single whole number in a file with commas.
 int likely_unit(const StampRange& range, bool commas) {
   if (range.most >= 1e17) return -9;
   if (range.most >= 1e14) return -6;

@@ -18,17 +18,17 @@ inline constexpr double kFarthestPose_m = 1e8;
 /// `stamp tx ty tz qx qy qz qw` separated by whitespace (s, m, camera to world), or in EuRoC's
 /// `timestamp, p x y z, q w x y z`, then ignored columns, separated by commas or semicolons (ns,
 /// m). A line of names before the poses, a comment or not, gives the order of columns and may state
-/// the unit of stamps (columns_named_by()); otherwise it is inferred from their size. '#' starts a
-/// comment. Stamps are read exactly, digit by digit, to nanoseconds; quaternions are normalized;
-/// poses in EuRoC's format are those of the sensor or body that the file is about.
+/// the unit of stamps (columns_named_by()); otherwise, the unit is inferred from their size. '#'
+/// starts a comment. Stamps are read exactly, digit by digit, to nanoseconds; quaternions are
+/// normalized; poses in EuRoC's format are those of the sensor or body that the file is about.
 /// @param notes  receives one line that counts what is left out: poses that are not finite, that
 ///   have a quaternion of zeros, that repeat a stamp (the first is kept), and lines that are not
 ///   poses; further lines if stamps were not in order (poses are sorted) or their unit had to be
 ///   guessed. Null: all of these except a guessed unit are errors.
 /// @throws InputError "file:line: place: value" if columns are named that cannot be understood, or
 ///   most lines are not poses: wrong count of numbers, a malformed number, a position beyond
-///   kFarthestPose_m, a negative stamp, a quaternion whose norm is neither 0 nor within 0.1 of 1;
-///   and if there is no pose at all.
+///   kFarthestPose_m, a negative stamp, a quaternion whose norm is neither 0 nor within 0.1 of 1.
+///   Also thrown if there is no pose at all.
 Trajectory parse_trajectory(const std::string& text, const std::string& name,
                             std::vector<std::string>* notes = nullptr);
 Trajectory read_trajectory(const std::filesystem::path& file,
@@ -36,12 +36,13 @@ Trajectory read_trajectory(const std::filesystem::path& file,
 /// The same, but the result may be empty.
 Trajectory parse_valid_poses(const std::string& text, const std::string& name,
                              std::vector<std::string>& notes);
-/// Writes doubles so that they read back to the same value. @pre stamps are not negative.
+/// Writes the poses in TUM's format, with doubles that read back to the same value. @pre stamps are
+/// not negative.
 std::string format_tum(const Trajectory& trajectory);
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory);
 
 /// KITTI odometry text: one pose per line, the upper three rows of the camera-to-world matrix, 12
-/// numbers. There are no stamps: pose i gets i * period. KITTI's cameras run at 10 Hz.
+/// numbers. There are no stamps: pose i gets the stamp i * period_ns. KITTI's cameras run at 10 Hz.
 /// @throws InputError "file:line: place: value" on anything else, or if a matrix is not a rotation
 /// to within 1e-3.
 Trajectory read_kitti(const std::filesystem::path& file, Stamp period_ns = 100'000'000);

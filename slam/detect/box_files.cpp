@@ -38,7 +38,7 @@ struct FiledBox {
   bool normalized = false;  ///< in shares of the image, not pixels
 };
 
-/// The boxes of a frame, and what the file calls it, for messages.
+/// The boxes of a frame, and the file's name for the frame, for messages.
 struct FrameBoxes {
   std::string name;
   std::vector<FiledBox> boxes;
@@ -51,8 +51,9 @@ struct FiledBoxes {
 };
 
 constexpr Stamp kSameStamp_ns = 1'000'000;
-constexpr double kLargestShare = 3;  // of the image, in YOLO's boxes: larger numbers are pixels
-constexpr std::size_t kMostFrames = 100'000'000;  // larger numbers are stamps in nanoseconds
+constexpr double kLargestShare =
+    3;  // largest share of the image in YOLO's boxes: larger numbers are pixels
+constexpr std::size_t kMostFrames = 100'000'000;  // larger frame numbers are stamps in nanoseconds
 
 /// The boxes of a frame that a file calls "17" or "1305031229.528748" (a stamp, s).
 std::vector<FiledBox>& boxes_of(FiledBoxes& all, const std::string& frame,

@@ -51,7 +51,7 @@ constexpr std::array<const char*, 80> kCoco80 = {"person",        "bicycle",    
 // The category ids up to 90 that COCO's annotations leave out.
 constexpr std::array kNoCategory = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 
-// Networks' names for classes that class_by_name() knows by another name.
+// Names that networks give to classes for which class_by_name() knows a different name.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kAlsoCalled = {{
     {"tvmonitor", "television"},
     {"pottedplant", "potted plant"},
@@ -76,7 +76,7 @@ ClassNames with_ids(std::vector<std::string> names) {
   return all;
 }
 
-/// A quoted string at the start of `rest`, which is moved past it; nullopt if there is none.
+/// Takes a quoted string from the start of `rest`; nullopt if there is none.
 std::optional<std::string> take_quoted(std::string_view& rest) {
   const char quote = rest.empty() ? '\0' : rest.front();
   if (quote != '\'' && quote != '"') return std::nullopt;
@@ -100,7 +100,8 @@ bool take(std::string_view& rest, char expected) {
   return true;
 }
 
-/// An index with its colon, such as `12:`, at the start of `rest`, which is moved past it.
+/// Takes an index with its colon, such as `12:`, from the start of `rest`; nullopt if there is
+/// none.
 std::optional<std::size_t> take_index(std::string_view& rest) {
   const bool quoted = !rest.empty() && (rest.front() == '\'' || rest.front() == '"');
   std::string_view digits = rest.substr(quoted ? 1 : 0);

@@ -12,10 +12,10 @@
 
 namespace mh {
 
-/// The classes of a network, by its own index.
+/// The classes of a network, in the order of its own indices.
 struct ClassNames {
   std::vector<std::string> names;
-  std::vector<ClassId> ids;  ///< our class of that name; void if there is none
+  std::vector<ClassId> ids;  ///< our class for each name; void if there is none
   std::size_t size() const { return names.size(); }
   /// A line for the user if none of the classes is ours; otherwise empty.
   std::string unknown_note(const std::filesystem::path& of) const;
@@ -24,12 +24,12 @@ struct ClassNames {
 /// The 80 detection classes of COCO (Lin et al., ECCV 2014), in the order of its networks.
 const ClassNames& coco80();
 
-/// The index among coco80() of a COCO category id, which counts to 90 with gaps; -1 if there is
-/// none.
+/// The index among coco80() of a COCO category id; -1 if there is none. Category ids go up to 90,
+/// with gaps.
 int coco80_of_category(int category_id);
 
-/// Reads one name per line, as darknet's .names files are (blank lines at the end do not count), a
-/// list in JSON, or `names` of a data set's .yaml for Ultralytics.
+/// Reads class names: one per line, as in darknet's .names files (blank lines at the end do not
+/// count), a list in JSON, or `names` in a data set's .yaml for Ultralytics.
 /// @throws InputError naming the file, also if it contains no names.
 ClassNames load_class_names(const std::filesystem::path& file);
 

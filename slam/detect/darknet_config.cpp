@@ -92,7 +92,8 @@ void check_anchors(const fs::path& file, const Section& layer) {
              fmt::format("there is no anchor {} among {}", index, sides.size() / 2));
 }
 
-/// Checks that a layer's sources are earlier layers: absolute or, if negative, counted backward.
+/// Checks that a layer's sources are earlier layers. Their numbers are absolute or, if negative,
+/// counted backward.
 void check_sources(const fs::path& file, const Section& layer, int number) {
   for (const char* key : {"layers", "from"}) {
     const auto stated = layer.values.find(key);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint8_t kVoidIndex = 0, kBackgroundIndex = 1;
 
-/// Whole pixels of which at least half is in the box.
+/// The pixels of which at least half is in the box.
 struct PixelBox {
   int left, top, right, bottom;  // right and bottom excluded
 
@@ -46,10 +46,9 @@ void for_each_depth(const PixelBox& box, const Grid2d<float>& depth_m, const Dep
 }
 
 constexpr int kBins = 64;
-constexpr float kApart = 1.1F;  // mean depth of the farther part over that of the nearer
+constexpr float kApart = 1.1F;  // least ratio of the mean depths of the farther and the nearer part
 constexpr int kMiddlePercent = 30;
-constexpr float kJump =
-    1.04F;  // depth of the farther of two neighbors on different surfaces over that of the nearer
+constexpr float kJump = 1.04F;  // least ratio of the depths of two neighbors on different surfaces
 constexpr int kJumpPercent = 50;
 
 /// Whether depth jumps where the pixels nearer than `cut_m` border on farther ones. A bed or table
@@ -187,7 +186,7 @@ SemanticImage labels_of(const Detected& detected, const Grid2d<float>& depth_m, 
   if (!detected.pixels.index.empty()) return detected.pixels;
   SemanticImage image{{width, height, kBackgroundIndex},
                       {ClassDistribution{}, ClassDistribution::one_hot(kBackground)}};
-  constexpr std::size_t kMost = 254;  // entries of a palette besides these two
+  constexpr std::size_t kMost = 254;  // entries of a palette in addition to these two
   const std::size_t count = std::min(kMost, detected.boxes.size());
   for (std::size_t i = count; i-- > 0;) {
     const DetectedBox& box = detected.boxes[i];

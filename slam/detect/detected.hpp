@@ -15,7 +15,7 @@ namespace mh {
 struct DetectedBox {
   float left = 0, top = 0, right = 0, bottom = 0;
   float score = 0;            ///< of its best class
-  int network_class = 0;      ///< the detector's own index of it
+  int network_class = 0;      ///< the detector's own index of its best class
   ClassDistribution classes;  ///< in our classes; empty (void) if its best class is not ours
   friend bool operator==(const DetectedBox&, const DetectedBox&) = default;
 };
@@ -31,8 +31,9 @@ struct Detected {
 };
 
 /// Labels of each pixel. Each box is one palette entry, boxes with higher scores cover those with
-/// lower ones, and pixels outside all boxes are background. BoxFill::kForeground leaves out the
-/// pixels of a box that have depth but not that of its surface: see foreground_depth().
+/// lower ones, and pixels outside all boxes are background. BoxFill::kForeground leaves out pixels
+/// of a box if their depth is known and outside the depths of the box's surface: see
+/// foreground_depth().
 /// @param depth_m  of the same pixels; may be empty with BoxFill::kBox
 SemanticImage labels_of(const Detected& detected, const Grid2d<float>& depth_m, int width,
                         int height, BoxFill fill);
@@ -46,12 +47,13 @@ struct DepthRange {
 /// The depths of the surface that a box encloses. The inverse depths in the box are split in two
 /// where the variance between the parts is largest (Otsu 1979). If the nearer part is at least 10 %
 /// nearer on average, and most neighbors across the cut differ by a step (4 %), the box has two
-/// surfaces, and only the nearer one is kept. But if that covers less than 30 % of the box's middle
-/// (half of its width and height), it is something in front of the object, and the farther one is
-/// kept. Repeated up to three times.
+/// surfaces, and only the nearer one is kept. But if the nearer one covers less than 30 % of the
+/// box's middle (half of its width and height), it is something in front of the object, and the
+/// farther one is kept instead. This is repeated up to three times.
 DepthRange foreground_depth(const DetectedBox& box, const Grid2d<float>& depth_m);
 
-/// Bytes for a cache, and back. @throws InputError if the bytes are not a valid encoding.
+/// Encodes detections for a cache, and decodes them. @throws InputError if the bytes are not a
+/// valid encoding.
 std::string encode(const Detected& detected);
 Detected decode_detected(std::string_view bytes);
 

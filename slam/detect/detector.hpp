@@ -31,9 +31,9 @@ class Detector {
   /// Checks that a box file's frames belong to this sequence, and that at least one class is one of
   /// ours.
   /// @returns a note on frames or classes that are not used, or "". @throws InputError if no frame
-  /// belongs
+  /// belongs to it
   virtual std::string check_frames(std::span<const Stamp> /*stamps_ns*/) const { return ""; }
-  /// Digest of everything besides the image that decides what detect() returns; 0 if detections
+  /// Digest of everything, except the image, that determines what detect() returns; 0 if detections
   /// are not cached.
   virtual std::uint64_t digest() const = 0;
 };

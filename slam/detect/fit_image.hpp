@@ -11,8 +11,8 @@ class Mat;
 
 namespace mh {
 
-/// How an image is placed in a network's input: at input = image * scale + offset, both in pixels
-/// with (0, 0) the upper left corner of the upper left pixel.
+/// How an image is placed in a network's input: input = image * scale + offset, where positions are
+/// in pixels and (0, 0) is the upper left corner of the upper left pixel.
 struct Placement {
   double scale_x = 1, scale_y = 1;
   int left = 0, top = 0, width = 0, height = 0;  ///< where the scaled image is in the input

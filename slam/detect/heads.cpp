@@ -44,7 +44,7 @@ std::vector<Cell> cells_of(int boxes, const InputSize& input) {
   return {};
 }
 
-/// A matrix of `rows` x `columns`, of any layout.
+/// A matrix of `rows` x `columns`, stored row by row or column by column.
 struct Matrix {
   int rows = 0, columns = 0;
   std::span<const float> values;
@@ -57,7 +57,7 @@ struct Matrix {
   }
 };
 
-/// The last two dimensions, if the others are 1.
+/// A tensor as a matrix of its last two dimensions; nullopt unless the others are 1.
 std::optional<Matrix> as_matrix(const Tensor& tensor) {
   const auto& shape = tensor.shape;
   if (shape.size() < 2) return std::nullopt;
@@ -66,8 +66,8 @@ std::optional<Matrix> as_matrix(const Tensor& tensor) {
   return Matrix{shape[shape.size() - 2], shape.back(), tensor.values};
 }
 
-/// Whether a tensor has a channel per class, and the proportions of the input to within a cell:
-/// other networks, such as Yolo-FastestV2, have height, width and channels in this order.
+/// Whether a tensor has a channel per class, and the proportions of the input to within a cell.
+/// (Outputs of other networks, such as Yolo-FastestV2, are ordered by height, width, channels.)
 bool is_segmentation(const Tensor& tensor, const InputSize& input) {
   const auto& s = tensor.shape;
   return s.size() == 4 && s[0] == 1 && s[1] >= 2 && s[1] <= 4096 && s[2] > 1 && s[3] > 1 &&
@@ -75,7 +75,8 @@ bool is_segmentation(const Tensor& tensor, const InputSize& input) {
              std::max(input.width, input.height);
 }
 
-/// Whether there are tensors with a channel per class in different sizes: the scales of a detector.
+/// Whether there are tensors with a channel per class in different sizes, as the scales of a
+/// detector have.
 bool has_scales(std::span<const Tensor> outputs, const InputSize& input) {
   const Tensor* first = segmentation_in(outputs, input);
   return first != nullptr && std::ranges::any_of(outputs, [&](const Tensor& tensor) {
@@ -83,8 +84,8 @@ bool has_scales(std::span<const Tensor> outputs, const InputSize& input) {
          });
 }
 
-/// Whether boxes are near their cells, in pixels, as decoded ones are; raw ones are offsets of
-/// about half a cell.
+/// Whether the boxes' centers are pixel positions near their cells, as decoded ones are. Raw ones
+/// are offsets of about half a cell.
 bool is_decoded(const Matrix& m, const std::vector<Cell>& of) {
   double from_cell = 0, from_zero = 0;
   for (int i = 0; i < m.rows; ++i) {
@@ -101,8 +102,8 @@ Matrix transposed(const Matrix& m) {
   return {m.columns, m.rows, m.values, true};
 }
 
-/// Whether a matrix whose shape also fits one box per row has one box per column, judging by the
-/// boxes' positions.
+/// Whether a matrix has one box per column, judging by the boxes' positions; its shape also fits
+/// one box per row.
 bool has_boxes_in_columns(const Matrix& m, const InputSize& input) {
   const std::vector<Cell> by_row = cells_of(m.rows, input), by_column = cells_of(m.columns, input);
   return m.rows > 4 && !by_column.empty() && is_decoded(transposed(m), by_column) &&

@@ -20,10 +20,10 @@ struct Tensor {
 /// "1 x 3549 x 85"
 std::string shape_text(const Tensor& tensor);
 
-/// What a network's outputs mean, judging by their shapes. A YOLOX with decoded boxes has the same
-/// shape as one with raw boxes; the values differ.
+/// What a network's outputs mean, judging by their shapes. A YOLOX with decoded boxes and one with
+/// raw boxes have outputs of the same shape; their values tell them apart.
 /// @param darknet  whether the network comes from a Darknet .cfg
-/// @returns kAuto if none fits
+/// @returns kAuto if no head fits
 Head recognize_head(std::span<const Tensor> outputs, const InputSize& input, bool darknet);
 
 /// Whether outputs are boxes and masks of objects, from a network for instance segmentation: these
@@ -33,14 +33,15 @@ bool gives_boxes_and_masks(std::span<const Tensor> outputs, const InputSize& inp
 /// The output of a segmenting head: the first with a channel per class; null if there is none.
 const Tensor* segmentation_in(std::span<const Tensor> outputs, const InputSize& input);
 
-/// The number of classes of outputs with that head; 0 if they cannot be its outputs.
+/// The number of classes of a network that has this head and these outputs; 0 if the head cannot
+/// have such outputs.
 int class_count(Head head, std::span<const Tensor> outputs, const InputSize& input);
 
 /// A box in a network's output, before the image is known.
 struct Candidate {
   double x = 0, y = 0, width = 0, height = 0;  ///< center and size, px of the input
   int best = 0;                                ///< class of the highest score
-  std::vector<float> scores;                   ///< by the network's classes
+  std::vector<float> scores;                   ///< one for each of the network's classes
 };
 
 /// Returns the boxes of a detecting head whose best score is at least `confidence`, in the order of
@@ -49,15 +50,16 @@ struct Candidate {
 std::vector<Candidate> decode(Head head, std::span<const Tensor> outputs, const InputSize& input,
                               double confidence);
 
-/// Non-maximum suppression within each class, the best first, ties by their order; then the best
-/// `max_detections`, in pixels of the image. Parts of a box outside the image are cut off.
+/// Applies non-maximum suppression within each class, best box first, ties in the order of the
+/// input. Returns the best `max_detections` boxes, in pixels of the image. Parts of a box outside
+/// the image are cut off.
 std::vector<DetectedBox> select_boxes(const std::vector<Candidate>& candidates, const Placement& at,
                                       int width, int height, const ClassNames& names,
                                       const DetectorSettings& settings);
 
-/// Scores as a distribution over our classes: each of them gets the scores of the network's classes
-/// with its name; the sum is at most 1. Empty if the best class is not ours; scores below 0.01 are
-/// left out.
+/// Converts scores to a distribution over our classes: each of our classes gets the scores of the
+/// network's classes of the same name. All of them sum to at most 1. Empty if the best class is not
+/// ours; scores below 0.01 are left out.
 ClassDistribution our_classes(std::span<const float> scores, int best, const ClassNames& names);
 
 /// Labels of an image from a segmenting head: values of each class are probabilities, or are turned

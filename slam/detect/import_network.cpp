@@ -50,12 +50,12 @@ std::string reason(const cv::Exception& error) {
   return text;
 }
 
-/// OpenCV cannot import or run the network.
+/// Thrown if OpenCV cannot import or run the network.
 struct NotRun : InputError {
   using InputError::InputError;
 };
 
-/// Runs OpenCV on a file. @throws NotRun with its reason.
+/// Runs OpenCV on a file. @throws NotRun with OpenCV's reason.
 template <class Work>
 auto with_opencv(const fs::path& file, const char* what, const Work& work) {
   const Quiet quiet;
@@ -263,7 +263,7 @@ void require_detection(const DetectorSpec& spec, const NetworkFiles& files) {
           task->second));
 }
 
-/// What is missing, and how to export a network that runs.
+/// Advice for the user: what is missing, or how to export a network that runs.
 std::string export_advice(const NetworkFiles& files) {
   const auto graph = read_onnx_graph(files.network);
   for (const OnnxNode& node : graph ? graph->nodes : std::vector<OnnxNode>{})
@@ -345,7 +345,8 @@ NetworkOutputs run_network(const fs::path& file, ImportedNetwork& imported, cons
 
 ImportedNetwork import_network(const DetectorSpec& spec, const NetworkFiles& files) {
   require_detection(spec, files);
-  const InputSize input = input_size(spec, files);  // before OpenCV trusts what it states
+  const InputSize input =
+      input_size(spec, files);  // checked before OpenCV trusts the size that the file states
   if (files.is_darknet) return import_as(spec, files, "");
   if (const std::string fault = onnx_weights_fault(files.network); !fault.empty())
     refuse_network(spec.network, fault);

@@ -35,7 +35,7 @@ struct ImportedNetwork {
 /// rewritten for its input's size. @throws InputError
 ImportedNetwork import_network(const DetectorSpec& spec, const NetworkFiles& files);
 
-/// Outputs of one run; the tensors view the matrices.
+/// Outputs of one run; the tensors point into the matrices.
 struct NetworkOutputs {
   std::vector<cv::Mat> mats;
   std::vector<Tensor> tensors;

@@ -31,7 +31,8 @@ struct OnnxCall {
   std::optional<std::size_t> axis(std::int64_t otherwise, std::size_t rank) const;
 };
 
-/// An operator's axis, counted from the end if negative, as one from 0; nullopt if out of range.
+/// Converts an operator's axis, counted from the end if negative, to one counted from 0; nullopt if
+/// out of range.
 std::optional<std::size_t> normal_axis(std::int64_t axis, std::size_t rank);
 
 /// The part of an axis that Slice takes.
@@ -41,7 +42,7 @@ struct OnnxCut {
 /// The cut of each axis of the first input.
 std::optional<std::vector<OnnxCut>> cuts_of(const OnnxCall& call);
 
-/// Sizes along the axis of Split.
+/// Sizes of the parts into which Split divides its axis.
 std::optional<OnnxShape> split_sizes(const OnnxCall& call);
 
 /// The broadcast shape by ONNX's rules (those of NumPy); nullopt if the shapes do not fit.
@@ -51,7 +52,7 @@ std::optional<OnnxShape> broadcast(const OnnxShape& a, const OnnxShape& b);
 /// unknown.
 std::vector<std::optional<OnnxShape>> output_shapes(const OnnxCall& call);
 
-/// The outputs, if all of their inputs are constant.
+/// The values of the outputs, if all inputs are constant; otherwise nullopt.
 /// @param shapes  from output_shapes()
 std::optional<std::vector<OnnxTensor>> evaluate(
     const OnnxCall& call, const std::vector<std::optional<OnnxShape>>& shapes);

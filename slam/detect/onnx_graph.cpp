@@ -147,7 +147,7 @@ std::string write_node(const OnnxNode& written) {
   return bytes;
 }
 
-/// A side that is left open is 0.
+/// The shape of an input; a dimension that the model leaves open is 0.
 OnnxShape read_input_shape(std::string_view info) {
   OnnxShape sides;
   const std::string_view type = proto_bytes(info, value_info::kType),

@@ -36,7 +36,7 @@ struct OnnxNode {
   std::string op;
   std::vector<std::string> inputs, outputs;
   std::map<std::string, std::string, std::less<>> attributes;  ///< bytes of each AttributeProto
-  std::string others;                                          ///< the other fields as they are
+  std::string others;  ///< bytes of the other fields, unchanged
 
   std::int64_t integer(std::string_view name, std::int64_t otherwise) const;
   std::optional<OnnxShape> integers(std::string_view name) const;
@@ -48,13 +48,13 @@ struct OnnxNode {
   void set(const std::string& name, float value);
 };
 
-/// A network's graph. Views the bytes that it was read from.
+/// A network's graph. Points into the bytes from which it was read.
 struct OnnxGraph {
   std::int64_t opset = 0;
   std::vector<OnnxNode> nodes;  ///< in an order in which they can be computed
   std::map<std::string, std::string_view, std::less<>> weights;  ///< TensorProto by name
   std::map<std::string, OnnxTensor> constants;                   ///< additional weights
-  std::map<std::string, OnnxShape> inputs;                       ///< without weights
+  std::map<std::string, OnnxShape> inputs;  ///< shapes of the inputs that are not weights
   std::vector<std::string> outputs;
   std::string_view model;  ///< the bytes from which the graph was read
 };

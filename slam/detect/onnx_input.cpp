@@ -97,7 +97,7 @@ std::string fault_of(std::string_view tensor) {
   return fmt::format("weights {} hold {} values, but their shape needs {}", name, held, values);
 }
 
-/// 0 if a dimension is dynamic: named, or -1.
+/// The size of a dimension; 0 if it is dynamic, that is, named or -1.
 std::uint64_t size_of(const ProtoField& dim) {
   for (const ProtoField& value : proto_fields(dim.bytes, kValue))
     if (value.is_number && static_cast<std::int64_t>(value.number) > 0) return value.number;
@@ -113,7 +113,8 @@ std::optional<OnnxInput> onnx_input(std::string_view model) {
         for (const ProtoField& tensor : proto_fields(type.bytes, kTensor))
           for (const ProtoField& shape : proto_fields(tensor.bytes, kShape)) {
             const std::vector<ProtoField> dims = proto_fields(shape.bytes, kDim);
-            // Weights may be listed as inputs: an image has three channels, or leaves them open.
+            // Weights may be listed as inputs, too. An image has three channels, or their number is
+            // left open.
             if (dims.size() != 4 || (size_of(dims[1]) != 3 && size_of(dims[1]) != 0)) continue;
             return OnnxInput{size_of(dims[0]), size_of(dims[3]), size_of(dims[2])};
           }

@@ -17,7 +17,7 @@ struct InputSize {
 /// The first input of four dimensions that an ONNX model declares.
 struct OnnxInput {
   std::uint64_t images = 0;             ///< per run; 0: the network leaves it open
-  std::uint64_t width = 0, height = 0;  ///< of each; 0: likewise
+  std::uint64_t width = 0, height = 0;  ///< of each image; 0: left open
   friend bool operator==(const OnnxInput&, const OnnxInput&) = default;
 };
 

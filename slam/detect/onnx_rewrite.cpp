@@ -90,7 +90,7 @@ class Rewriter {
     graph_.nodes.push_back(std::move(node));
   }
 
-  /// A node of the same name and outputs.
+  /// A node with the same name and outputs.
   static OnnxNode like(const OnnxNode& node, std::string op, std::vector<std::string> inputs) {
     return {.op = std::move(op),
             .inputs = std::move(inputs),
@@ -196,7 +196,7 @@ class Rewriter {
   }
 
   /// A constant of several values is expanded to the shape of the other input. OpenCV itself
-  /// handles one value, and one per channel.
+  /// handles constants of one value, or of one value per channel.
   void rewrite_arithmetic(const OnnxCall& call, const OnnxShape& out) {
     const bool first = call.constants[0] != nullptr;
     const std::size_t of = first ? 0 : 1;

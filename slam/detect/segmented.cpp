@@ -27,7 +27,7 @@ struct Cells {
   }
 };
 
-/// Whether the values of every cell are shares of 1.
+/// Whether the values of every cell are shares that sum to 1.
 bool are_probabilities(const Tensor& output, std::size_t classes, std::size_t cells) {
   for (std::size_t i = 0; i < cells; ++i) {
     double sum = 0;

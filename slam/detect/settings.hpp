@@ -111,18 +111,19 @@ void fields(D& spec, Visit& v) {
   v("settings", settings);
 }
 
-/// Returns a network or boxes, depending on a file's extension; weights have their .cfg next to
-/// them. @throws InputError if the extension is unknown.
+/// Specifies a network or boxes, depending on a file's extension. Darknet's weights must have their
+/// .cfg next to them. @throws InputError if the extension is unknown.
 DetectorSpec detector_from_file(const std::filesystem::path& file);
 
 /// Reads the settings in a mapping into a spec, and its paths `network`, `config`, `classes` and
 /// `boxes`, relative to `folder`. Does not finish() the mapping.
 void read_detector(YamlReader& mapping, const std::filesystem::path& folder, DetectorSpec& spec);
 
-/// Reads a file with the same keys. @throws InputError naming file, line and value.
+/// Reads a file with the same keys as the mapping of read_detector(). @throws InputError naming
+/// file, line and value.
 void load_detector_settings(const std::filesystem::path& file, DetectorSpec& spec);
 
-/// Every setting with its meaning, as a file.
+/// The text of a settings file with every setting; with notes, each with its meaning.
 std::string format_detector_settings(const DetectorSettings& settings, bool notes);
 
 }  // namespace mh

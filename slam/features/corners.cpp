@@ -39,7 +39,7 @@ struct Cells {
   std::vector<int> column_of, first_of_row;
 };
 
-// Reorders from row-major order to that of `stronger`: a counting sort, which is stable.
+// Sorts corners from row-major order to that of `stronger`, by a counting sort, which is stable.
 std::vector<Corner> strongest_first(const std::vector<Corner>& corners) {
   std::array<std::size_t, 257> start{};
   for (const Corner& c : corners) ++start[static_cast<std::size_t>(256 - c.strength)];
@@ -49,7 +49,7 @@ std::vector<Corner> strongest_first(const std::vector<Corner>& corners) {
   return sorted;
 }
 
-// Corners at least `spacing` apart, strongest first, at most `count`.
+// Picks at most `count` corners that are at least `spacing` apart, strongest first.
 class SpacedPicker {
  public:
   explicit SpacedPicker(const std::vector<Corner>& corners) : corners_(corners) {
@@ -61,7 +61,8 @@ class SpacedPicker {
 
   std::vector<Corner> pick(int spacing, std::size_t count) {
     // Cells as large as the spacing contain at most one picked corner. A rim of empty cells avoids
-    // bounds checks; four more are loaded with the last but not compared.
+    // bounds checks. Four cells more are allocated, since a load at the last cell reads past it;
+    // they are not compared.
     const int columns = width_ / spacing + 3;
     const int rows = height_ / spacing + 3;
     taken_.assign(static_cast<std::size_t>(columns) * rows + 4, kNone);
@@ -80,7 +81,7 @@ class SpacedPicker {
     return picked;
   }
 
-  // No larger spacing can yield `count` corners.
+  // An upper bound: no larger spacing can yield `count` corners.
   int largest_spacing(std::size_t count) const {
     int spacing = 1;
     while (static_cast<std::size_t>((width_ / (spacing + 1) + 1)) * (height_ / (spacing + 1) + 1) >=
@@ -110,8 +111,8 @@ class SpacedPicker {
     return cells;
   }
 
-  // Compares with the corners picked in three rows of three cells, a row (and one more cell) at a
-  // time.
+  // Compares a place with the corners picked in its own cell and the eight around it. Each load
+  // takes the three cells of a row, and one more.
   static bool is_free(Place c, const Place* cell, int columns, int spacing) {
     const __m128i here = _mm_set1_epi32(std::bit_cast<std::int32_t>(c));
     const __m128i limit = _mm_set1_epi16(static_cast<std::int16_t>(spacing));

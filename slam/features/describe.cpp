@@ -11,7 +11,7 @@ namespace mh {
 namespace {
 
 constexpr int kRadius_px = 15;
-constexpr int kRowLength = 32;  // 31 pixels and a masked one: whole SIMD registers
+constexpr int kRowLength = 32;  // 31 pixels and a masked one fill whole SIMD registers
 
 // 255 inside the disk, 0 outside; row v + radius, column u + radius. The outline is a circle
 // rounded to pixels, made symmetric about the diagonals.
@@ -23,8 +23,9 @@ struct Disc {
       for (int u = -kRadius_px; u <= kRadius_px; ++u) {
         const int far = u * u > v * v ? u * u : v * v;
         const int near = u * u + v * v - far;
-        // sqrt(r^2 - near) rounded to the nearest integer, compared with sqrt(far): with n an
-        // integer, n <= round(s) means n - 1/2 <= s, so 4 far - 4 sqrt(far) + 1 <= 4 (r^2 - near).
+        // The pixel is inside if n = sqrt(far) is at most s = sqrt(r^2 - near) rounded to the
+        // nearest integer. For an integer n, n <= round(s) means n - 1/2 <= s, so 4 far - 4 n + 1
+        // <= 4 (r^2 - near).
         int n = 0;
         while (n * n < far) ++n;
         const bool inside = 4 * far - 4 * n + 1 <= 4 * (kRadius_px * kRadius_px - near);

@@ -60,8 +60,9 @@ T filled(Byte value) {
   std::memset(&all, value, sizeof all);
   return all;
 }
-// Calls work.operator()<T>(x) so that it covers [0, count): T = Bytes covers kChunk, the last chunk
-// overlapping the one before; if there are fewer, T = Byte covers one.
+// Calls work.operator()<T>(x) so that the calls cover [0, count). With T = Bytes, a call covers
+// kChunk pixels, and the last chunk overlaps the one before. If there are fewer than kChunk pixels,
+// T is Byte, and a call covers one pixel.
 template <class Work>
 void for_all(int count, Work work) {
   if (count < kChunk) {
@@ -106,9 +107,10 @@ struct High {
   }
 };
 
-// The best arc of 9 contiguous pixels on the circle: the largest over arcs of the smallest value on
-// the arc. Swapping Low and High (`Worse`, `Better`) gives the counterpart for darker arcs. Two
-// arcs that start at k and k + 1 share 8 pixels: min(shared, max(first, last)) serves both.
+// The best arc of 9 contiguous pixels on the circle: the maximum, over all arcs, of the smallest
+// value on the arc. Swapping Low and High (`Worse`, `Better`) gives the counterpart for darker
+// arcs. Two arcs that start at k and k + 1 share 8 pixels, so the better of the two has the value
+// min(shared, max(first, last)), where first and last are the pixels that they do not share.
 template <class Worse, class Better, class T>
 T best_arc(const std::array<T, 16>& p) {
   std::array<T, 8> pair, four;
@@ -148,8 +150,8 @@ struct Rows {
   const Byte* below;
 };
 
-// Marks local maxima above the threshold among `count` pixels with nonzero values; rows have one
-// more pixel on either side.
+// Sets marks to nonzero values at local maxima above the threshold among `count` pixels; rows have
+// one more pixel on either side.
 void mark_maxima(const Rows& contrast, int count, Byte threshold, Byte* marks) {
   for_all(count, [&]<class T>(int x) {
     const Byte *above = contrast.above + x, *row = contrast.row + x, *below = contrast.below + x;
@@ -162,8 +164,8 @@ void mark_maxima(const Rows& contrast, int count, Byte threshold, Byte* marks) {
   });
 }
 
-// Position of the peak of the parabola through three values at -1, 0, 1; less than half a pixel, so
-// that the nearest pixel stays the same.
+// Position of the peak of the parabola through three values at -1, 0, 1, limited to less than half
+// a pixel, so that the nearest pixel remains the same.
 float peak(int before, int at, int after) {
   const int curvature = before - 2 * at + after;
   if (curvature >= 0) return 0.0F;
@@ -221,16 +223,16 @@ std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshol
 cv::Point2f peak_of(const cv::Mat& image, const Corner& corner) {
   assert(corner.x >= kPeakReach_px && corner.x < image.cols - kPeakReach_px &&
          corner.y >= kPeakReach_px && corner.y < image.rows - kPeakReach_px);
-  // The neighborhood is the first 3 pixels of a chunk; what it reads beyond a row's end is the next
-  // row.
+  // Only the first 3 pixels of each chunk are used; beyond a row's end, a chunk contains pixels of
+  // the next row.
   std::array<std::array<Byte, kChunk>, 3> near;
   for (int v = 0; v < 3; ++v) {
     const Byte* center = image.ptr<Byte>(corner.y + v - 1) + corner.x - 1;
     const Circle circle = circle_around(center, static_cast<std::ptrdiff_t>(image.step));
     store(near[static_cast<std::size_t>(v)].data(), contrast<Bytes>(center, circle, 0));
   }
-  // The parabola is fitted to sums over three pixels perpendicular to it, weighted 1 2 1: they are
-  // less noisy than a single line.
+  // Each parabola is fitted to sums over three pixels perpendicular to it, weighted 1 2 1, since
+  // these are less noisy than single pixels.
   const auto column = [&](std::size_t u) { return near[0][u] + 2 * near[1][u] + near[2][u]; };
   const auto line = [&](std::size_t v) { return near[v][0] + 2 * near[v][1] + near[v][2]; };
   return {peak(column(0), column(1), column(2)), peak(line(0), line(1), line(2))};

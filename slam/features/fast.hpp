@@ -31,9 +31,9 @@ inline bool stronger(const Corner& a, const Corner& b) {
 /// @returns corners in the order of rows, then columns.
 std::vector<Corner> fast_corners(const cv::Mat& image, int edge_px, int threshold);
 
-/// From a corner's pixel to the peak of strength, within half a pixel: a parabola through the
-/// strengths of the 3x3 neighborhood. Measured by reprojection in rendered rooms, this reduces the
-/// error of matched level-0 corners from 0.71 to 0.45 px.
+/// Offset from a corner's pixel to the peak of strength, at most half a pixel: the peaks of
+/// parabolas through the strengths of the 3x3 neighborhood. Measured by reprojection in rendered
+/// rooms, this reduces the error of matched level-0 corners from 0.71 to 0.45 px.
 /// @pre  the corner is at least kPeakReach_px from the image's border
 cv::Point2f peak_of(const cv::Mat& image, const Corner& corner);
 inline constexpr int kPeakReach_px = 5;

@@ -16,7 +16,7 @@ class FeatureGrid {
   FeatureGrid() = default;
   FeatureGrid(const std::vector<Keypoint>& keypoints, const Camera& camera);
 
-  /// What a search needs of a keypoint, side by side in memory.
+  /// The part of a keypoint that a search reads, contiguous in memory.
   struct Entry {
     float u_px, v_px;
     std::int32_t octave;
@@ -24,7 +24,8 @@ class FeatureGrid {
   };
 
   /// Calls visit(Entry) for every keypoint whose cell touches the square of half-width radius_px
-  /// around (u_px, v_px): a superset of those inside, in an order fixed by the input.
+  /// around (u_px, v_px): a superset of the keypoints inside, in an order that depends on the input
+  /// alone.
   template <class Visit>
   void for_each_near(float u_px, float v_px, float radius_px, Visit visit) const {
     const int x0 = column(u_px - radius_px), x1 = column(u_px + radius_px);

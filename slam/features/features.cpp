@@ -74,7 +74,7 @@ float depth_at(const Grid2d<float>& depth_m, int x, int y, double max_depth_m) {
   return sum / static_cast<float>(in_front);
 }
 
-/// Asks for the patches around a corner, which lie scattered in memory, before they are needed.
+/// Prefetches the patches around a corner, which lie scattered in memory.
 void prefetch(const PyramidLevel& level, const Corner& corner, const RgbdFrame& frame) {
   constexpr int kReach_px = 16;
   for (const cv::Mat* image : {&level.image, &level.blurred})
@@ -94,8 +94,8 @@ void append(const PyramidLevel& level, int octave, const Corner& corner, const R
   const cv::Point2f peak = peak_of(level.image, corner);
   const cv::Point2d raw = level.to_full(
       {static_cast<double>(corner.x) + peak.x, static_cast<double>(corner.y) + peak.y});
-  const int x = cvRound(raw.x), y = cvRound(raw.y);  // inside: corners keep a distance from the
-                                                     // border
+  const int x = cvRound(raw.x),
+            y = cvRound(raw.y);  // inside the image: corners keep a distance from its border
 
   Keypoint keypoint;
   keypoint.u_px = static_cast<float>(raw.x);

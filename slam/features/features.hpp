@@ -25,7 +25,7 @@ inline int hamming(const Descriptor& a, const Descriptor& b) {
 inline constexpr int kPatchReach_px = 19;
 
 struct Keypoint {
-  float u_px = 0, v_px = 0;  ///< undistorted, at full resolution
+  float u_px = 0, v_px = 0;  ///< undistorted, in pixels of the full-resolution image
   float depth_m = 0;         ///< 0 = none
   float angle_rad = 0;       ///< orientation by intensity centroid, [0, 2 pi)
   std::int32_t octave = 0;   ///< pyramid level, 0 = finest
@@ -41,10 +41,10 @@ struct Features {
 
 /// ORB (Rublee et al., ICCV 2011): FAST-9 corners on an image pyramid, spread evenly over image and
 /// levels, each with its orientation, rotated BRIEF, depth and label. Descriptors equal cv::ORB's
-/// bit for bit at the same pixel and angle; the rest differs: corners have subpixel positions,
-/// levels are mapped center to center (cv::ORB is off by up to 1.3 px at scale 3.6), thresholds are
-/// lowered where no corner is found. Depth and label are those of the nearest pixel of the original
-/// image, before undistortion. Ordered by octave, then strength.
+/// bit for bit at the same pixel and angle. Everything else differs: corners have subpixel
+/// positions, levels are mapped center to center (cv::ORB is off by up to 1.3 px at scale 3.6),
+/// thresholds are lowered where no corner is found. Depth and label are those of the nearest pixel
+/// of the original image, before undistortion. Ordered by octave, then strength.
 /// @param frame  depth and semantics may be empty. Depth that is NaN, infinite, not positive or
 ///               beyond config.max_depth_m is treated as missing.
 /// @returns config.count keypoints, fewer if the image has fewer corners.

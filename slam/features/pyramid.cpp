@@ -14,8 +14,9 @@ namespace {
 constexpr int kBlurRadius_px = 3;  // of the 7x7 kernel
 constexpr double kBlurSigma_px = 2.0;
 
-// An image that is a window of a larger one, whose margin mirrors its border. cv::GaussianBlur uses
-// different arithmetic for windows and whole images; cv::ORB blurs windows, so this code does too.
+// Allocates an image as a window of a larger one, whose margin is meant to mirror the image's
+// border. cv::GaussianBlur uses different arithmetic for windows and whole images; cv::ORB blurs
+// windows, so this code does too.
 cv::Mat windowed(cv::Size size) {
   cv::Mat whole(size.height + 2 * kBlurRadius_px, size.width + 2 * kBlurRadius_px, CV_8U);
   return whole(cv::Rect(kBlurRadius_px, kBlurRadius_px, size.width, size.height));

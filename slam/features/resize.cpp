@@ -93,7 +93,8 @@ void resize_row(const Byte* from, const std::vector<Group>& columns, std::int32_
   }
 }
 
-// Interpolates between two such rows, rounded: (upper (256 - next) + lower next) / 65536.
+// Interpolates between two rows from resize_row(), rounded: (upper (256 - next) + lower next) /
+// 65536.
 void blend_rows(const std::int32_t* upper, const std::int32_t* lower, int next, int columns,
                 Byte* to) {
   const __m256i weight = _mm256_set1_epi32(next);
@@ -125,7 +126,7 @@ void resize_exactly(const cv::Mat& from, cv::Mat& to) {
   }
   const std::vector<Group> columns = groups(from.cols, to.cols);
   const std::vector<Tap> rows = taps(from.rows, to.rows);
-  // The two most recent rows; most are used for two target rows.
+  // The two source rows resized last; most source rows are used for two target rows.
   struct Row {
     int y = -1;
     std::vector<std::int32_t> values;

@@ -25,7 +25,7 @@ SlamState decode_slam(const std::string& bytes, const std::string& name,
 /// Whether a file starts like a map file.
 bool is_map_file(const std::filesystem::path& file);
 
-/// The same to and from a file, written atomically.
+/// Saves a state to a file, atomically, and loads it from one.
 void save_slam(const std::filesystem::path& file, const SlamState& state);
 SlamState load_slam(const std::filesystem::path& file,
                     std::shared_ptr<const Vocabulary> vocabulary);

@@ -34,7 +34,7 @@ void read_distortion(YamlReader& yaml, const std::string& prefix, Camera& camera
                        .k6 = yaml.number_or(prefix + "k6", 0, -kMost, kMost)};
 }
 
-/// A number, or "learned".
+/// Reads a number, or "learned".
 void read_disparity_sigma(YamlReader& section, const std::string& key, Camera& c) {
   const auto sigma = section.find(key);
   if (!sigma || sigma->as_string() == "learned") return;
@@ -121,8 +121,8 @@ std::string section_of(const std::string& key) {
   return lower_case(key.substr(0, key.find('.')));
 }
 
-/// Unknown keys are errors, at the top level and in every section that is read: a typo would
-/// silently drop the camera's distortion. Other sections belong to other programs.
+/// Unknown keys are errors, at the top level and in every section that is read: otherwise, a typo
+/// could silently drop the camera's distortion. Other sections belong to other programs.
 void refuse_unknown_keys(YamlReader& yaml, const OrbSlamKeys& keys) {
   const std::vector<std::string> known = keys.all();
   std::set<std::string> read_sections{"camera"};
@@ -170,7 +170,7 @@ Settings read_orb_slam(YamlReader yaml, const OrbSlamKeys& keys, Settings settin
   refuse_unknown_keys(yaml, keys);
   Camera& c = settings.camera;
   read_orb_slam_lens(yaml, keys, c);
-  // Zero means the original's own default.
+  // Zero means ORB-SLAM's own default.
   const double rate_hz = yaml.number_or("Camera.fps", 0, 0, kMost);
   if (rate_hz != 0) c.rate_hz = rate_hz;
   // ORB-SLAM2 gives the baseline in m, times fx.
@@ -257,9 +257,9 @@ SlamConfig read_slam_config(YamlReader& yaml, SlamConfig config) {
 }
 
 Settings parse_settings(std::string text, const std::string& name, const SlamConfig& base) {
-  // OpenCV's dialect starts with "%YAML:1.0", which is not valid YAML; its line is kept, so that
-  // line numbers stay correct. ORB-SLAM2's TUM1.yaml has "key:value" without the space; TUM3.yaml
-  // contains a key twice.
+  // OpenCV's dialect starts with "%YAML:1.0", which is not valid YAML. That line becomes a comment,
+  // so that line numbers remain correct. ORB-SLAM2's TUM1.yaml has "key:value" without the space;
+  // TUM3.yaml contains a key twice.
   if (text.starts_with("%YAML:")) {
     text[0] = '#';
     text = without_dialect(text);

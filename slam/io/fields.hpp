@@ -31,10 +31,12 @@ template <class T>
 inline constexpr bool kIsOptional = false;
 template <class T>
 inline constexpr bool kIsOptional<std::optional<T>> = true;
-/// Whether a T shares an immutable record: `*value` is the record, and a T is made of one.
+/// Whether a T shares an immutable record: `*value` is the record, and a T can be constructed from
+/// one.
 template <class T>
 inline constexpr bool kIsShared = false;
-/// Whether a record of numbers is written as an unnamed list, because there are many of them.
+/// Whether a record of numbers is written as a list without names, because there are many such
+/// records.
 template <class T>
 inline constexpr bool kAsList = false;
 

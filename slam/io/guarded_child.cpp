@@ -201,7 +201,7 @@ void* run_child(void* argument) {
   return nullptr;
 }
 
-/// Runs on a thread, since only a new thread can have a larger stack.
+/// Runs the work on a new thread, since only a new thread can have a larger stack.
 void run_on_own_stack(ChildWork child, std::size_t stack_bytes) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);

@@ -13,13 +13,13 @@ namespace mh {
 
 /// Resources that a file reader may use before it is killed. Large files may use more.
 struct GuardLimits {
-  int processor_s = 6;                                  ///< whole seconds, at least 1
-  double processor_s_per_mb = 0.5;                      ///< more for each megabyte read
-  int wall_s = 600;                                     ///< limit for a reader that waits instead
-                                                        ///< of working
+  int processor_s = 6;              ///< whole seconds, at least 1
+  double processor_s_per_mb = 0.5;  ///< additional seconds for each megabyte read
+  int wall_s = 600;                 ///< limit for a reader that waits instead
+                                    ///< of working
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< in addition to what this process uses
-  std::uint64_t memory_per_byte = 50;                   ///< more for each byte read
-  std::size_t stack_bytes = std::size_t{512} << 20;     ///< for deeply nested files
+  std::uint64_t memory_per_byte = 50;  ///< additional bytes of memory for each byte read
+  std::size_t stack_bytes = std::size_t{512} << 20;  ///< for deeply nested files
 };
 
 /// Runs `work` in a child process, so that its crashes, hangs and output do not affect this one.
@@ -38,7 +38,7 @@ void in_child(const std::filesystem::path& file, const GuardLimits& limits,
 /// sanitizer).
 bool reads_here();
 
-/// Names the file that a child is reading, during its lifetime, for the message in case of a crash.
+/// During its lifetime, names the file that a child is reading, for the message in case of a crash.
 class ReadingInChild {
  public:
   explicit ReadingInChild(const std::filesystem::path& file);

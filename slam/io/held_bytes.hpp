@@ -24,8 +24,8 @@ enum class MapPages { kAtOnce, kAsTouched };
 /// naming the file: missing, a folder, no permission.
 HeldBytes map_file(const std::filesystem::path& file, MapPages pages = MapPages::kAtOnce);
 
-/// From now on, a mapped file that was truncated ends the process with a line that names it, when a
-/// page beyond its end is touched.
+/// From now on, if a mapped file was truncated and a page beyond its end is touched, the process
+/// ends with a line that names the file.
 /// @param code  exit code
 void end_at_lost_pages(std::string_view error_mark, int code);
 

@@ -11,8 +11,8 @@
 
 namespace mh {
 
-/// How deep lists and objects may be nested in JSON: comparing, copying and writing values recurse
-/// at each level, and would overflow the stack at some ten thousand.
+/// How deep lists and objects may be nested in JSON: comparing, copying and writing values recurses
+/// at each level and would overflow the stack at some ten thousand levels.
 inline constexpr int kDeepestJson = 200;
 
 /// Whether a text has more levels than that; looks at brackets alone.

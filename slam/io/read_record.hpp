@@ -29,12 +29,14 @@ struct FileObservation {
     kOther,   ///< looked for and found, but neither file nor folder: a pipe, a device
     kListed,  ///< the names in a folder that match a pattern; path = folder / pattern
     kRead,    ///< the whole content of a file
-    kHeld,    ///< a file that may be read, or looked for in vain, again later; not part of digests
+    kHeld,  ///< a file that may be read again later, or is missing and may be looked for again; not
+            ///< part of digests
   };
   Kind kind = Kind::kAbsent;
   std::filesystem::path path;  ///< as it was spelled by the caller
   std::uint64_t digest = 0;    ///< xxh3-64 of the names (kListed) or the content (kRead), else 0
-  FileState state = {};        ///< before the file was read (kRead, kHeld), or as it is (kAbsent)
+  FileState state = {};  ///< from before the file was read (kRead, kHeld), or from when it was
+                         ///< looked for (kAbsent)
   friend bool operator==(const FileObservation& a, const FileObservation& b) {
     return a.kind == b.kind && a.path == b.path && a.digest == b.digest;
   }
@@ -63,7 +65,7 @@ struct InputChanged : InputError {
 
 /// Checks that no file was changed since it was read, or appeared since it was found missing, so
 /// that what was made from several files, or from one read several times, is consistent.
-/// @throws InputChanged naming the first that was.
+/// @throws InputChanged naming the first such file.
 void require_unchanged(const ReadRecord& record);
 
 /// Serializes a record, to pass it from one process to another, and back.

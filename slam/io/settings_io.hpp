@@ -82,7 +82,7 @@ class SettingsReader {
     finish();
     section_ = yaml_.find(name);
   }
-  /// The last section; nullopt if the file lacks it.
+  /// The section that was read last; nullopt if the file lacks it.
   const std::optional<YamlReader>& place() const { return section_; }
   /// @throws InputError if the last section has a key that is not one of its fields.
   void finish() const {

@@ -17,9 +17,9 @@ std::vector<std::string> words_of(const Range& range, Word word = {}) {
   return words;
 }
 
-/// Returns the word most likely meant by a misspelled one: the one the fewest edits away (insert,
-/// delete, replace, or swap two neighboring characters; letter case, spaces, '-' and '_' do not
-/// count), ties to the first; nullopt if more than a third of the word is wrong.
+/// Returns the word most likely meant by a misspelled one: the one that is the fewest edits away
+/// (insert, delete, replace, or swap two neighboring characters; letter case, spaces, '-' and '_'
+/// do not count), ties to the first; nullopt if more than a third of the word is wrong.
 std::optional<std::string> nearest_word(std::string_view word,
                                         const std::vector<std::string>& valid);
 

@@ -14,7 +14,7 @@ class OwnedFolder {
   OwnedFolder() = default;
   OwnedFolder(OwnedFolder&&) noexcept;
   OwnedFolder& operator=(OwnedFolder&&) = delete;
-  /// Releases the lock; the folder stays.
+  /// Releases the lock, but does not remove the folder.
   ~OwnedFolder();
 
   /// Creates the folder, whose parent must exist; nullopt if the name is already taken.
@@ -49,7 +49,7 @@ class FolderHold {
   /// Keeps all processes out except those that do the same work.
   /// @param begin    records the work in the folder; called if no other process holds it
   /// @param is_same  whether the recorded work is this one; called if others hold it
-  /// @throws InputError if others do other work there.
+  /// @throws InputError if others do different work there.
   void join(const std::function<void()>& begin, const std::function<bool()>& is_same);
 
  private:
@@ -63,7 +63,7 @@ class FolderHold {
 void remove_abandoned_folders(const std::filesystem::path& parent);
 
 /// A hidden folder that is removed at the end of its scope; one left behind by a killed process is
-/// removed with the next one made in the same parent by the same host.
+/// removed when the same host next creates one in the same parent.
 class TemporaryFolder {
  public:
   /// @throws as make_output_folder()

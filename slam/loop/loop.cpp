@@ -51,8 +51,8 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest, const IsEn
   };
   const AugmentedVector query = view(newest);
 
-  // No candidate may be much less similar than the neighbors, which are known to see the same
-  // place.
+  // No candidate may be much less similar to the query than the newest keyframe's neighbors, which
+  // are known to see the same place.
   double least = 1.0;
   for (const Keyframe::Neighbor& n : map.at(newest).covisible)
     if (n.shared >= kStrongEdge) least = std::min(least, l1_similarity(query, view(n.id)));
@@ -82,9 +82,9 @@ std::vector<KeyframeId> candidates(const Map& map, KeyframeId newest, const IsEn
   return result;
 }
 
-/// Length of the path between a keyframe and the newest, along the keyframes in order of creation;
-/// it starts at the newest keyframe's strong neighbor that is nearest along the path, since that
-/// one is equally well localized.
+/// Length of the path between a keyframe and the newest, along the keyframes in order of creation.
+/// Neighbors that share many landmarks with the newest are localized equally well, so the path ends
+/// at whichever of these is nearest.
 double way_between_m(const Map& map, KeyframeId old, KeyframeId newest, const LoopConfig& config) {
   std::vector<double> way_m(map.keyframes().size(), 0.0);
   std::optional<Eigen::Vector3d> before;
@@ -120,9 +120,9 @@ struct Graph {
   std::vector<PoseGraphEdge> edges;
 };
 
-/// The essential graph: each keyframe with its best earlier neighbor, with those that share many
-/// landmarks, and the loop. An edge is weighted by the landmarks that support it: drift arises
-/// where few do.
+/// The essential graph. Its edges link each keyframe with its best earlier neighbor and with those
+/// that share many landmarks, and the two ends of the loop. An edge is weighted by the number of
+/// landmarks that support it, since drift arises where there are few.
 Graph essential_graph(const Map& map, const Loop& loop) {
   Graph graph;
   std::vector<std::uint32_t> index(map.keyframes().size(), UINT32_MAX);
@@ -244,7 +244,7 @@ std::size_t support(std::vector<PiecePlace>& places, const Keyframe& keyframe, c
 }
 
 /// Whether enough keyframes support a place, and no other place of its piece is supported by half
-/// as many.
+/// as many keyframes or more.
 bool is_certain(const std::vector<PiecePlace>& places, std::size_t index,
                 const LoopConfig& config) {
   const PiecePlace& place = places[index];
@@ -310,8 +310,9 @@ void close_loop(Map& map, const Loop& found, const SlamContext& context) {
   map.update_covisibility(loop.old_keyframe);
   fuse_with_neighbors(map, loop.keyframe, context);
   map.update_covisibility(loop.keyframe);
-  // Unless the drift is negligible, adjusts the whole piece: with the parts that the loop hardly
-  // moved held fixed, errors against ground truth in the house were larger by a third to a half.
+  // Unless the drift is negligible, adjusts the whole piece. When the parts that the loop hardly
+  // moved were held fixed instead, errors against ground truth in the house were larger by a third
+  // to a half.
   if (negligible && own == other)
     adjust_neighborhood(map, loop.keyframe, context);
   else

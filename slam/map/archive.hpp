@@ -101,7 +101,7 @@ class Reader {
     } else if constexpr (kIsVector<T> || std::is_same_v<T, std::string>) {
       std::uint64_t size = 0;
       get(size);
-      // One by one, so that a false size runs out of bytes before it runs out of memory.
+      // Read one by one: if the size is wrong, the bytes run out before the memory does.
       value.clear();
       for (std::uint64_t i = 0; i < size; ++i) {
         typename T::value_type element{};
@@ -157,8 +157,8 @@ void fields(A& a, T& pose) {
   a(translation);
   if constexpr (A::kReads) {
     const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
-    // Far above the error that products of rotations accumulate, far below anything that is not a
-    // rotation.
+    // This limit is far above the error that products of rotations accumulate, and far below that
+    // of anything that is not a rotation.
     a.require(off.norm() < 1e-3 && rotation.determinant() > 0, "not a rotation");
     pose = SE3(rotation, translation);
   }

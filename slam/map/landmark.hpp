@@ -18,7 +18,8 @@ struct Observation {
   friend bool operator==(const Observation&, const Observation&) = default;
 };
 
-/// What searches read of every landmark comes first: it shares a cache line or two.
+/// A landmark. The members that every search reads come first, so that they fit into a cache line
+/// or two.
 struct Landmark {
   Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
 
@@ -26,11 +27,12 @@ struct Landmark {
   Eigen::Vector3d mean_direction = Eigen::Vector3d::UnitZ();  ///< mean over observations, from
                                                               ///< camera to landmark
   double min_distance_m = 0,
-         max_distance_m = 0;  ///< range in which the pyramid's levels can match it
+         max_distance_m = 0;  ///< range of distances at which the pyramid's levels can match it
   LandmarkId id;
   ClassId label = kVoid;  ///< of the observation that supplies the descriptor
   bool erased = false;
-  bool described = false;   ///< descriptor and label match these observations; not saved to files
+  bool described = false;   ///< descriptor and label were computed from the current observations;
+                            ///< not saved to files
   Descriptor descriptor{};  ///< the observed one with the least median distance to the others
 
   std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe

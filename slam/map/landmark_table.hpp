@@ -14,7 +14,7 @@ namespace mh {
 
 /// Landmarks by id. Ids are assigned in order and never reused; references stay valid until their
 /// landmark is erased. An erased landmark leaves four bytes behind, and its id maps to one shared
-/// tombstone: a robot that lives in one house creates ten times as many landmarks as are live.
+/// tombstone: over time, a robot in one house creates ten times as many landmarks as are live.
 class LandmarkTable {
  public:
   /// Iterates over all ids ever assigned; erased ones yield the tombstone.

@@ -19,13 +19,15 @@ std::size_t most_central(const std::vector<const Descriptor*>& descriptors) {
   const std::size_t n = descriptors.size();
   if (n <= 2) return 0;
   std::vector<int> distances(n);
-  // The distance 0 to itself sorts first; the median of the others follows.
+  // A descriptor's distance to itself (0) sorts first, so this is the index of the median of the
+  // others.
   const std::size_t median = 1 + (n - 1) / 2;
   std::size_t best = 0;
   int best_median = INT32_MAX;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) distances[j] = hamming(*descriptors[i], *descriptors[j]);
-    // Sorting gives the median; counting is a faster test for whether it is below the best.
+    // Counting is a faster test than sorting for whether this descriptor's median is below the best
+    // one.
     const auto below = std::count_if(distances.begin(), distances.end(),
                                      [&](int distance) { return distance < best_median; });
     if (static_cast<std::size_t>(below) <= median) continue;
@@ -140,7 +142,7 @@ void Map::erase(KeyframeId keyframe) {
   Keyframe& k = mutable_at(keyframe);
   if (k.erased || k.origin == keyframe) return;
   KeyframeId parent = k.covisible.empty() ? KeyframeId{} : k.covisible.front().id;
-  if (!parent.valid())  // seen by no other: attach it to the nearest live keyframe in time
+  if (!parent.valid())  // it has no neighbor: attach it to the nearest live keyframe in time
     for (const Keyframe& other : keyframes_)
       if (!other.erased && other.origin == k.origin && other.id != keyframe &&
           (!parent.valid() || other.id < keyframe))

@@ -24,8 +24,8 @@ namespace mh {
 
 struct Keyframe {
   KeyframeId id;
-  /// The first keyframe of its piece of the map, which defines that piece's world: nothing ties the
-  /// worlds of different pieces yet.
+  /// The first keyframe of its piece of the map, which defines that piece's world: the relative
+  /// pose of the worlds of different pieces is not known yet.
   KeyframeId origin{0};
   Stamp stamp_ns = 0;
   SE3 camera_from_world;
@@ -38,7 +38,8 @@ struct Keyframe {
     KeyframeId id;
     int shared = 0;  ///< landmarks seen by both
   };
-  std::vector<Neighbor> covisible;  ///< at least kMinShared; ordered by most shared, then by id
+  std::vector<Neighbor>
+      covisible;  ///< those that share at least kMinShared landmarks, most first, then by id
 
   bool erased = false;
   std::optional<SE3> odom_from_camera = {};  ///< RgbdFrame::odom_from_camera
@@ -74,17 +75,17 @@ class Map {
   static Map restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks);
 
   /// Adds a keyframe that has no landmarks yet and assigns its id. If its origin is not valid, it
-  /// begins a piece of the map.
+  /// begins a new piece of the map.
   KeyframeId add(Keyframe keyframe);
   LandmarkId add_landmark(const Eigen::Vector3d& position_in_world, KeyframeId keyframe,
                           std::uint32_t feature);
-  /// No effect if the keyframe sees the landmark already or the feature has one.
+  /// No effect if the keyframe already sees the landmark, or the feature already has a landmark.
   bool add_observation(LandmarkId landmark, KeyframeId keyframe, std::uint32_t feature);
-  /// Erases the landmark, too, if no observation is left.
+  /// Also erases the landmark if it has no observation left.
   void erase_observation(LandmarkId landmark, KeyframeId keyframe);
   void erase(LandmarkId landmark);
-  /// Moves the observations of `from` to `into` (if a keyframe sees both, that of `into` stays),
-  /// then erases `from`.
+  /// Moves the observations of `from` to `into` (a keyframe that sees both keeps its observation of
+  /// `into`), then erases `from`.
   void fuse(LandmarkId from, LandmarkId into);
   /// Erases a keyframe; from then on its pose is stored relative to its best neighbor. The first
   /// keyframe of a piece cannot be erased.
@@ -107,7 +108,8 @@ class Map {
 
   /// Updates descriptor, label, mean direction and distance range of a landmark.
   void refresh(LandmarkId id, const FeatureConfig& config);
-  /// Recounts which keyframes share landmarks with this one, on both sides.
+  /// Recounts the landmarks that this keyframe shares with others, and updates the neighbors of
+  /// both.
   void update_covisibility(KeyframeId id);
 
   /// Live keyframes that share labels or words with a view, by id.

@@ -32,8 +32,8 @@ std::vector<KeyframeId> PositionIndex::near(const Eigen::Vector3d& center_in_wor
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius_m);
   const Cell low = cell_of(center_in_world - reach), high = cell_of(center_in_world + reach);
   std::vector<KeyframeId> found;
-  // Cells are ordered by x, then y, then z. Past the end of one range, the next one starts at the
-  // next occupied cell, so that a wide ball visits occupied cells only.
+  // Cells are ordered by x, then y, then z. A cell outside the box is skipped by a jump to the next
+  // occupied cell that may be inside, so that a large ball costs no more than the occupied cells.
   for (auto at = cells_.lower_bound(low); at != cells_.end();) {
     Cell next = at->first;
     if (next[0] > high[0]) break;

@@ -16,7 +16,7 @@ namespace mh {
 class PositionIndex {
  public:
   void add(KeyframeId keyframe, const Eigen::Vector3d& position_in_world);
-  /// @param position_in_world  the position it was added with.
+  /// @param position_in_world  the position with which it was added.
   void remove(KeyframeId keyframe, const Eigen::Vector3d& position_in_world);
   /// All keyframes in cubes that a ball intersects (a superset of those inside it), by id.
   std::vector<KeyframeId> near(const Eigen::Vector3d& center_in_world, double radius_m) const;

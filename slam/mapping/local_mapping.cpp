@@ -22,10 +22,11 @@ constexpr std::size_t kTriangulationNeighbors = 8;
 constexpr std::size_t kFusionNeighbors = 10;
 constexpr std::size_t kAdjustedNeighbors = 10;
 constexpr std::size_t kFixedKeyframes = 20;
-constexpr double kFoundShare = 0.25;  // of the frames in which a young landmark was expected
+constexpr double kFoundShare = 0.25;  // least share of the frames in which a young landmark was
+                                      // expected that must have found it
 constexpr double kMinParallaxCosine = 0.9998;  // about 1.1 degrees between the two rays
-constexpr double kChi2Line = 3.84;             // 95 % of chi-square, 1 degree of freedom
-constexpr double kChi2Point = 5.991;           // 95 % of chi-square, 2 degrees of freedom
+constexpr double kChi2Line = 3.84;             // 95 % quantile of chi-square, 1 degree of freedom
+constexpr double kChi2Point = 5.991;           // 95 % quantile of chi-square, 2 degrees of freedom
 
 std::vector<KeyframeId> best_neighbors(const Map& map, KeyframeId id, std::size_t count) {
   std::vector<KeyframeId> result;
@@ -40,7 +41,7 @@ Eigen::Vector3d bearing(const Keypoint& k, const Camera& camera) {
   return camera.unproject(k.u_px, k.v_px, 1.0);
 }
 
-/// Epipolar lines of one view's keypoints in another, and how far its keypoints are from them.
+/// Epipolar lines of view a's keypoints in view b, and how far b's keypoints are from them.
 class EpipolarTest {
  public:
   EpipolarTest(const Features& a, const Features& b, const SE3& b_from_a, const Camera& camera)
@@ -49,7 +50,7 @@ class EpipolarTest {
     for (const Keypoint& k : a.keypoints) lines_.emplace_back(essential * bearing(k, camera));
     for (const Keypoint& k : b.keypoints) bearings_.push_back(bearing(k, camera));
   }
-  /// Squared distance (px^2) of b's keypoint from the line of a's.
+  /// Squared distance (px^2) of a keypoint of b from the line of a keypoint of a.
   double distance2(std::uint32_t a, std::uint32_t b) const {
     // Line in normalized coordinates; focal lengths differ little, so one scale serves both axes.
     const Eigen::Vector3d& line = lines_[a];
@@ -90,7 +91,7 @@ std::optional<Eigen::Vector3d> midpoint(const SE3& world_from_a, const SE3& worl
 }
 
 /// The point that two matched features show: from parallax if there is enough, otherwise from
-/// whichever depth is available; nullopt if it does not reproject into both.
+/// whichever depth is available; nullopt if it does not reproject onto both features.
 std::optional<Eigen::Vector3d> triangulate(const Keyframe& a, const Keypoint& ka, const Keyframe& b,
                                            const Keypoint& kb, const SlamContext& context) {
   const SE3 world_from_a = a.camera_from_world.inverse();
@@ -269,7 +270,8 @@ void fuse_with_neighbors(Map& map, KeyframeId keyframe, const SlamContext& conte
 
 namespace {
 
-/// The other keyframes that see the landmarks of these, ordered by how many of them they see.
+/// The keyframes not among these that see landmarks of these, ordered by how many such landmarks
+/// they see.
 std::vector<KeyframeId> observing_keyframes(const Map& map,
                                             const std::vector<KeyframeId>& keyframes) {
   std::vector<std::int32_t> sees(map.keyframes().size(), 0);
@@ -299,8 +301,8 @@ std::array<KeyframeId, 2> beside_in_time(const Map& map, const Keyframe& keyfram
   return beside;
 }
 
-/// Pairs of successive keyframes, at least one of them free, that wheel odometry links. Adds
-/// keyframes that are neither free nor fixed to the fixed ones.
+/// Pairs of successive keyframes that wheel odometry links, at least one of each pair free. If the
+/// other one is neither free nor fixed, it is added to the fixed ones.
 std::vector<std::pair<KeyframeId, KeyframeId>> wheel_steps(const Map& map,
                                                            const std::vector<KeyframeId>& free,
                                                            std::vector<KeyframeId>& fixed) {
@@ -333,7 +335,7 @@ BundleMotion motion_of(const Keyframe& a, const Keyframe& b) {
 }
 
 /// Adjusts the free keyframes and all landmarks that they see; the fixed ones define the frame of
-/// reference: without any, nothing moves.
+/// reference. Without fixed keyframes, nothing is adjusted.
 void adjust_keyframes(Map& map, const std::vector<KeyframeId>& free, std::vector<KeyframeId> fixed,
                       const SlamContext& context) {
   const auto steps = wheel_steps(map, free, fixed);
@@ -410,7 +412,7 @@ void adjust_piece(Map& map, KeyframeId origin, const SlamContext& context) {
 void cull_redundant_keyframes(Map& map, KeyframeId newest, const SlamContext& context) {
   for (const KeyframeId id : best_neighbors(map, newest, map.keyframes().size())) {
     const Keyframe& k = map.at(id);
-    // The latest few stay, since tracking depends on them.
+    // The latest few keyframes are kept, since tracking depends on them.
     if (id == k.origin || newest.value - id.value < 3) continue;
     int total = 0, redundant = 0;
     for (std::size_t i = 0; i < k.landmarks.size(); ++i) {

@@ -5,7 +5,8 @@
 
 namespace mh {
 
-/// Creates a landmark for every close feature with depth (and at least for the nearest hundred).
+/// Creates a landmark for every close feature with depth; if there are fewer than a hundred, for
+/// the nearest hundred features with depth.
 void add_landmarks_from_depth(Map& map, KeyframeId keyframe, const SlamContext& context);
 
 // `map` is the context's own map, which is modified.

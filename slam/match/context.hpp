@@ -33,12 +33,14 @@ SemanticMatcher semantic_matcher(const SlamContext& context, Matcher matcher,
                                  GateLog* log = nullptr);
 
 /// Matches the landmarks that a keyframe sees to a frame by appearance alone (words, tight gate,
-/// ratio test) and traces them: one per feature of the frame, invalid = none.
+/// ratio test) and traces the matches. Returns the landmark of each feature of the frame; invalid =
+/// none.
 std::vector<LandmarkId> match_landmarks(const Keyframe& keyframe, const Query& query,
                                         const SlamContext& context, Matcher matcher);
 
-/// The same among all features of the frame, or those of the landmark's label, instead of those
-/// under the same vocabulary node. Void does not count as a label. @pre where is not kNone
+/// The same, but a landmark is compared with all features of the frame, or all those with its
+/// label, instead of those under the same vocabulary node. Void does not count as a label. @pre
+/// where is not kNone
 std::vector<LandmarkId> match_landmarks_widely(const Keyframe& keyframe, const Query& query,
                                                const SlamContext& context, Matcher matcher,
                                                WiderSearch where);
@@ -52,7 +54,7 @@ struct ProjectionSearch {
   ProjectionGate gate;
 };
 
-/// Returns the feature that each target matches, or -1, and traces them.
+/// Returns the feature that each target matches, or -1, and traces the matches.
 std::vector<std::int32_t> find_landmarks(const ProjectionSearch& search, const SlamContext& context,
                                          Matcher matcher);
 
@@ -64,12 +66,13 @@ struct ProjectionPairs {
   std::span<const std::int32_t> found;         ///< per target
   std::span<const LandmarkId> landmarks;       ///< of each target
   std::span<const std::uint32_t> others = {};  ///< feature that supplied each target's descriptor;
-                                               ///< empty = the landmark's own
+                                               ///< empty = the landmarks' own descriptors
 };
 /// Records them if the context has a trace.
 void trace_projection(const SlamContext& context, Matcher matcher, const ProjectionPairs& pairs);
 
-/// Pairs that match_by_words() accepted between a keyframe and another, or the current frame.
+/// Pairs that match_by_words() accepted between a keyframe and another keyframe or the current
+/// frame.
 struct WordPairs {
   KeyframeId a;
   const Features& features_a;

@@ -8,9 +8,10 @@
 
 namespace mh {
 namespace {
-// Beyond 60 degrees between the mean viewing direction and this one, a patch looks different.
+// If this view is more than 60 degrees off the mean viewing direction, the patch looks different.
 constexpr double kMinViewCosine = 0.5;
-// Octaves are predicted from distances known to a few percent: allow this much beyond the range.
+// Octaves are predicted from distances known to a few percent, so the range is extended by this
+// factor.
 constexpr double kDistanceSlack = 1.2;
 }  // namespace
 

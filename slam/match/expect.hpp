@@ -17,8 +17,8 @@ namespace mh {
 float octave_scale(const FeatureConfig& config, int octave);
 
 /// Predicts where and at which octave a landmark appears to a camera; nullopt if it is outside the
-/// image, outside the distances that its octaves can match, or seen from more than 60 degrees off
-/// its mean viewing direction.
+/// image, at a distance at which no octave can match it, or seen from more than 60 degrees off its
+/// mean viewing direction.
 /// @param radius_px  search radius at octave 0; grows with the predicted octave's scale.
 std::optional<ProjectionTarget> expect(const Landmark& landmark, const SE3& camera_from_world,
                                        const Eigen::Vector3d& camera_in_world, const Camera& camera,

@@ -10,7 +10,8 @@ namespace mh {
 namespace {
 
 /// Rotations between matched keypoints, in bins of 12 degrees: true matches share one rotation, so
-/// only the three fullest bins are kept (and only if they have at least a tenth of the fullest).
+/// only the three fullest bins are kept (and only those with at least a tenth as many matches as
+/// the fullest).
 class RotationHistogram {
  public:
   void add(float from_rad, float to_rad) { ++count_[bin(from_rad, to_rad)]; }
@@ -47,7 +48,7 @@ class SearchLog {
         best.first.semantic > max_distance ? MatchGate::kThreshold : MatchGate::kRatio;
     log_->push_back({asked, best.index, accepted ? MatchGate::kKept : refused});
   }
-  /// Names the gate that removed the pairs for which `kept` is false now.
+  /// Records `gate` for the pairs that it has just removed: those for which `kept` is now false.
   template <class Kept>
   void settle(MatchGate gate, Kept kept) {
     if (log_ == nullptr) return;

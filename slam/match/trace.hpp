@@ -20,8 +20,8 @@ struct MatchedPair {
   std::uint32_t feature = 0;  ///< of the current frame or of seen_in
   LandmarkId landmark;        ///< the landmark it was matched to; invalid = a keypoint without one
   KeyframeId keyframe;  ///< owner of the feature that supplied the other descriptor (the newest
-                        ///< keyframe when triangulating); invalid = the landmark's own or, in the
-                        ///< motion model, the last frame's
+                        ///< keyframe when triangulating); invalid = that descriptor is the
+                        ///< landmark's own or, in the motion model, from the last frame
   std::uint32_t other_feature = kNone;  ///< of that keyframe or of the last frame
   float distance_bits = 0;              ///< after equation 2
   bool penalized = false;               ///< the labels are known and differ
@@ -33,8 +33,8 @@ struct MatchedPair {
 using MatchTrace = std::vector<MatchedPair>;
 
 /// A pair that a search for the map's points in the current frame considered, kept or not. Each
-/// search is traced twice: first as it was, then as it would have been without equation 2 (xi = 1),
-/// which affects nothing.
+/// search is traced twice: first as it was, then as it would have been without equation 2 (xi = 1).
+/// The second run affects no results.
 struct MatchDecision {
   Matcher matcher{};
   bool with_xi = true;
@@ -45,7 +45,8 @@ struct MatchDecision {
   std::uint32_t other_feature = MatchedPair::kNone;  ///< of that keyframe
 };
 
-/// Decisions of a step, in order: relocalization by words and by pose, and the local map.
+/// Decisions of a step, in order. They are made by relocalization, which searches by words and by
+/// pose, and by the search in the local map.
 using DecisionTrace = std::vector<MatchDecision>;
 
 }  // namespace mh

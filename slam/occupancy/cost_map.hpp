@@ -15,8 +15,8 @@ inline constexpr std::uint8_t kLethalCost = 254;
 inline constexpr std::uint8_t kUnknownCost = 255;
 
 struct CostMapConfig {
-  double inscribed_radius_m = 0.26;  ///< of the footprint; that of Pepper's disc
-  double inflation_radius_m = 0.55;  ///< costs end here; Nav2's default
+  double inscribed_radius_m = 0.26;  ///< of the robot's footprint; default: Pepper's disc
+  double inflation_radius_m = 0.55;  ///< costs are 0 beyond this distance; Nav2's default
   double cost_scaling_factor = 3.0;  ///< 1/m, rate of the decay; the value in Nav2's bringup
 };
 

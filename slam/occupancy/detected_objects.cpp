@@ -44,7 +44,8 @@ DetectedObjects::Id DetectedObjects::at(const Vector3i& voxel) const {
 struct DetectionAssociation::Detection {
   ClassId class_id = kVoid;
   std::vector<std::uint64_t> voxels;
-  std::map<Object, double> before;  ///< share of its voxels that belonged to an object, by votes
+  std::map<Object, double>
+      before;  ///< by object: the share of its voxels that belonged to it before, by votes
   Object object = 0;
 };
 
@@ -115,7 +116,7 @@ void DetectionAssociation::recognize(std::vector<Detection>& detections) {
 void DetectionAssociation::compare(const std::vector<Detection>& detections) {
   std::set<Object> recognized;
   for (const Detection& detection : detections) recognized.insert(detection.object);
-  // By class, then object: the detections that show it.
+  // By class, then object: the detections that show the object.
   std::map<ClassId, std::map<Object, std::set<std::size_t>>> shown;
   for (std::size_t d = 0; d < detections.size(); ++d) {
     auto& of_class = shown[detections[d].class_id];

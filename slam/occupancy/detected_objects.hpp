@@ -48,13 +48,15 @@ class DetectedObjects {
 };
 
 /// Associates detections across views: a detection belongs to an object that already had at least a
-/// quarter of its voxels, or to a new one. Pairs that share the most voxels are matched first.
+/// quarter of the detection's voxels, otherwise to a new object. Pairs of a detection and an object
+/// that share the most voxels are matched first.
 class DetectionAssociation {
  public:
-  /// Adds the next view, in order of time: it is compared with the earlier ones.
+  /// Adds a view, which is compared with those added before: add views in order of time.
   void add(const VoxelView& view);
-  /// Each voxel with a class belongs to the object of this class that most views assigned it to.
-  /// Two objects are apart if more views showed them as two detections than as one.
+  /// Each voxel with a class belongs to the object of this class to which the largest number of
+  /// views assigned it. Two objects are apart if more views showed them as two detections than as
+  /// one.
   DetectedObjects objects(const VoxelMap& map) const;
 
  private:
@@ -73,7 +75,8 @@ class DetectionAssociation {
   /// Assigns each detection its object: largest overlaps first, and no object twice, since an
   /// object has one detection per view.
   void recognize(std::vector<Detection>& detections);
-  /// Counts, for pairs of objects of one class, whether the detections show them as one or as two.
+  /// For each pair of objects of one class in a view, counts whether the detections show the two as
+  /// one object or as two.
   void compare(const std::vector<Detection>& detections);
 
   std::vector<ClassId> classes_;  ///< of each object

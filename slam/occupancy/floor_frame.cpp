@@ -14,15 +14,15 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kOnPlane_m =
-    0.04;  // farthest that points on a plane are from it: the depth noise at 4 m
-constexpr double kSteepest =
-    0.7;  // least cosine to the cameras' mean up axis, since handheld cameras look down
+    0.04;  // points on a plane are at most this far from it: the depth noise at 4 m
+constexpr double kSteepest = 0.7;  // least cosine between a floor's normal and the cameras' mean up
+                                   // axis; below 1, since handheld cameras look down
 constexpr double kLeastHeight_m = 0.15;  // least height of a camera above the floor
 constexpr double kMostBelow = 0.05;  // largest share of all points that may be well below the floor
 constexpr double kBelow_m = 0.15;    // what "well below" means
 constexpr std::size_t kLeastPoints = 20;  // needed for a floor
-// Least share of the points within twice kOnPlane_m that must be on a floor. It is about one half
-// where a plane only cuts through walls.
+// At least this share of the points within twice kOnPlane_m of a floor must be within kOnPlane_m.
+// Where a plane only cuts through walls, the share is about one half.
 constexpr double kLeastFlat = 0.65;
 constexpr ClassId kFloorClass = 2, kMatClass = 20;
 
@@ -32,7 +32,8 @@ struct Plane {
   double height(const Vector3d& point) const { return up.dot(point) - offset_m; }
 };
 
-/// What is known besides the points in which a plane is searched for.
+/// What a plane is checked against, in addition to the points that it is fitted to: the whole map
+/// and the cameras.
 struct Surroundings {
   std::span<const LabeledPoint> all;
   std::span<const SE3> cameras;
@@ -81,10 +82,12 @@ Plane refined(const Plane& plane, const std::vector<Vector3d>& points) {
   return better;
 }
 
-/// The plane with the most points that can be a floor; RANSAC with its own random draws.
+/// The plane with the most points among those planes that can be a floor; RANSAC with its own
+/// random draws.
 std::optional<Plane> best_plane(const std::vector<Vector3d>& points, const Surroundings& around) {
   if (points.size() < kLeastPoints) return std::nullopt;
-  constexpr std::uint64_t kDraws = 500;  // finds a plane of a fifth of the points with p = 0.98
+  constexpr std::uint64_t kDraws =
+      500;  // finds a plane that holds a fifth of the points with probability 0.98
   const RandomStream draws(0x666c6f6f72);
   std::optional<Plane> best;
   std::size_t most = kLeastPoints - 1;
@@ -108,7 +111,8 @@ std::optional<Plane> best_plane(const std::vector<Vector3d>& points, const Surro
   return can_be_floor(fitted, around) ? fitted : *best;
 }
 
-/// x is the viewing direction of the first camera, which is above the origin.
+/// floor_from_world of a plane: x is the viewing direction of the first camera, which is above the
+/// origin.
 SE3 frame_of(const Plane& plane, const SE3& first) {
   Vector3d x = first.rotation().col(2);
   x -= plane.up.dot(x) * plane.up;

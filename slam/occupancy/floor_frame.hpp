@@ -22,15 +22,15 @@ struct LabeledPoint {
 struct FloorFrame {
   SE3 floor_from_world;    ///< z = 0 is the floor, z up; x is the first camera's viewing direction
   double spread_m = 0;     ///< median distance of the floor's points from the plane
-  std::size_t points = 0;  ///< that support it
+  std::size_t points = 0;  ///< number of points on the floor
   bool by_labels = false;  ///< false: without usable labels, geometry decided
 };
 
-/// Finds the floor: the plane of the points labeled floor, if it is where a floor can be: below the
-/// cameras and roughly perpendicular to their mean up axis, with almost nothing below it.
-/// Otherwise, the largest plane for which this holds. Deterministic.
+/// Finds the floor. It is the plane of the points labeled floor, if that is where a floor can be:
+/// below the cameras and roughly perpendicular to their mean up axis, with almost nothing below it.
+/// Otherwise, it is the plane with the most points for which this holds. Deterministic.
 /// @param cameras  poses along the path, in order; their y axis points down
-/// @returns nullopt if no plane supports a floor.
+/// @returns nullopt if no plane can be a floor.
 std::optional<FloorFrame> find_floor_frame(std::span<const LabeledPoint> points,
                                            std::span<const SE3> world_from_cameras);
 

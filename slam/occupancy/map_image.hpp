@@ -22,7 +22,7 @@ struct MapImage {
   Grid2d<std::uint8_t> levels;
   double resolution_m = 0.05;
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
-  double yaw_rad = 0;       ///< of the rows, about the origin
+  double yaw_rad = 0;       ///< rotation of the rows about the origin
   std::vector<bool> clear;  ///< pixels that are not opaque, in the order of levels; empty: none
 };
 

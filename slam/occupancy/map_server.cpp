@@ -111,7 +111,7 @@ std::vector<int> binary_pixels(const std::string& content, const PgmHeader& head
       static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   const std::size_t width = header.brightest > 255 ? 2 : 1;
   if (bytes.size() < width * size) throw InputError(file + ": is truncated");
-  // One whitespace character separates header and pixels; CR LF counts as two.
+  // One whitespace character separates header and pixels. CR LF is two, but is accepted.
   if (bytes.size() == width * size + 1 && bytes[0] == '\n' && content[header.end - 1] == '\r')
     bytes.remove_prefix(1);
   const std::size_t left = bytes.size() - width * size;
@@ -300,8 +300,8 @@ OccupancyGrid load_map_server(const std::filesystem::path& yaml_file,
         continue;
       }
       const double p = negate ? level / 255.0 : 1.0 - level / 255.0;
-      // A level equal to a threshold counts as beyond it, and as free if it equals both, as in
-      // nav2_map_server.
+      // As in nav2_map_server, a level equal to a threshold counts as free or occupied, and as free
+      // if it equals both thresholds.
       grid.cells(x, y) =
           !map.clear.empty() && map.clear[pixel] ? kUnknownCell
           : p <= free                            ? kFreeCell

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// Structure, and classes that are not objects.
+/// Classes that are structure or otherwise not objects.
 constexpr std::array<ClassId, 10> kNotThings = {
     kVoid,      1 /*wall*/,     2 /*floor*/,           8 /*door*/,    9 /*window*/,
     20 /*mat*/, 22 /*ceiling*/, 38 /*otherstructure*/, 31 /*person*/, kBackground};
@@ -79,7 +79,7 @@ bool are_apart(const Detected& a, const Detected& b, const DetectedObjects& dete
 }
 
 /// Voxels that touch, corners included, unless they belong to objects that are apart. Where three
-/// objects touch and not all may merge, those with the longest border do.
+/// clusters touch but may not all merge, the two with the longest common border merge.
 std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels,
                                  const DetectedObjects& detected) {
   std::unordered_map<std::uint64_t, std::size_t> at;  // only looked up, never iterated over
@@ -128,7 +128,7 @@ std::vector<Cluster> clusters_of(const std::vector<LabeledVoxel>& voxels,
   return clusters;
 }
 
-/// Area (cells) that two clusters share, seen from above, as a share of the smaller one's.
+/// Overlap of two clusters' boxes, seen from above, as a share of the smaller box's area.
 double shared_above(const Cluster& a, const Cluster& b) {
   double shared = 1, of_a = 1, of_b = 1;
   for (int axis = 0; axis < 2; ++axis) {
@@ -147,8 +147,9 @@ void absorb(Cluster& into, const Cluster& part) {
   into.detected.insert(part.detected.begin(), part.detected.end());
 }
 
-/// Whether a cluster is a fragment of a larger one: at most a quarter of it, not apart from it,
-/// and beside it or above or below it, where depth left a gap.
+/// Whether a cluster is a fragment of a larger one: it has at most a quarter of its voxels, is not
+/// known to be apart from it, and is close beside, above or below it, where missing depth left a
+/// gap.
 bool is_fragment(const Cluster& small, const Cluster& large, const DetectedObjects& detected,
                  int gap, int stacked_gap) {
   if (4 * small.voxels.size() > large.voxels.size()) return false;
@@ -159,7 +160,7 @@ bool is_fragment(const Cluster& small, const Cluster& large, const DetectedObjec
   return apart.z() <= stacked_gap && shared_above(small, large) >= 0.5;
 }
 
-/// Gives fragments to the largest cluster that they belong to.
+/// Merges each fragment into the largest cluster that it may belong to.
 void merge_fragments(std::vector<Cluster>& clusters, const DetectedObjects& detected, int gap,
                      int stacked_gap) {
   std::ranges::stable_sort(clusters, std::ranges::greater(),
@@ -177,8 +178,8 @@ void merge_fragments(std::vector<Cluster>& clusters, const DetectedObjects& dete
   clusters = std::move(merged);
 }
 
-/// Extent of an object's votes along an axis: least and greatest index, ignoring the outermost
-/// hundredth of the votes on each side. Voxels with few votes are noise at edges.
+/// Extent of an object's votes along an axis: least and greatest index. The outermost hundredth of
+/// the votes on each side is ignored, since voxels with few votes at an object's edges are noise.
 std::pair<int, int> extent_of(const Cluster& cluster, const std::vector<LabeledVoxel>& voxels,
                               int axis) {
   std::map<int, std::uint64_t> votes;

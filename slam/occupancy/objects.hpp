@@ -14,7 +14,8 @@
 
 namespace mh {
 
-/// An object in a map: connected voxels of one class that its views showed as one detection.
+/// An object in a map: connected voxels of one class that the views did not show as separate
+/// detections.
 struct MapObject {
   std::string name;  ///< class and number, e.g. "chair 2"; unique in a map
   ClassId class_id = kVoid;
@@ -30,10 +31,11 @@ struct MapObject {
 struct ObjectsConfig {
   int min_voxels = 6;  ///< smaller clusters are label noise
   /// Voxels of one class that touch are connected, unless they belong to objects that are apart
-  /// (DetectedObjects). A cluster of at most a quarter of another's voxels, not apart from it, is
-  /// merged into it if the gap between their boxes is at most this,
+  /// (DetectedObjects). A cluster with at most a quarter of the voxels of another one is merged
+  /// into it, unless the two are apart, if the gap between their boxes is at most this,
   double gap_m = 0.10;
-  /// or this where one is above the other: the legs below a seat, whose rim is thin.
+  /// or at most this where one is above the other, such as a seat and its legs: the seat's rim is
+  /// thin.
   double stacked_gap_m = 0.25;
   double min_label_share = 0.5;  ///< of a voxel's votes that must be for its class
 };
@@ -46,8 +48,8 @@ bool is_thing(ClassId class_id);
 /// class, then by number; the largest of a class is number 1.
 std::vector<MapObject> find_objects(const VoxelMap& map, const ObjectsConfig& config = {});
 
-/// Indices of the objects meant by a name: of one object ("chair 2") or of a class ("refrigerator",
-/// synonyms too), best score first.
+/// Indices of the objects meant by a name, which is that of one object ("chair 2") or of a class
+/// ("refrigerator", synonyms too); best score first.
 /// @throws InputError with a suggestion if the name is unknown, or nothing in this map has it.
 std::vector<std::size_t> objects_named(const std::vector<MapObject>& objects,
                                        std::string_view name);

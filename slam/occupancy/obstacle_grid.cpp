@@ -33,7 +33,7 @@ void grow_to(OccupancyGrid& grid, const Vector2i& low, const Vector2i& high) {
 }
 
 /// Calls visit(cell) for the cells on the line from one place (in cells) to another, in order,
-/// without the last: Amanatides and Woo, "A fast voxel traversal algorithm", 1987.
+/// without the last cell: Amanatides and Woo, "A fast voxel traversal algorithm", 1987.
 template <class Visit>
 void for_each_cell_before(const Vector2d& from, const Vector2d& to, Visit visit) {
   Vector2i cell = from.array().floor().cast<int>();

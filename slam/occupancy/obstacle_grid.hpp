@@ -16,8 +16,9 @@ namespace mh {
 /// Which part of a map obstructs a robot. Heights above the map's z = 0.
 struct ObstacleGridConfig {
   double floor_z_m = 0.0;
-  /// Anything lower than this above the floor counts as floor. 0.10 m: two voxels; depth noise at 4
-  /// m stays below it. If a voxel is larger than this, the limit is half of this plus half a voxel.
+  /// Anything lower than this above the floor counts as floor. 0.10 m is two voxels, and more than
+  /// the depth noise at 4 m. If a voxel is larger than this, the limit is half of this plus half a
+  /// voxel.
   double ground_m = 0.10;
   double robot_height_m = 1.21;  ///< what is higher does not touch the robot
   /// A cell is free only if its free voxels begin below this height above the floor: otherwise,
@@ -31,10 +32,11 @@ struct ObstacleGridConfig {
   }
 };
 
-/// Projects the part of a map between ground and the robot's head to cells of the map's resolution:
-/// occupied if any voxel there is, so a table top is an obstacle and a lintel is not; free if none
-/// is, the lower part was seen to be free, and the free voxels have no gap (a table top without a
-/// return has free space below and above it); else unknown. Empty if nothing was seen there.
+/// Projects the part of a map between the ground and the robot's head to cells of the map's
+/// resolution. A cell is occupied if any of its voxels in this part is, so a table top is an
+/// obstacle and a lintel is not. It is free if none is occupied, the lower part was seen to be
+/// free, and the free voxels have no gap (the gap may be a table top that gave no return).
+/// Otherwise, it is unknown. The grid is empty if nothing was seen in this part.
 /// @throws InputError if the heights leave nothing between them.
 OccupancyGrid obstacle_grid(const VoxelMap& map, const ObstacleGridConfig& config = {});
 
@@ -50,7 +52,7 @@ struct RangeScan {
   std::vector<float> ranges_m;
 };
 
-/// What lasers saw on a floor, as counts per cell: a second source for a grid besides depth. Counts
+/// What lasers saw on a floor, as counts per cell: a source for a grid in addition to depth. Counts
 /// depend on the set of scans alone, not on their order.
 class ScanGrid {
  public:
@@ -59,8 +61,8 @@ class ScanGrid {
   void add_scan(const SE3& map_from_sensor, const RangeScan& scan);
   /// Adds the scans to a grid, which grows as needed: cells become occupied where the log-odds of
   /// hits and misses (VoxelMap's increments) are not negative, and free where rays passed through
-  /// and the grid is unknown. Occupied cells of the grid stay: the laser's plane passes below a
-  /// table top.
+  /// and the grid is unknown. Occupied cells of the grid remain occupied, since the laser's plane
+  /// may pass below an obstacle such as a table top.
   /// @pre the grid's origin is a multiple of its resolution, as in obstacle_grid()
   /// @throws InputError if the resolutions differ.
   void add_to(OccupancyGrid& grid) const;

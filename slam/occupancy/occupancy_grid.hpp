@@ -59,8 +59,8 @@ struct GrayImage {
 /// it
 using ImageDecoder = std::function<GrayImage(const std::string& bytes)>;
 
-/// Reads a map from its YAML file as nav2_map_server does: in mode trinary, scale or raw (which it
-/// documents), rotated or not; pixels that are not opaque are unknown except in mode raw.
+/// Reads a map from its YAML file as nav2_map_server does: in mode trinary, scale or raw, rotated
+/// or not. Pixels that are not opaque are unknown, except in mode raw.
 /// @param decode for images other than PGM; null: they are refused
 /// @param warnings  receives what was ignored: keys that map_server does not define, bytes after
 /// the image, values out of range; may be null

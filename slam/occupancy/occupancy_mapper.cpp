@@ -22,7 +22,8 @@ Camera thin(Camera camera, int stride) {
 
 constexpr std::size_t kNoPixel = SIZE_MAX;
 
-/// For each thinned, undistorted pixel, the pixel of a frame that shows the same; kNoPixel outside.
+/// For each thinned, undistorted pixel, the pixel of a frame that shows the same point; kNoPixel if
+/// that is outside the frame.
 std::vector<std::size_t> pixels_behind(const Camera& camera, const Camera& thin) {
   std::vector<std::size_t> pixels;
   for (int v = 0; v < thin.height_px; ++v)
@@ -115,8 +116,8 @@ SE3 OccupancyMapper::rounded(const SE3& map_from_camera) const {
   const auto round_to = [](Eigen::Vector3d v, double step) {
     return ((v / step).array().round() * step).matrix().eval();
   };
-  // Rotation vectors jump where the angle is pi: rotations near it are rounded to either side,
-  // and both are within the step.
+  // Rotation vectors jump where the angle is pi. A rotation near pi may be rounded to either side
+  // of the jump, but in both cases it changes by less than a step.
   return {so3_exp(round_to(so3_log(map_from_camera.rotation()), config_.pose_step_rad)),
           round_to(map_from_camera.translation(), config_.pose_step_m)};
 }

@@ -22,7 +22,7 @@ struct OccupancyConfig {
   double pose_step_m = 0.005, pose_step_rad = 0.00125;
 };
 
-/// What an update changed, in keyframes.
+/// Numbers of keyframes that an update added, moved, removed, and kept as they were.
 struct OccupancyUpdate {
   std::size_t added = 0, moved = 0, removed = 0, kept = 0;
 };
@@ -35,11 +35,11 @@ class OccupancyMapper {
   /// @throws InputError naming the setting that is out of range.
   explicit OccupancyMapper(const Camera& camera, const OccupancyConfig& config = {});
 
-  /// Keeps depth and labels of a keyframe until update() gives it a pose. A frame with a known
-  /// stamp replaces the earlier one. @throws InputError if the size is not the camera's.
+  /// Keeps depth and labels of a keyframe until update() gives it a pose. A frame replaces an
+  /// earlier one with the same stamp. @throws InputError if the size is not the camera's.
   void keep(const RgbdFrame& frame);
-  /// Makes the map agree with these poses: kept keyframes that have one are added or moved, those
-  /// without one are removed (but stay kept).
+  /// Makes the map agree with these poses: kept keyframes that have a pose are added or moved,
+  /// those without one are removed from the map (but their depth and labels are still kept).
   /// @param map_from_world  the map's frame, z up
   OccupancyUpdate update(const Trajectory& world_from_camera, const SE3& map_from_world = {});
 
@@ -49,8 +49,8 @@ class OccupancyMapper {
 
   const VoxelMap& map() const { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
-  /// Depth of a keyframe, thinned to stride_px and smoothed; nullptr if unknown. thin_camera() fits
-  /// it.
+  /// Depth of a keyframe, thinned to stride_px and smoothed; nullptr if unknown. Its camera is
+  /// thin_camera().
   const Grid2d<float>* depth_of(Stamp stamp_ns) const;
   const PixelLabels* labels_of(Stamp stamp_ns) const;
   /// Stamps of all kept keyframes, in order.

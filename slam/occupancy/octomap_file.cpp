@@ -26,8 +26,8 @@ class NodeReader {
              const std::function<void(const OctomapLeaf&)>& visit)
       : in_(in), has_color_(header.type == "ColorOcTree"), visit_(visit) {}
 
-  /// A node of an .ot file and everything below it: log-odds, color in a ColorOcTree, one bit for
-  /// each child that follows.
+  /// Reads a node of an .ot file and everything below it: log-odds, color in a ColorOcTree, then a
+  /// byte with one bit per child, set if the child follows.
   std::size_t full(OctomapLeaf cube) {
     const auto log_odds = in_.get<float>();
     if (has_color_) in_.take(3);
@@ -43,8 +43,8 @@ class NodeReader {
     return nodes;
   }
 
-  /// An inner node of a .bt file and everything below it: two bits for each child, 1 free, 2
-  /// occupied, 3 with children, which follow.
+  /// Reads an inner node of a .bt file and everything below it: two bits per child (1 free, 2
+  /// occupied, 3 an inner node), then the children that are inner nodes.
   std::size_t binary(const OctomapLeaf& cube) {
     const auto kinds = in_.get<std::uint16_t>();
     std::size_t nodes = 1;

@@ -32,9 +32,9 @@ struct Voxel {
   std::uint16_t hits = 0;    ///< views with a return in it
   std::uint16_t misses = 0;  ///< views that looked through it
   bool occupied = false;
-  ClassId label = kVoid;          ///< with the most votes, ties to the smallest id
-  std::uint16_t label_views = 0;  ///< its votes
-  std::uint32_t votes = 0;        ///< of all classes
+  ClassId label = kVoid;          ///< the class with the most votes, ties to the smallest id
+  std::uint16_t label_views = 0;  ///< number of votes for this class
+  std::uint32_t votes = 0;        ///< number of votes for any class
 
   Eigen::Vector3d center_m(double resolution_m) const {
     return resolution_m * (index.cast<double>().array() + 0.5).matrix();
@@ -68,8 +68,8 @@ class VoxelMap {
   void set_detected(DetectedObjects objects);
   const DetectedObjects& detected() const;
 
-  /// Whether z = 0 of its frame is a floor (z up). If no floor was found, the frame is a camera's,
-  /// and heights in it are meaningless. Default: true.
+  /// Whether z = 0 of the map's frame is a floor (z up). If no floor was found, the frame is a
+  /// camera's, and heights in it are meaningless. Default: true.
   void set_on_floor(bool on_floor);
   bool on_floor() const;
 
@@ -80,7 +80,7 @@ class VoxelMap {
   std::vector<ClassVote> votes_at(const Eigen::Vector3d& point_m) const;
   std::size_t voxel_count() const;
   bool empty() const { return voxel_count() == 0; }
-  /// Memory of nodes, their arrays of children and votes, without the allocator's own.
+  /// Memory of nodes, their arrays of children and votes, without the allocator's overhead.
   std::size_t memory_bytes() const;
 
   /// Writes OctoMap's binary format (each voxel free, occupied or unknown; no classes).

@@ -195,7 +195,7 @@ void read_block(CountsReader& in, VoxelTree& tree) {
   if (!tree.nodeHasChildren(&block)) in.fail("an empty block");
 }
 
-/// Adds a leaf of another program's tree: all of its voxels were seen once.
+/// Adds a leaf of another program's tree: each of its voxels counts as seen once.
 void add_leaf(VoxelTree& tree, const OctomapLeaf& leaf) {
   const int across = std::min(leaf.side, 8);  // voxels within a block
   const Eigen::Vector3i first = leaf.lowest.array() + VoxelTree::kMiddle;

@@ -13,8 +13,8 @@
 
 namespace mh {
 
-/// The votes of one voxel, ordered by class. An empty list costs only a pointer, since most voxels
-/// are free space.
+/// The votes of one voxel, ordered by class. An empty list costs only a pointer: most voxels are
+/// free space and have no votes.
 class VoteList {
  public:
   std::span<const ClassVote> all() const {
@@ -53,7 +53,7 @@ class VoxelNode : public octomap::OcTreeNode {
     value = std::min(std::max(sum, kLeastLogOdds), kMostLogOdds);
   }
   bool is_known() const { return hits > 0 || misses > 0; }
-  /// Frees the array of children. @pre all were deleted
+  /// Frees the array of children. @pre all children were deleted
   void free_children() {
     delete[] children;
     children = nullptr;
@@ -63,7 +63,7 @@ class VoxelNode : public octomap::OcTreeNode {
   VoteList votes;
 };
 
-/// An OctoMap occupancy tree of these nodes. Never pruned: equal log-odds may come from different
+/// An OctoMap occupancy tree of VoxelNodes. Never pruned: equal log-odds may come from different
 /// counts.
 class VoxelTree : public octomap::OccupancyOcTreeBase<VoxelNode> {
  public:

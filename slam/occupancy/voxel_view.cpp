@@ -31,8 +31,8 @@ struct PixelBox {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// The minimum or maximum of an image in any box, in a few lookups: the extremes of all squares
-/// whose side is a power of two (a sparse table).
+/// Finds the minimum or maximum of an image in any box with a few lookups in precomputed extremes
+/// of all squares whose side is a power of two (a sparse table).
 template <class F>
 class Extremes {
  public:
@@ -79,7 +79,7 @@ struct More {
   float operator()(float a, float b) const { return std::max(a, b); }
 };
 
-/// The image with pixels without a return set to another value.
+/// A depth image in which the pixels without a return are set to `none`.
 Grid2d<float> with_none_as(const Grid2d<float>& depth_m, float none) {
   Grid2d<float> image = depth_m;
   for (float& z : image)
@@ -169,9 +169,9 @@ std::vector<Hit> hits_of(const Grid2d<float>& depth_m, const PixelLabels& labels
   return hits;
 }
 
-/// Sets the hit voxels of a block, each with the class of most of its returns and, within this
-/// class, the detection with the most (ties to the smallest id). @returns the first hit of another
-/// block
+/// Sets the hit voxels of a block, each with the most frequent class among its returns and the most
+/// frequent detection within that class (ties to the smallest id). @returns the first hit of
+/// another block
 std::vector<Hit>::const_iterator take_hits(std::vector<Hit>::const_iterator hit,
                                            std::vector<Hit>::const_iterator end,
                                            std::uint32_t place, VoxelBlock& block) {
@@ -248,7 +248,7 @@ class Clearing {
 
   enum class AtOnce { kNothing, kEverything, kUnclear };
 
-  /// What the corners of a block decide, without testing its voxels.
+  /// What can be decided for a whole block from its corners, without testing its voxels.
   AtOnce at_once(const Vector3d& corner) const {
     const double side_m = kSide * model_.resolution_m, most_m = model_.max_range_m;
     constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -318,8 +318,8 @@ class Clearing {
 }  // namespace
 
 Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m) {
-  // The depth of neighbors on a slanted surface differs by more than the noise: up to this factor,
-  // which at 2 m is a surface seen at 20 degrees.
+  // On a slanted surface, the depths of neighbors differ by more than the noise. Up to kMostSlant
+  // times the limit for noise is accepted, which at 2 m is a surface seen at 20 degrees.
   constexpr double kLeast_m = 0.01, kMostSlant = 2.0;
   Grid2d<float> smooth(depth_m.width(), depth_m.height());
   for (int y = 0; y < depth_m.height(); ++y)
@@ -329,7 +329,8 @@ Grid2d<float> smoothed_depth(const Grid2d<float>& depth_m, double noise_per_m) {
       const double most = std::max(kLeast_m, 3 * noise_per_m * z * z);
       double sum = z, count_of = 1;
       int neighbors = 0;
-      // Opposite neighbors count together, so that the mean of a slanted plane stays on it.
+      // Opposite neighbors are averaged only as a pair, so that the mean on a slanted plane is on
+      // that plane.
       for (const auto& [u, v] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}}) {
         double pair = 0;
         int on = 0;

@@ -43,7 +43,7 @@ struct DepthModel {
   double resolution_m = 0.05;  ///< side of a voxel
   double min_range_m = 0.4;    ///< nearer returns are ignored; they are below the range of an Xtion
   /// A farther return only clears the space up to this range. 4 m: depth noise there (3 cm, Nguyen
-  /// et al., 3DIMPVT 2012) is about a voxel. At most 250 resolutions.
+  /// et al., 3DIMPVT 2012) is about a voxel. At most 250 times the resolution.
   double max_range_m = 4.0;
   /// How far around the pixel of a voxel's center the image must show nothing in the voxel or in
   /// front of it: half the side of the square that is checked, in voxels.

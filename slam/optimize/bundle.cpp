@@ -15,8 +15,8 @@ namespace {
 
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
-/// Marquardt damping, relative to the diagonal. The minimum still bounds the inverse of a point
-/// without parallax.
+/// Marquardt damping, relative to the diagonal. Even the least damping bounds the inverse of the
+/// block of a point without parallax.
 constexpr double kInitialDamping = 1e-4;
 constexpr double kLeastDamping = 1e-8;
 constexpr double kGreatestDamping = 1e12;
@@ -117,7 +117,8 @@ Workspace make_workspace(const BundleProblem& problem) {
 }
 
 /// Fixes every point that its active observations do not determine (fewer than two, and no depth),
-/// and drops those observations: marginalized, they would contribute nothing to a pose.
+/// and drops those observations: once the point is marginalized, they would contribute nothing to a
+/// pose.
 void choose_points(const BundleProblem& problem, Workspace& w) {
   for (std::size_t point = 0; point < problem.points_in_world.size(); ++point) {
     const std::uint32_t begin = w.first_observation[point];
@@ -189,7 +190,8 @@ void linearize_motion(const BundleMotion& m, const BundleProblem& problem, Works
     w.reduced.at(m.b, m.a) += weight * of_b.transpose() * of_a;
 }
 
-/// Adds one point's observations to the pose blocks and to their gradient; fills W for each.
+/// Adds one point's observations to the pose blocks and to their gradient; fills W for each
+/// observation.
 /// @returns the point's own block.
 Eigen::Matrix3d linearize_point(const Phase& phase, Workspace& w, const State& state,
                                 std::uint32_t point) {
@@ -246,7 +248,7 @@ void eliminate_point(const BundleProblem& problem, Workspace& w, std::uint32_t p
       const std::uint32_t pose_b = problem.observations[b].pose;
       if (pose_a >= pose_b)
         w.reduced.at(pose_a, pose_b).noalias() -= weighted * w.pose_point[b].transpose();
-      // The mirrored block; both if one pose sees the point twice.
+      // The mirrored block. If one pose sees the point twice, both are added.
       if (pose_a < pose_b || (pose_a == pose_b && a != b))
         w.reduced.at(pose_b, pose_a).noalias() -= w.pose_point[b] * weighted.transpose();
     }
@@ -263,7 +265,7 @@ void build_reduced_system(const Phase& phase, Workspace& w, const State& state, 
     if (!w.adjusted[point]) continue;
     Eigen::Matrix3d information = linearize_point(phase, w, state, point);
     const double trace = information.trace();
-    if (!(trace > 0)) {  // every observation is now behind its camera
+    if (!(trace > 0)) {  // the point is now behind every camera that observes it
       w.point_inverse[point].setZero();
       continue;
     }

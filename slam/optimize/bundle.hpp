@@ -53,7 +53,7 @@ struct BundleResult {
 ///
 /// Observations of points behind their camera are ignored (a step that moves a point there is
 /// penalized). A point that its observations do not determine (one, without depth) stays fixed and
-/// its observation is ignored; a pose without observations stays too.
+/// its observation is ignored; a pose without observations stays fixed, too.
 /// @pre indices within range, observations ordered by point (asserted).
 BundleResult adjust(const BundleProblem& problem, const Camera& camera,
                     const BundleConfig& config = {});

@@ -16,8 +16,10 @@ constexpr int kLeastDepths = 30;
 constexpr double kQuartile = 0.25;
 /// Three motions change depths: along the optical axis and about the two other axes.
 constexpr int kDirections = 3;
-constexpr double kQuartileChi2 = 1.2125;  // of chi-square with that many degrees of freedom
-/// Directions that the depths determine less than this share of the best are undetermined.
+constexpr double kQuartileChi2 =
+    1.2125;  // lower quartile of chi-square with kDirections degrees of freedom
+/// A direction is undetermined if the depths give it less than this share of the information that
+/// they give the best direction.
 constexpr double kLeastInformation = 1e-9;
 
 }  // namespace
@@ -56,8 +58,8 @@ std::optional<double> depth_disagreement(std::span<const PoseObservation> observ
 }
 
 double learned_disparity_sigma_px(double disparity_sigma_px, int frames, double disagreement) {
-  // The sum of the steps grows without bound, but that of their squares does not. The first steps
-  // are large enough to cross the range in a few hundred frames.
+  // The sum of the steps grows without bound, but the sum of their squares does not. The first
+  // steps are large enough to cross the range in a few hundred frames.
   constexpr double kGain = 8, kFirstFrames = 20;
   constexpr double kLeast_px = 0.03, kMost_px = 10;
   const double step = kGain / (frames + kFirstFrames);

@@ -16,7 +16,7 @@ namespace mh {
 
 // What RANSAC needs for any of OpenCV's minimal solvers.
 
-/// N different indices below count, for one iteration. @pre count >= N
+/// Draws N different indices below `count` for one iteration. @pre count >= N
 template <std::size_t N>
 std::array<std::size_t, N> draw_different(RandomStream stream, int iteration, std::size_t count) {
   std::array<std::size_t, N> drawn{}, taken{};  // `taken` is ordered
@@ -58,8 +58,8 @@ inline std::optional<SE3> finite_pose(const cv::Mat& rotation, const cv::Mat& tr
   return SE3(so3_exp(r), t);
 }
 
-/// Number of iterations after which three observations without an outlier were drawn with the given
-/// confidence (Fischler and Bolles 1981), capped at max_iterations.
+/// Number of iterations needed to draw three observations without an outlier at least once, with
+/// the given confidence (Fischler and Bolles 1981), capped at max_iterations.
 /// @param share  of observations that are inliers
 inline int iterations_needed(double share, const RansacConfig& config) {
   const double miss = 1.0 - share * share * share;

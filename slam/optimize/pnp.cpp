@@ -60,7 +60,8 @@ struct Consensus {
   int count = 0;
 };
 
-/// The pose of a random triple with which most observations agree; ties to the first.
+/// Among the poses of random triples, the one with which the most observations agree; ties to the
+/// first.
 Consensus best_consensus(std::span<const PoseObservation> observations, const Camera& camera,
                          const RansacConfig& config, const PoseConfig& gates, RandomStream stream) {
   Consensus best;
@@ -95,7 +96,7 @@ std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> ob
   if (best.count < 4) return std::nullopt;
 
   // A pose from three noisy points misses inliers that the refined one explains: refine twice on
-  // its own consensus, then classify all.
+  // its own consensus, then classify all observations.
   PoseConfig refine = gates;
   refine.min_inliers = 4;
   for (int pass = 0; pass < 2; ++pass) {

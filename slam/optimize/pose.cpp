@@ -148,7 +148,8 @@ std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> obser
     if (count < 3) return std::nullopt;
     const bool unchanged = regrouped == inlier;
     inlier.swap(regrouped);
-    // Without Huber's loss, the same set has the same minimum: further rounds change nothing.
+    // Without Huber's loss, the same inliers give the same minimum, so further rounds change
+    // nothing.
     if (unchanged && !robust) break;
   }
   if (count < needed) return std::nullopt;

@@ -41,7 +41,8 @@ struct PoseEstimate {
 /// Robust minimization of the reprojection error: argmin over T of sum rho(|pi(T X_i) - u_i|^2 /
 /// sigma_i^2), Huber rho in the first half of the rounds, left perturbation T <- exp(delta) T,
 /// analytic Jacobians.
-/// @returns nullopt below config.min_inliers or when the normal equations are singular.
+/// @returns nullopt with fewer than config.min_inliers inliers, or if the normal equations are
+/// singular.
 std::optional<PoseEstimate> estimate_pose(std::span<const PoseObservation> observations,
                                           const SE3& camera_from_world_guess, const Camera& camera,
                                           const PoseConfig& config = {});
@@ -54,7 +55,7 @@ int find_inliers(std::span<const PoseObservation> observations, const SE3& camer
 /// Pose without an initial guess: P3P (OpenCV's AP3P) on random triples inside RANSAC, inliers by
 /// the chi-square gates of `pose`, refined with its rounds and iterations. Draws depend only on the
 /// stream.
-/// @returns the best consensus, or nullopt below config.min_inliers.
+/// @returns the best consensus; nullopt if it has fewer than config.min_inliers inliers.
 std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> observations,
                                              const Camera& camera, const RansacConfig& config,
                                              const PoseConfig& pose, RandomStream stream);

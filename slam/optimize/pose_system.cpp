@@ -11,8 +11,8 @@ namespace mh {
 namespace {
 
 /// Eigen multiplies large matrices in blocks that it fits to the processor's caches, and the blocks
-/// determine the order of its sums. The same sizes everywhere (those of a small server) mean the
-/// same bits everywhere.
+/// determine the order of its sums. Setting the same block sizes everywhere (those of a small
+/// server) gives the same bits everywhere.
 [[maybe_unused]] const bool kBlocksAreTheSameEverywhere = [] {
   Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 16 << 20);
   return true;
@@ -112,8 +112,9 @@ bool PoseSystem::iterate(Eigen::VectorXd& x) const {
   Eigen::VectorXd direction = z;
   double energy = residual.dot(z);
   const double enough = kTolerance * kTolerance * energy;
-  // Exact after as many steps as unknowns; a system that needs a tenth of them is hopelessly
-  // ill-conditioned, and the step found so far is still a descent direction.
+  // Conjugate gradients are exact after as many steps as there are unknowns. A system that needs a
+  // tenth of that is hopelessly ill-conditioned; the step found so far is still a descent
+  // direction.
   const int limit = 100 + static_cast<int>(poses_) / 2;
   for (int i = 0; i < limit && energy > enough; ++i) {
     const Eigen::VectorXd image = times(direction);

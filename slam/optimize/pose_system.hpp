@@ -10,13 +10,14 @@
 namespace mh {
 
 /// The reduced system that bundle adjustment solves for the poses once points are eliminated:
-/// symmetric, positive definite, blocks of 6x6. Few poses: dense, solved by Cholesky. Many: only
-/// blocks of poses coupled by a point, solved by conjugate gradients, so that memory and time grow
-/// with the couplings and not with the square and the cube of the number of poses.
+/// symmetric, positive definite, blocks of 6x6. For few poses, it is dense and solved by Cholesky.
+/// For many, it holds only the blocks of coupled poses and is solved by conjugate gradients, so
+/// that memory and time grow with the number of couplings and not with the square and the cube of
+/// the number of poses.
 class PoseSystem {
  public:
   using Block = Eigen::Matrix<double, 6, 6>;
-  /// Up to this size, a dense matrix is small (8 MB) and factoring it is fastest.
+  /// Up to this number of poses, a dense matrix is small (8 MB), and factoring it is fastest.
   static constexpr std::uint32_t kDirectPoses = 160;
   /// Residual, relative to the right-hand side, at which conjugate gradients stop: far below the
   /// error of a Levenberg-Marquardt step.
@@ -46,8 +47,9 @@ class PoseSystem {
   Eigen::VectorXd times(const Eigen::VectorXd& x) const;
 
   std::uint32_t poses_ = 0;
-  std::vector<Block> blocks_;          // row by row
-  std::vector<std::size_t> start_;     // start of each row's blocks, plus the end; many poses only
+  std::vector<Block> blocks_;  // row by row
+  std::vector<std::size_t>
+      start_;  // start of each row's blocks, plus the end; used for many poses only
   std::vector<std::uint32_t> column_;  // of each block, ascending within a row
 };
 

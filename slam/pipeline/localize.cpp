@@ -31,7 +31,8 @@ StepReport localize(const SlamState& frozen, Tracker& tracker, const RgbdFrame& 
 }
 
 struct LocalizeMemo::Content {
-  /// Result for the winner: its pose in the local map, and the match counts on the way there.
+  /// Result of refining the winning candidate's pose in the local map, with the match counts of
+  /// this refinement.
   struct Refined {
     std::optional<SE3> camera_from_world;
     int inliers = 0;

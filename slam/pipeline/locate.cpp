@@ -76,8 +76,9 @@ std::optional<Located> follow_reckoned(const SlamState& state, const Tracker& tr
   const MapPose guess{state.map.at(tracker.reference).origin, reckoned.camera_from_world};
   if (auto located = find_near(guess, radius_px, frame, context, observers))
     if (reckoned.allows(located->tracked, config)) return located;
-  // If the pose is well known and the last frame's points should be in view, but the frame shows
-  // many features and not those points, the wheels slipped or the robot was carried away.
+  // The image does not confirm the pose. If the pose is well known, the last frame's points should
+  // be in view, and the frame shows many features, then the wheels slipped or the robot was carried
+  // away.
   constexpr double kKnown_m = 0.05, kKnown_rad = 0.03;
   if (sigma.position_m <= kKnown_m && sigma.angle_rad <= kKnown_rad &&
       static_cast<int>(frame.features.size()) >= 3 * config.min_inliers &&
@@ -156,8 +157,8 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
   if (!located) {
     located =
         search_everywhere(state, tracker, frame, stream, observers, report, known.is_possible);
-    // As long as another sensor knows the place, a match far from it is a place that only looks the
-    // same.
+    // As long as another sensor gives the camera's place, a match far from there is a different
+    // place that looks the same.
     if (located && reckoned && !reckoned->allows(located->tracked, config.track)) located.reset();
     if (!located) {
       report.relocalization = std::min(report.relocalization, RelocalizationStage::kInliers);

@@ -24,9 +24,9 @@ std::optional<Located> locate(const SlamState& state, Tracker& tracker, Prepared
                               RandomStream stream, const StepObservers& observers,
                               StepReport& report, const KnownBefore& known = {});
 
-/// Refines a pose on the local map.
+/// Refines a pose against the local map.
 /// @param origin  of the piece of the map that the pose is in
-/// @returns nullopt below `min_inliers`.
+/// @returns nullopt with fewer than `min_inliers` inliers.
 std::optional<Located> confirm_in_local_map(const PreparedFrame& frame, const TrackedPose& tracked,
                                             KeyframeId origin, int min_inliers,
                                             const SlamContext& context,

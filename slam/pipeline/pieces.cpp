@@ -17,7 +17,8 @@ KeyframeId piece_of(const SlamState& state, TrackedFrames::const_iterator frame)
   return state.map.at(frame->second.reference).origin;
 }
 
-/// The camera's pose at a later time if it moves on as in the last fifth of a second.
+/// The camera's pose at a later time if it keeps moving as in the fifth of a second before the
+/// frame.
 SE3 moved_on(const SlamState& state, TrackedFrames::const_iterator frame, Stamp stamp_ns) {
   constexpr Stamp kBefore_ns = 200'000'000;
   const SE3 now = map_pose(state, frame->second).camera_from_world;
@@ -34,7 +35,8 @@ SE3 moved_on(const SlamState& state, TrackedFrames::const_iterator frame, Stamp 
 
 /// An interval in which the camera saw nothing.
 struct Gap {
-  Eigen::Vector3d place_m;  ///< of the camera at its end, in the world of the first piece
+  Eigen::Vector3d
+      place_m;  ///< the camera's position at the end of the gap, in the world of the other piece
   double elapsed_s;
 };
 
@@ -54,11 +56,11 @@ std::optional<SE3> place_of_new_piece(const SlamState& state, Stamp stamp_ns) {
 bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& other) {
   const double max_speed_m_s = state.config.track.max_speed_m_s;
   if (max_speed_m_s == 0) return true;
-  // One standard deviation: a constant, and a part that grows per second.
+  // One standard deviation is a constant plus a part that grows with time.
   constexpr double kLeast_m = 0.15, kLeast_rad = 0.15, kTurn_rad_s = 0.25;
   constexpr double kMostSigmas = 2, kMost_rad = 1.2;
   const SE3& other_from_own = other.camera_from_world;
-  SE3 other_from_piece;   // of the piece that the camera is in, as far as it is known
+  SE3 other_from_piece;   // estimated; "piece" is the one that the camera is in
   std::vector<Gap> gaps;  // since the camera was in the other piece
   bool was_there = false;
   const auto& frames = state.tracked_frames;

@@ -9,7 +9,7 @@
 
 namespace mh {
 
-/// Reports a stage to the observers for its lifetime.
+/// Reports a stage to the observers: its begin on construction, its end on destruction.
 class InStage {
  public:
   InStage(const StepObservers& observers, Stage stage) : observers_(observers), stage_(stage) {
@@ -40,8 +40,8 @@ struct PreparedFrame {
 Features observed_features(const RgbdFrame& frame, const SlamState& state,
                            const StepObservers& observers);
 
-/// @param tracker  state after the previous frames; gives the camera's motion during a rolling
-///                 shutter
+/// @param tracker  state after the previous frames; gives the camera's motion during a
+///                 rolling-shutter readout
 PreparedFrame prepare(Stamp stamp_ns, Features features, const SlamState& state,
                       const Tracker& tracker);
 

@@ -14,7 +14,7 @@ struct Probe {
   std::optional<SE3> world_from_camera;
 };
 
-/// Tries one keyframe for a lost frame, and refines its pose in the local map.
+/// Tries one keyframe for a lost frame, and refines the resulting pose in the local map.
 /// @param frame  its words must have been computed
 /// @param stream  that of localize(): with the same draws, the winner among localize()'s candidates
 ///                gives a bit-identical answer when tried alone

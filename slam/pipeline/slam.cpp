@@ -34,7 +34,8 @@ SlamState make_slam(const Camera& camera, const SlamConfig& config,
 
 void rewind(SlamState& state) {
   Tracker& tracker = state.tracker;
-  if (tracker.last && tracker.last->odom_from_camera) {  // gives earlier frames' poses, too
+  if (tracker.last &&
+      tracker.last->odom_from_camera) {  // odometry predicts the poses of earlier frames, too
     tracker.velocity_per_s.reset();
     tracker.motion.reset();
     tracker.coasting = true;
@@ -46,7 +47,7 @@ void rewind(SlamState& state) {
 
 namespace {
 
-/// The gamma with which labels hold the requested share of the keyframes' vectors.
+/// The gamma at which labels hold the requested share of the keyframes' vectors.
 double solved_gamma(const SlamState& state, SemanticConfig settings) {
   settings.gamma = 1;
   std::vector<double> shares;

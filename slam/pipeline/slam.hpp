@@ -100,12 +100,12 @@ StepReport localize(const SlamState& frozen, const RgbdFrame& frame, RandomStrea
 /// @throws InputError naming the setting that is out of range; the state is then unchanged.
 void set_query_settings(SlamState& state, const SemanticConfig& settings);
 
-/// Where a tracked frame is in the map as it is now.
+/// The pose of a tracked frame in the current map.
 MapPose map_pose(const SlamState& state, const TrackedFrame& frame);
 
-/// Each tracked frame once (its last attempt), ordered by stamp: its pose relative to its reference
-/// keyframe, composed with that keyframe's current pose, in the world of its piece of the map. The
-/// origin of the first one is the first camera pose.
+/// The pose of each tracked frame once (from its last attempt), ordered by stamp: the pose relative
+/// to its reference keyframe, composed with that keyframe's current pose, in the world of its piece
+/// of the map. The world of the first piece has its origin at the first camera pose.
 Trajectory trajectory(const SlamState& state);
 
 }  // namespace mh

@@ -19,10 +19,12 @@
 namespace mh {
 namespace {
 
-constexpr int kMinInitialPoints = 100;  // with depth, for a frame to define the origin
+constexpr int kMinInitialPoints =
+    100;  // number of points with depth that a frame needs to define the origin
 
-/// Begins a piece of the map with a frame that has enough depth, which defines the piece's world.
-/// @param place  camera_from_world; absent: it is the origin
+/// Begins a piece of the map with a frame, if it has enough depth. The frame defines the piece's
+/// world.
+/// @param place  camera_from_world of the frame; absent: the identity
 StepReport begin_piece(SlamState& state, PreparedFrame frame, const std::optional<SE3>& place,
                        const StepObservers& observers, StepReport report) {
   const int with_depth = points_with_depth(frame.features);
@@ -44,8 +46,9 @@ StepReport begin_piece(SlamState& state, PreparedFrame frame, const std::optiona
   return report;
 }
 
-/// After a rewind, frames are shown again. A second keyframe of one image would count each of its
-/// measurements twice, as if they agreed, and the map would grow with every rewind.
+/// Whether the frame with this stamp is already a keyframe: after a rewind, frames are shown again.
+/// A second keyframe of the same image would count each measurement twice, as if two measurements
+/// agreed, and the map would grow with every rewind.
 bool is_keyframe(const Map& map, Stamp stamp_ns) {
   return std::any_of(map.keyframes().begin(), map.keyframes().end(),
                      [&](const Keyframe& k) { return !k.erased && k.stamp_ns == stamp_ns; });
@@ -83,9 +86,9 @@ bool within_reach(const SE3& camera_from_world, const SE3& other_camera_from_wor
              kLeast_rad + kMaxTurn_rad_s * elapsed_s;
 }
 
-/// Whether a frame can have a pose: it must be in the same piece of the map as the frame before or
-/// after it (the latter is known after a rewind), and within reach of those of the two that are in
-/// this piece.
+/// Whether a pose is possible for a frame. It must be in the same piece of the map as the tracked
+/// frame before or the one after it (the latter is known after a rewind), and within reach of each
+/// of these two frames that is in this piece.
 bool is_possible(const SlamState& state, Stamp stamp_ns, const MapPose& pose) {
   const auto& frames = state.tracked_frames;
   if (frames.empty()) return true;
@@ -109,7 +112,7 @@ std::optional<MapPose> earlier_pose(const SlamState& state, Stamp stamp_ns) {
   return map_pose(state, frame->second);
 }
 
-/// Counts where landmarks were expected and found: young ones that are seldom found are culled.
+/// Counts how often landmarks were expected and found: young ones that are seldom found are culled.
 void count_sightings(Map& map, const Located& located) {
   for (const LandmarkId id : located.expected) map.count_visible(id);
   for (const LandmarkId id : located.tracked.landmarks)

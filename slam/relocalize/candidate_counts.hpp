@@ -5,15 +5,17 @@
 
 namespace mh {
 
-/// Which queries computed the similarities that equation 5 summed, over all of its sums. Those of
-/// keyframes that share nothing with the query are not counted: they are 0 by definition.
+/// How many of the similarities that equation 5 summed, over all of its sums, were computed for an
+/// earlier query or for none. Similarities of keyframes that share nothing with the query are not
+/// counted: they are 0 by definition.
 struct SummedScores {
   int terms = 0;
-  int unscored = 0;            ///< 0, since no query ever computed them (NeighborScores)
-  int stale = 0;               ///< left by an earlier query (NeighborScores::kAsReleased)
-  double weight = 0;           ///< sum of all terms
-  double stale_weight = 0;     ///< of the stale ones
-  std::int64_t stale_age = 0;  ///< summed over the stale ones: queries since each was computed
+  int unscored = 0;         ///< 0, since no query ever computed them (NeighborScores)
+  int stale = 0;            ///< left by an earlier query (NeighborScores::kAsReleased)
+  double weight = 0;        ///< sum of all terms
+  double stale_weight = 0;  ///< sum of the stale terms
+  std::int64_t stale_age =
+      0;  ///< for each stale term, the number of queries since it was computed; summed
 };
 
 /// Keyframes left after each step of Algorithm 1.

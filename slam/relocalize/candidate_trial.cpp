@@ -90,7 +90,7 @@ class CandidateTrial {
     if (attempt.inliers >= config.min_inliers) attempt.stage = RelocalizationStage::kVerified;
   }
 
-  /// Radius (px) and threshold (bits) of each.
+  /// Radius (px) and threshold (bits) of each guided search.
   std::array<std::pair<float, float>, 2> guided_searches() const {
     const int loose = context_.config.match.max_distance_loose;
     return {std::pair{static_cast<float>(context_.config.relocalize.search_radius_px),

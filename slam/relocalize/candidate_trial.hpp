@@ -44,19 +44,20 @@ struct TrialGivens {
   std::optional<SE3> camera_from_world = {};
 };
 
-/// Tries one candidate keyframe as RelocalizeConfig::acceptance says.
+/// Tries one candidate keyframe by the rules of RelocalizeConfig::acceptance.
 ///
 /// `ours`: matches by words, PnP in RANSAC with depth, refinement; below min_inliers, two searches
 /// guided by the pose, however few inliers it has.
 ///
 /// `orb_slam2`, as in R. Mur-Artal and J. D. Tardos, ORB-SLAM2 (IEEE T-RO 33(5), 2017), and its
 /// released program: EPnP on four matches at a time, gated at chi2_mono without depth; a consensus
-/// has at least half of the matches, and at least ransac.min_inliers of them; as many tries as
-/// ransac.confidence demands for that share (35 for a half; the program counts with three points).
-/// Each consensus is refined. Below min_inliers, a guided search follows (10 px, 100 bits), which
-/// counts only if inliers and new matches together reach min_inliers; if between 30 and min_inliers
-/// remain, it is repeated (3 px, 64 bits). One departure: each candidate is tried to the end before
-/// the next, instead of five iterations of each in turn. Which candidate wins may differ, but not
+/// has at least half of the matches, and at least ransac.min_inliers of them; RANSAC makes as many
+/// tries as ransac.confidence demands for that share of inliers (35 for a half, computed for three
+/// points, as in the program). Each consensus is refined. Below min_inliers, a guided search
+/// follows (10 px, 100 bits), which counts only if inliers and new matches together reach
+/// min_inliers; if it leaves between 30 and min_inliers inliers, it is repeated (3 px, 64 bits).
+/// One thing differs from the program: each candidate is tried to the end before the next one,
+/// instead of five iterations of each in turn. This may change which candidate wins, but not
 /// whether one does.
 CandidateAttempt try_candidate(KeyframeId candidate, const Query& query, const SlamContext& context,
                                RandomStream stream, PlaceMatchers matchers,

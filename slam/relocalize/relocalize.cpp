@@ -131,7 +131,7 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
 
 namespace {
 
-/// The camera with the weight of depth with which candidates are tried.
+/// The camera with the depth uncertainty that is assumed while candidates are tried.
 Camera lenient(const Camera& camera, const RelocalizeConfig& config) {
   Camera camera_of_trials = camera;
   if (config.acceptance == Acceptance::kOurs)
@@ -155,8 +155,9 @@ bool is_elsewhere(const SE3& a, const SE3& b) {
          angle_between_rad(a, b) > kApart_rad;
 }
 
-/// Tries all candidates, and keeps the pose with the most inliers unless one elsewhere has at least
-/// RelocalizeConfig::rival_share of them: then the place is ambiguous.
+/// Tries all candidates, and returns the pose with the most inliers. If a pose elsewhere has at
+/// least RelocalizeConfig::rival_share of that number, the place is ambiguous, and no pose is
+/// returned.
 RelocalizationResult try_rivals(const Query& query, std::span<const KeyframeId> candidates,
                                 const SlamContext& context, RandomStream stream, AttemptMemo* memo,
                                 const IsPossible& is_possible) {

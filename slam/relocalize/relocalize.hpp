@@ -26,7 +26,7 @@ struct RelocalizationResult {
   KeyframeId keyframe;  ///< the candidate that led to the pose
 };
 
-/// N_k of equation 5: a keyframe and its best covisible ones, at most ten.
+/// N_k of equation 5: a keyframe and its best covisible keyframes, at most ten of them.
 /// @param belongs  which keyframes are eligible; empty = all
 std::vector<KeyframeId> neighborhood(const Map& map, KeyframeId k,
                                      const std::function<bool(KeyframeId)>& belongs = {});
@@ -59,8 +59,9 @@ RelocalizationResult try_candidates(const Query& query, std::span<const Keyframe
                                     PlaceMatchers matchers = {}, AttemptMemo* memo = nullptr,
                                     const IsPossible& is_possible = {});
 
-/// Chooses the candidates that relocalize() tries: select_keyframes(), with neighbors scored as
-/// RelocalizeConfig::neighbor_scores says, then `nearness` and `candidates` of SemanticConfig.
+/// Chooses the candidates that relocalize() tries: select_keyframes(), with neighbors scored
+/// according to RelocalizeConfig::neighbor_scores, then the rules `nearness` and `candidates` of
+/// SemanticConfig.
 /// @param stale_scores  of earlier queries. Read and updated only under
 /// NeighborScores::kAsReleased, and must then not be null
 KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,

@@ -96,11 +96,12 @@ AugmentedVector augmented_vector(std::span<const Label> labels,
 }
 
 /// The gamma at which labels hold the requested share of the vectors' L1 mass (equation 1), on
-/// average. With m the share at gamma = 1, it is gamma m / (gamma m + 1 - m): it grows with gamma,
-/// so that bisection finds it.
+/// average. If a vector's share is m at gamma = 1, it is gamma m / (gamma m + 1 - m) at any gamma.
+/// This grows with gamma, so bisection finds the solution.
 /// @param shares_at_one  AugmentedVector::label_mass() of each vector at gamma = 1
 /// @param wished         requested share, in [0, 1)
-/// @param most           returned where no smaller gamma is enough: some vectors have no labels
+/// @param most           returned if no smaller gamma is enough, as may happen if some vectors have
+///                       no labels
 /// @returns 0 if no vector has labels
 inline double gamma_for_label_mass(std::span<const double> shares_at_one, double wished,
                                    double most) {

@@ -27,7 +27,8 @@ struct CandidateSelection {
 /// Algorithm 1. Comparisons are strict, as in the paper. The paper leaves two points open: if
 /// several keyframes are replaced by the same best neighbor, it is kept once, with the highest
 /// score; if neighbors are equally similar, the smallest key wins.
-/// @param keyframes   all keyframes of the map; those that share nothing may be left out.
+/// @param keyframes   all keyframes of the map; those that share nothing with the view may be left
+///                    out.
 /// @param overlap     overlap(k) -> n of equation 3, 0 = nothing shared.
 /// @param neighbors   neighbors(k) -> range of keyframes: k itself and its neighbors.
 /// @param similarity  similarity(k) -> similarity of the view and keyframe k, at least 0; a larger

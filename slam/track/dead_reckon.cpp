@@ -21,7 +21,7 @@ int points_with_depth(const Features& features) {
 }
 
 bool Reckoned::allows(const TrackedPose& tracked, const TrackConfig& config) const {
-  constexpr double kMostChi2 = 30;  // 6 degrees of freedom: one in 20,000
+  constexpr double kMostChi2 = 30;  // with 6 degrees of freedom, one in 20,000 is larger
   constexpr double kMostSlip_m = 0.1, kMostSlip_rad = 0.1;
   const Vector6d off = (tracked.camera_from_world * camera_from_world.inverse()).log();
   if (tracked.inliers >= 5 * config.min_inliers && off.head<3>().norm() <= kMostSlip_m &&

@@ -25,7 +25,7 @@ struct Located {
 struct Reckoned {
   SE3 camera_from_world;
   Reckoning reckoning;
-  Matrix6d covariance;                          ///< grown since an image last determined the pose
+  Matrix6d covariance;  ///< it has grown since an image last determined the pose
   std::optional<InertialMotion> inertial = {};  ///< at this frame, if that sensor was used
 
   /// Whether a pose from an image may be that of this frame. One based on many landmarks overrules
@@ -50,14 +50,14 @@ void follow_inertially(Located& located, const std::optional<Reckoned>& reckoned
 void fuse_with_prediction(Located& located, const Tracker& tracker, Stamp stamp_ns,
                           const std::optional<Reckoned>& reckoned, const TrackConfig& config);
 
-/// Places a frame by motion alone when the last frame's points have left the image: for example a
-/// turn in so bare a corner that nothing seen before remains in view. The predicted pose must
-/// satisfy the limits of TrackConfig::sure_position_m and sure_angle_rad, and the frame itself must
-/// show enough to track the next one.
+/// Places a frame by motion alone when the last frame's points have left the image, for example
+/// after a turn in so bare a corner that nothing seen before remains in view. The predicted pose
+/// must satisfy the limits of TrackConfig::sure_position_m and sure_angle_rad, and the frame itself
+/// must show enough to track the next one.
 std::optional<Located> dead_reckon(const Tracker& tracker, Stamp stamp_ns, const Features& features,
                                    const SlamContext& context);
 
-/// Keypoints of a frame that have depth.
+/// Number of a frame's keypoints that have depth.
 int points_with_depth(const Features& features);
 
 }  // namespace mh

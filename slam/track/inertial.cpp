@@ -20,7 +20,8 @@ constexpr double kAccelNoise = 1e-2, kAccelWalk = 3e-3;  // m/s^2/sqrt(Hz), m/s^
 
 constexpr double kAnySpeed_m_per_s = 2;
 constexpr double kGyroOffset_rad_per_s = 0.03, kAccelOffset_m_per_s2 = 0.2;
-constexpr double kShaken_m_per_s2 = 1;  // how far a handheld accelerometer is from gravity
+constexpr double kShaken_m_per_s2 =
+    1;  // how far the reading of a handheld accelerometer is from gravity
 constexpr double kGravity_m_per_s2 = 9.81;
 
 constexpr double kNanosecond_s = 1e-9, kLongestGap_s = 0.1;
@@ -105,7 +106,7 @@ InertialMotion InertialMotion::begin(const ImuReading& reading, const Matrix6d& 
 
 std::optional<SE3> InertialMotion::advance(std::span<const ImuReading> readings, Stamp from_ns,
                                            Stamp to_ns) {
-  SE3 before_from_now;  // between the filter's own poses
+  SE3 before_from_now;  // transform between the filter's own poses
   Stamp at_ns = from_ns;
   const auto go_to = [&](Stamp stamp_ns, const Vector3d& turn, const Vector3d& force) {
     const double t = static_cast<double>(stamp_ns - at_ns) * kNanosecond_s;

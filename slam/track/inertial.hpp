@@ -36,12 +36,12 @@ struct InertialMotion {
   Known known(const SE3& camera_from_world) const;
 
   /// State at a pose about which nothing else is known: the velocity is unknown, and gravity is
-  /// what the accelerometer shows unless something better was learned before.
+  /// taken from the accelerometer unless a better value was learned before.
   static InertialMotion begin(const ImuReading& reading, const Matrix6d& pose_covariance,
                               const SE3& camera_from_world, const std::optional<Known>& known);
 
   /// Advances the state to a later time.
-  /// @param readings  since the last one, in order
+  /// @param readings  since the last update, in order
   /// @returns camera_now_from_camera_before, where the latter is the tracked pose; nullopt if
   /// readings are missing for too long
   std::optional<SE3> advance(std::span<const ImuReading> readings, Stamp from_ns, Stamp to_ns);

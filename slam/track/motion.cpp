@@ -11,8 +11,8 @@ namespace mh {
 namespace {
 
 // Spectral densities of the accelerations: in 1/30 s the velocity changes by 0.03 m/s and 0.1 rad/s
-// (1 m/s^2 and 3 rad/s^2, held for one frame): more than that of a robot's base or head, about that
-// of a hand.
+// (1 m/s^2 and 3 rad/s^2, held for one frame). This is more than a robot's base or head
+// accelerates, and about as much as a hand does.
 constexpr double kShiftNoise = 1.0 / 30;  // m^2/s^3
 constexpr double kTurnNoise = 9.0 / 30;   // rad^2/s^3
 
@@ -69,7 +69,7 @@ Vector6d Motion::correct(const Vector6d& seen_off, const Matrix6d& covariance) {
   velocity_covariance -= velocity_gain * pose_velocity_covariance;
   pose_velocity_covariance -= gain * pose_velocity_covariance;
   pose_covariance -= gain * pose_covariance;
-  // Rounding must not make them asymmetric.
+  // Rounding must not make the covariances asymmetric.
   pose_covariance = 0.5 * (pose_covariance + pose_covariance.transpose()).eval();
   velocity_covariance = 0.5 * (velocity_covariance + velocity_covariance.transpose()).eval();
   return gain * seen_off;

@@ -10,9 +10,10 @@
 namespace mh {
 
 /// Corrects keypoints for a rolling shutter, to the time of the middle row: each keypoint moves to
-/// where its point was seen then, by rigid motion of constant velocity; keypoints without depth by
-/// the rotation alone. Depth is assumed to be read together with its row. Rows are those of the
-/// undistorted image, which lens distortion shifts by a small share of the readout.
+/// where its point would have been seen at that time, given rigid motion of constant velocity.
+/// Keypoints without depth are moved by the rotation alone. Depth is assumed to be read together
+/// with its row. Rows are counted in the undistorted image; lens distortion shifts them, but only
+/// by a small share of the readout.
 /// @param velocity_per_s  twist of the camera: camera_from_world(t) = exp(t v) camera_from_world(0)
 /// @param readout_s       from the first row to the last; with 0, no bit changes
 void straighten(std::span<Keypoint> keypoints, const Camera& camera, const Vector6d& velocity_per_s,

@@ -55,7 +55,8 @@ std::vector<LastPoint> points_in_view(const LastFrame& last, const SE3& camera_f
   return points;
 }
 
-/// Keyframes with the number of landmarks they share with the frame, most first, then earliest.
+/// Keyframes with the number of landmarks that they share with the frame; the most first, and the
+/// earliest first among equals.
 std::vector<std::pair<KeyframeId, int>> by_shared_landmarks(const TrackedPose& tracked,
                                                             const Map& map) {
   std::vector<int> votes(map.keyframes().size(), 0);
@@ -90,8 +91,8 @@ std::optional<TrackedPose> optimize_matches(const Query& query,
     if (landmarks[point.feature].valid()) continue;
     observations.push_back(observe(point.position_in_world, query.features.keypoints[point.feature],
                                    camera, features));
-    observations.back().sigma_px *= std::numbers::sqrt2;  // its point is no more certain than the
-                                                          // corner
+    observations.back().sigma_px *=
+        std::numbers::sqrt2;  // the point's own position is as uncertain as the corner
   }
   const auto estimate = estimate_pose(observations, guess, camera, context.config.pose);
   if (!estimate) return std::nullopt;
@@ -238,7 +239,7 @@ LocalMap local_map(const TrackedPose& tracked, KeyframeId origin, const SlamCont
 
 namespace {
 
-/// Landmarks of a local map where a pose expects them.
+/// Landmarks of a local map, and where they should appear from a pose.
 struct Expected {
   std::vector<ProjectionTarget> targets;
   std::vector<LandmarkId> landmarks;  // of each target
@@ -329,8 +330,9 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, Keyfra
     if (depth <= 0 || depth > config.close_depth_m) continue;
     ++(tracked.landmarks[i].valid() ? close_tracked : close_new);
   }
-  // Bundle adjustment does not use the motion model: as a keyframe, a frame of uncertain pose would
-  // drift. But if more points are new than known, the next frame would have too little to track.
+  // Bundle adjustment does not use the motion model, so the pose of a keyframe that is uncertain
+  // from its image alone would drift. But if more close points are new than tracked, the frame may
+  // become a keyframe anyway: otherwise, the next one would have too little to track.
   if (tracked.unsure && close_new <= close_tracked) return false;
   const bool thin = close_tracked < config.min_close_tracked && close_new > config.min_close_new;
   const bool drifted =

@@ -29,25 +29,25 @@ struct TrackedPose {
 
 /// Estimates a frame's pose from the last frame and a motion guess: the last frame's landmarks, and
 /// the points behind its other keypoints with depth, are searched for where the guess puts them.
-/// @returns nullopt below TrackConfig::min_inliers_frame.
+/// @returns nullopt with fewer than TrackConfig::min_inliers_frame inliers.
 std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& last, const SE3& guess,
                                         const SlamContext& context);
 
 /// Counts the last frame's points (as in track_motion) that the guess projects far enough inside
 /// the image for a keypoint to be detected there. If there are few, the frame cannot be tracked
-/// from the last one, however well its motion is known. The border is that of the finest pyramid
-/// level.
+/// from the last one, however well its motion is known. The border's width is taken from the finest
+/// pyramid level.
 int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& map,
                             const Camera& camera);
 
 /// Estimates a frame's pose from the landmarks around a rough guess.
 /// @param radius_px  of the search at octave 0
-/// @returns nullopt below TrackConfig::min_inliers_frame.
+/// @returns nullopt with fewer than TrackConfig::min_inliers_frame inliers.
 std::optional<TrackedPose> track_near(const Query& query, const MapPose& guess, double radius_px,
                                       const SlamContext& context);
 
 /// Estimates a frame's pose by appearance: words shared with the reference keyframe.
-/// @returns nullopt below TrackConfig::min_inliers_frame.
+/// @returns nullopt with fewer than TrackConfig::min_inliers_frame inliers.
 std::optional<TrackedPose> track_reference(const Query& query, KeyframeId reference,
                                            const SE3& guess, const SlamContext& context);
 
@@ -84,8 +84,8 @@ bool needs_keyframe(const TrackedPose& tracked, const Features& features, Keyfra
 /// Optimizes a pose over matched landmarks and collects the inliers, per feature; the common last
 /// step of all tracking stages.
 /// @param passing  additional observations for features without a landmark: they constrain the pose
-///                 but are not counted in `inliers`. In a young map, landmarks alone may cover a
-///                 narrow part of the image, in which rotation and translation look the same.
+///                 but are not counted in `inliers`. In a young map, landmarks alone may cover only
+///                 a narrow part of the image, in which rotation and translation look the same.
 std::optional<TrackedPose> optimize_matches(const Query& query,
                                             const std::vector<LandmarkId>& landmarks,
                                             std::span<const PassingPoint> passing, const SE3& guess,

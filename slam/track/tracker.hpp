@@ -29,9 +29,10 @@ struct Reckoning {
   bool is_zero() const { return distance_m == 0 && turn_rad == 0; }
 };
 
-/// State of tracking between frames; Tracker{} is lost. It has two motion models: the step between
-/// the last two poses predicts where to search, since it follows a start or a stop at once; the
-/// filter over all frames gives the prediction's uncertainty, and is fused with an uncertain pose.
+/// State of tracking between frames; Tracker{} is lost. It has two motion models. The step between
+/// the last two poses predicts where to search for points, since it follows a start or a stop at
+/// once. The filter over all frames also gives the uncertainty of its prediction, which is fused
+/// with a pose that the image alone leaves uncertain.
 struct Tracker {
   std::optional<LastFrame> last;  ///< none: nothing mapped yet, or lost for longer than coast_s
                                   ///< (relocalization may still recover)

@@ -15,7 +15,7 @@ namespace {
 
 // ORB-SLAM's own reader has the same limits.
 constexpr std::uint32_t kMaxBranching = 20, kMaxDepth = 10;
-constexpr std::uint32_t kMaxScoring = 5, kMaxWeighting = 3;  // number of kinds that DBoW2 defines
+constexpr std::uint32_t kMaxScoring = 5, kMaxWeighting = 3;  // the largest that DBoW2 defines
 
 /// Parses numbers from the lines of a text, one line at a time.
 class LineReader {

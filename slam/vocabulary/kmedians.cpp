@@ -75,7 +75,7 @@ bool assign(std::span<const Descriptor> descriptors, std::span<const std::uint32
   return changed;
 }
 
-// A center without members stays where it is.
+// Moves each center to the majority of its members; a center without members is not moved.
 void recenter(std::span<const Descriptor> descriptors, std::span<const std::uint32_t> members,
               Clusters& clusters) {
   std::vector<Majority> majority(clusters.centers.size());

@@ -15,11 +15,11 @@ struct Clusters {
   std::vector<std::uint32_t> cluster_of;  ///< per descriptor: its nearest center, ties to the first
 };
 
-/// k-medians in Hamming space: seeds drawn with probability proportional to squared distance from
-/// those already drawn (k-means++, Arthur and Vassilvitskii, SODA 2007), then assignment and
-/// bitwise majority (ties give 0) alternate until assignments no longer change or `max_iterations`
-/// are reached. If there are at most k distinct descriptors, each becomes its own cluster. Clusters
-/// left without members are dropped.
+/// k-medians in Hamming space: seeds drawn with probability proportional to the squared distance
+/// from the nearest one already drawn (k-means++, Arthur and Vassilvitskii, SODA 2007), then
+/// assignment and bitwise majority (ties give 0) alternate until assignments no longer change or
+/// `max_iterations` are reached. If there are at most k distinct descriptors, each becomes its own
+/// cluster. Clusters left without members are dropped.
 /// @param members  indices into `descriptors`: what is clustered; not empty.
 /// @returns cluster_of in the order of `members`.
 Clusters cluster(std::span<const Descriptor> descriptors, std::span<const std::uint32_t> members,

@@ -74,7 +74,8 @@ class VocabularyTrainer {
       const RandomStream random = RandomStream(config_.seed).fork(pending.node);
       const Clusters clusters =
           cluster(descriptors_, pending.members, config_.branching, config_.max_iterations, random);
-      // All equal: splitting further would only make a chain. The root must have a child, though.
+      // All descriptors are equal: splitting further would only make a chain. The root must have a
+      // child, though.
       if (clusters.centers.size() == 1 && depth > 0) continue;
       add_children(pending, clusters, next);
     }
@@ -97,8 +98,9 @@ class VocabularyTrainer {
       next[first_pending + clusters.cluster_of[i]].members.push_back(parent.members[i]);
   }
 
-  // Inverse document frequency. Members were assigned to the final centers at every node, so each
-  // word is that of the descriptors that formed it, and every word occurs in some image.
+  // Computes the inverse document frequencies. At every node, descriptors were assigned to the
+  // final centers, so quantizing a training descriptor gives the word that it helped to form, and
+  // every word occurs in some image.
   void weigh_words(const Vocabulary& unweighted) {
     std::vector<std::uint32_t> images_with(tree_.idf.size(), 0);
     std::vector<std::uint32_t> last_image(tree_.idf.size(), UINT32_MAX);

@@ -16,7 +16,7 @@ struct VocabularyTree {
   std::uint32_t branching = 0;             ///< maximum children of a node, 2 to 255
   std::uint32_t depth = 0;                 ///< levels below the root
   std::uint32_t images = 0;                ///< number of training images; 0 = unknown
-  std::uint64_t descriptors = 0;           ///< number in these images; 0 = unknown
+  std::uint64_t descriptors = 0;           ///< number of descriptors in these images; 0 = unknown
   std::vector<Descriptor> centers;         ///< of each node; the root's is zero
   std::vector<std::uint8_t> child_counts;  ///< of each node; 0 = a word
   std::vector<float> idf;                  ///< of each word, in the order of their nodes
