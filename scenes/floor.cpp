@@ -101,7 +101,7 @@ class Columns {
     std::ranges::copy_if(samples, std::back_inserter(some), &Sample::labeled);
     return with_headroom(some);
   }
-  /// Samples that one could stand on: with headroom above, and among the things.
+  /// Samples that one could stand on: with enough headroom, and within the extent of the things.
   std::vector<Sample> standable() const {
     std::vector<Sample> some = with_headroom(samples);
     std::erase_if(some, [&](const Sample& sample) { return !among_things(point(sample)); });

@@ -38,8 +38,8 @@ bool claims_too_much(std::string_view bytes);
 /// uses them, and libpng prints warnings about them to stderr. Other bytes are unchanged.
 std::string without_remarks(std::string_view bytes);
 
-/// Pixel format to decode to: channels (in OpenCV's order) and bit depth as stored, three 8-bit
-/// channels, or one 8-bit channel.
+/// Pixel format to decode to: as stored (the file's bit depth and number of channels, in OpenCV's
+/// order), three 8-bit channels, or one 8-bit channel.
 enum class ImageForm { kStored, kColor, kGray };
 
 /// Decodes an image of any kind that OpenCV reads, or a TGA (only as stored). All image decoding in

@@ -24,7 +24,7 @@ struct WrittenAudit {
 WrittenAudit write_audit(const std::filesystem::path& out, const Suite& suite,
                          const std::optional<std::filesystem::path>& cache);
 
-/// Removes an audit of other runs from a folder of results, and reports that.
+/// Removes an audit of other runs from a folder of results, and says so on standard error.
 void forget_other_audit(const std::filesystem::path& out);
 
 }  // namespace mh::cli

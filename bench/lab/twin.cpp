@@ -51,7 +51,7 @@ PosedFrames::PosedFrames(std::unique_ptr<Sequence> all, const SE3& scene_from_re
     : all_(std::move(all)) {
   for (std::size_t i = 0; i < all_->size() && index_.size() < at_most; ++i) {
     const QueryMoment moment = moment_of(all_->stamp_ns(i), all_->truth());
-    // The path of a shutter is a motion, so its stamps must increase.
+    // The twin's camera moves along these poses (Shutter), so their stamps must increase.
     if (!moment.true_world_from_camera ||
         (!poses_.empty() && moment.stamp_ns <= poses_.back().stamp_ns)) {
       ++left_out_;

@@ -57,7 +57,8 @@ class UsableFrames {
   /// Returns frame i; nullopt if it cannot be shown.
   /// @throws InputError if none of the first kHopeless requested frames can be shown.
   std::optional<RgbdFrame> frame(std::size_t i, RandomStream noise);
-  /// Call it at the end. @throws InputError if frames were requested and none could be shown.
+  /// Call this after the last frame. @throws InputError if frames were requested and none could be
+  /// shown.
   void require_any() const;
   const SkippedFrames& skipped() const { return skipped_; }
 

@@ -123,8 +123,8 @@ bool Layout::inside(const Footprint& footprint) const {
 bool Layout::belong_together(const LayoutItem& item, std::size_t i) const {
   const LayoutItem& other = items_[i];
   if (item.under == i) return true;
-  // The boxes of a chair that is pushed under a table and of a thing on the table may intersect:
-  // the chair's back, its only part that is that high, is next to the table.
+  // If a chair is pushed under a table, its box may intersect the box of a thing on the table: the
+  // only part of the chair that reaches that high is its back, which is next to the table.
   if (item.under && other.on == item.under) return true;
   if (item.on && other.under == item.on) return true;
   for (std::optional<std::size_t> below = item.on; below; below = items_[*below].on)

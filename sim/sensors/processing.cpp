@@ -40,7 +40,7 @@ std::array<Curve, 3> luma_shares(const Curve& curve) {
 
 void take_luma(std::span<const Rgb8> color, const std::array<Curve, 3>& shares, float* luma) {
   std::size_t x = 0;
-  // Eight pixels, four bytes each: the last byte is the next pixel's.
+  // Loads four bytes for each of eight pixels; the fourth byte belongs to the next pixel.
   const __m256i places = _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21),
                 byte = _mm256_set1_epi32(255);
   for (; x + 9 <= color.size(); x += 8) {

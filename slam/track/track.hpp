@@ -35,8 +35,8 @@ std::optional<TrackedPose> track_motion(const Query& query, const LastFrame& las
 
 /// Counts the last frame's points (as in track_motion) that the guess projects far enough inside
 /// the image for a keypoint to be detected there. If there are few, the frame cannot be tracked
-/// from the last one, however well its motion is known. The border's width is taken from the finest
-/// pyramid level.
+/// from the last one, however well its motion is known. "Far enough" is the margin that keypoints
+/// keep from the border at the finest pyramid level.
 int count_that_can_be_found(const LastFrame& last, const SE3& guess, const Map& map,
                             const Camera& camera);
 

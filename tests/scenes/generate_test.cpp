@@ -174,8 +174,8 @@ TEST(Generate, PicturesOfOneRuleDiffer) {
   EXPECT_EQ(images.size(), pictures);
 }
 
-// Where the robot's center can be, found from the triangles alone: cells where nothing at heights
-// between rugs and the robot's head is closer to the center than the robot's radius.
+// The cells where the robot's center can be, found from the triangles alone: whatever is higher
+// than a rug and lower than the robot's head is farther away than the robot's radius.
 cv::Mat free_floor(const Scene& scene, double radius_m, double cell_m) {
   Eigen::Vector2d high(0, 0);
   for (const Eigen::Vector2d& p : scene.rooms[0].polygon_m) high = high.cwiseMax(p);

@@ -115,8 +115,8 @@ class ViewsOf {
             {"candidates", std::move(tried)}};
   }
 
-  /// The matches by words with a keyframe. Each has two bytes per coordinate of the query's end and
-  /// of the keyframe's end, and a byte of flags.
+  /// The query's matches with a keyframe that were found by words. Each has two bytes per
+  /// coordinate of the query's end and of the keyframe's end, and a byte of flags.
   std::string pairs(KeyframeId k, const MatchTrace& matches, const Features& features,
                     const TrueView& view) const {
     const Keyframe& keyframe = frozen_.map.at(k);

@@ -13,8 +13,8 @@ namespace mh {
 /// episodes as "held_out.success", "episodes.success".
 std::span<const Metric> all_metrics();
 
-/// Returns a metric of a set of queries or of episodes under its name among the metrics of a run,
-/// "held_out.success".
+/// Renames a metric of a query set or of episodes to what it is called among a run's metrics, for
+/// example "success" to "held_out.success".
 Metric under(std::string_view questions, Metric metric);
 
 /// Finds a metric that the gate may judge; nullptr if there is none with that name.

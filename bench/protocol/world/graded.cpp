@@ -136,7 +136,7 @@ GradedQuery clip_of(const Candidate& candidate, const QueryGrade& grade, double 
   return query;
 }
 
-/// The cells of a draw while they are being filled.
+/// A cell while it is being filled with drawn queries.
 struct Cell {
   GradedCell counts;
   std::vector<std::pair<Candidate, QueryGrade>> queries;

@@ -503,7 +503,7 @@ TEST_F(CommandLine, ARenderingThatWroteNothingDoesNotBindTheNext) {
 
 TEST_F(CommandLine, PosesOfAFileAreRenderedExactlyWhereTheyAre) {
   const fs::path mesh = write("m.obj", "v 0 0 0\nv 5 0 0\nv 5 5 0\nv 0 5 0\no floor\nf 1 2 3 4\n");
-  // Cameras 2 m above the floor that look down; one of them is beyond the floor's edge.
+  // Cameras that look down from 2 m above the floor; one of them is beyond the floor's edge.
   const fs::path poses = write("poses.tum",
                                "1305031229.5287 1 1 2 1 0 0 0\n1305031229.7 2.25 1.5 2 1 0 0 0\n"
                                "1305031230 -7 1.5 2 1 0 0 0\n");

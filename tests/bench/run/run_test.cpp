@@ -221,8 +221,8 @@ TEST(RunOne, PutsTheQueriesUnderEachPoint) {
   for (const PointResult& point : runs[0].points) EXPECT_EQ(point.held_out.size(), 5u);
 }
 
-// A unit of work is one frame or one query under one point: 150 frames + 3 points x (5 + 3)
-// queries.
+// A unit of work is one frame, or one query at one point of the sweep: 150 frames + 3 points x (5 +
+// 3) queries.
 TEST(RunOne, ReportsTheShareOfItsWorkThatIsDone) {
   Place place;
   vary_alpha(place.suite);

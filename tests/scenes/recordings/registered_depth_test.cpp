@@ -48,7 +48,7 @@ TEST(RegisteredDepth, GoesThroughBothLenses) {
         if (registered(u, v) == 0) continue;
         ++met;
         EXPECT_EQ(registered(u, v), 3);
-        // Where the ray to the color pixel's point meets the depth image.
+        // Where the color pixel's ray appears in the depth image.
         const Eigen::Vector2d ray = color.distortion.undistorted((u - color.cx_px) / color.fx_px,
                                                                  (v - color.cy_px) / color.fy_px);
         const Eigen::Vector2d seen = depth.camera.distortion.distorted(ray.x(), ray.y());

@@ -80,7 +80,7 @@ TEST(Imu, TurnsByThePathsRotationBetweenAnyTwoPoses) {
   const auto readings = imu_along(path, exact(), RandomStream(1)).readings;
   double worst_rad_per_s = 0;
   for (const ImuReading& r : readings) {
-    // Computed from small differences of a_path()'s own formula.
+    // The expected rate is computed by finite differences from a_path()'s own formula.
     const double t = static_cast<double>(r.stamp_ns - 1'000'000'000) * 1e-9, h = 1e-5;
     if (t < 0.1 || t > 1.8) continue;
     const auto rotation = [](double s) -> Eigen::Matrix3d {

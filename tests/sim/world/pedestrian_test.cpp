@@ -76,7 +76,8 @@ TEST(Pedestrian, HasAPersonsSize) {
   }
 }
 
-/// A camera at 1 m that looks along x at a wall 5 m away, and a pedestrian who crosses at 3 m.
+/// A camera at a height of 1 m, looking along x at a wall 5 m away, and a pedestrian who crosses
+/// its view 3 m away.
 class PedestrianSceneTest : public testing::Test {
  protected:
   PedestrianSceneTest() {
