@@ -40,8 +40,8 @@ std::string read_sequence(const YamlReader& node, const SuitePaths& paths, int i
   if (reader.is_of_folders() && !is_folder(found))
     node.fail(fmt::format("'{}' is not a folder", found.string()));
   if (topics && !reader.has_topics)
-    topics->fail(
-        fmt::format("'{}': a recording of layout '{}' has none", topics->as_string(), reader.name));
+    topics->fail(fmt::format("'{}': a recording of layout '{}' has no topics", topics->as_string(),
+                             reader.name));
   return source;
 }
 

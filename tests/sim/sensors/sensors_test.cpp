@@ -660,7 +660,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
   third_line("detector: {recall: 1}", "recall");
   third_line("fog: {enabled: true}", "fog");
   third_line("lens_blurr: {sigma_px: 1}", "lens_blur'");
-  third_line("lens_blur: {sigma: 1}", "is 'sigma' meant");
+  third_line("lens_blur: {sigma: 1}", "is 'sigma' a typo for it");
   EXPECT_EQ(message(both + "motion_blur: {enabled: false, exposure_ms: 5}\nvignetting: {}\n"),
             "accepted");
   std::filesystem::remove(file);
