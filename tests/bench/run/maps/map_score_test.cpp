@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/run/maps/map_study.hpp"
+#include "sim/render/renderer.hpp"
 #include "tests/slam/pipeline/feature_world.hpp"
 
 namespace mh {
