@@ -67,6 +67,7 @@ TEST_F(BoxFiles, OfCocoAreFoundByIndexOrStamp) {
 TEST_F(BoxFiles, OfYoloAreSharesOfTheImage) {
   const auto boxes = open("yolo/000003.txt", "56 0.25 0.6 0.3 0.4 0.8\n");
   expect_chair(boxes->detect(image_, 3, 0));
+  EXPECT_TRUE(boxes->description().starts_with("YOLO text: 1 box of ")) << boxes->description();
 }
 
 TEST_F(BoxFiles, OfMotCountFromOne) {

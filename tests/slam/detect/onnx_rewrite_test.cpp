@@ -236,6 +236,30 @@ TEST(OnnxShapes, JoinWhatDiffersAlongOneAxisAlone) {
   EXPECT_FALSE(joined({1, 2}));
 }
 
+TEST(OnnxShapes, OfPoolsOverAllKeepImagesAndChannels) {
+  const OnnxShape in = {2, 3, 5, 7};
+  OnnxNode pool;
+  pool.op = "GlobalAveragePool";
+  pool.inputs = {"a"}, pool.outputs = {"b"};
+  EXPECT_EQ(output_shapes({pool, 17, {&in}, {nullptr}}).at(0), (OnnxShape{2, 3, 1, 1}));
+}
+
+TEST(OnnxShapes, CutEachAxisByStepsOfOneUnlessOthersAreGiven) {
+  const OnnxShape in = {4, 6}, two = {2};
+  const OnnxTensor starts{two, false, {1, 2}}, ends{two, false, {4, 6}}, steps{two, false, {2, 3}};
+  OnnxNode slice;
+  slice.op = "Slice";
+  slice.inputs = {"a", "starts", "ends"}, slice.outputs = {"b"};
+  EXPECT_EQ(output_shapes({slice, 17, {&in, &two, &two}, {nullptr, &starts, &ends}}).at(0),
+            (OnnxShape{3, 4}));
+  slice.inputs = {"a", "starts", "ends", "", "steps"};
+  EXPECT_EQ(
+      output_shapes(
+          {slice, 17, {&in, &two, &two, nullptr, &two}, {nullptr, &starts, &ends, nullptr, &steps}})
+          .at(0),
+      (OnnxShape{2, 2}));
+}
+
 // Fields of 8 and of 4 bytes, which newer exporters may add, are skipped as a whole.
 TEST(Protobuf, PassesOverFieldsOfFixedSize) {
   const std::string eight(

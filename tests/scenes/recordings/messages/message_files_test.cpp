@@ -327,6 +327,22 @@ TEST(Bag, NamesATopicInItsConnectionsHeaderAndData) {
   EXPECT_EQ(4 + header_bytes + 4 + number_at(kMagic + 4 + header_bytes), 4096u);
 }
 
+TEST(Bag, ThatIsEncryptedIsRefused) {
+  const TemporaryFolder work(fs::temp_directory_path());
+  const auto out = write_bag(work.path() / "out/file", ChunkCompression::kNone);
+  out->write(out->add_topic(topic_spec<ros::Bool>("/flag", out->wire())), 1, "x");
+  out->finish();
+  std::string bag = read_file(work.path() / "out/file");
+  const std::string header{"\x21\0\0\0\x04\0\0\0op=\x03\x15\0\0\0encryptor=rosbag/None", 37};
+  bag.replace(13, 4096, header + std::string(4, '\0'));
+  try {
+    read_all(bag);
+    ADD_FAILURE() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("encrypted"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Bag, OfBz2ByRosIsRead) {
   const Read read =
       read_all(read_file(std::string(MH_SOURCE_DIR) + "/tests/fuzz/seeds/bag/bz2.bag"));
