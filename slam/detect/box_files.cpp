@@ -132,10 +132,7 @@ int whole(double value, const char* what, const std::string& place) {
 /// Calls visit(place, numbers) for each line that is neither empty nor a comment.
 template <class Visit>
 void for_each_line(const fs::path& file, const char* columns, const Visit& visit) {
-  std::string lines = read_text(file);
-  if (lines.find('\n') == lines.npos)
-    std::ranges::replace(lines, '\r', '\n');  // line ends of old Macs
-  std::istringstream text(lines);
+  std::istringstream text(read_text(file));
   int number = 0;
   for (std::string line; std::getline(text, line);) {
     const std::string place = fmt::format("{}:{}", file.string(), ++number);
