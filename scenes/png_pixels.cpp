@@ -118,7 +118,10 @@ cv::Mat decode_plain_png(std::string_view bytes) {
   const auto png = read_chunks(bytes);
   if (!png) return {};
   const std::size_t size = static_cast<std::size_t>(png->width) * png->pixel_bytes();
-  std::vector<Byte> rows((size + 1) * static_cast<std::size_t>(png->height));
+  const std::size_t all = (size + 1) * static_cast<std::size_t>(png->height);
+  constexpr std::size_t kMostOfAByte = 1032;  // to which deflate expands one
+  if (all / kMostOfAByte > png->compressed.size()) return {};
+  std::vector<Byte> rows(all);
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflate(
       libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
   if (inflate == nullptr ||

@@ -123,6 +123,9 @@ TEST_P(Png, DamagedPixelsAreLeftToOpenCv) {
     decode_plain_png(damaged);  // the sanitizers watch
     decode_plain_png(whole.substr(0, at));
   }
+  std::string huge = whole;
+  huge[17] = huge[21] = '\x0f';  // a million pixels wide and high, of which nothing is allocated
+  EXPECT_TRUE(decode_plain_png(huge).empty());
   EXPECT_TRUE(decode_plain_png("not an image").empty());
   EXPECT_TRUE(decode_plain_png("").empty());
 }
