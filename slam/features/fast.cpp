@@ -54,12 +54,6 @@ Bytes excess(Bytes a, Bytes b) {
   return {_mm256_subs_epu8(a.v, b.v)};
 }
 
-template <class T>
-T filled(Byte value) {
-  T all;
-  std::memset(&all, value, sizeof all);
-  return all;
-}
 // Calls work.operator()<T>(x) so that the calls cover [0, count). With T = Bytes, a call covers
 // kChunk pixels, and the last chunk overlaps the one before. If there are fewer than kChunk pixels,
 // T is Byte, and a call covers one pixel.
@@ -159,7 +153,8 @@ void mark_maxima(const Rows& contrast, int count, Byte threshold, Byte* marks) {
     const T sides = high(at(row - 1), at(row + 1));
     const T up = high(at(above), high(at(above - 1), at(above + 1)));
     const T down = high(at(below), high(at(below - 1), at(below + 1)));
-    const T limit = filled<T>(threshold);
+    T limit;
+    std::memset(&limit, threshold, sizeof limit);
     store(marks + x, excess(at(row), high(high(limit, sides), high(up, down))));
   });
 }

@@ -74,21 +74,6 @@ float depth_at(const Grid2d<float>& depth_m, int x, int y, double max_depth_m) {
   return sum / static_cast<float>(in_front);
 }
 
-/// Prefetches the patches around a corner, which lie scattered in memory.
-void prefetch(const PyramidLevel& level, const Corner& corner, const RgbdFrame& frame) {
-  constexpr int kReach_px = 16;
-  for (const cv::Mat* image : {&level.image, &level.blurred})
-    for (int v = -kReach_px; v <= kReach_px; ++v) {
-      const std::uint8_t* row = image->ptr<std::uint8_t>(corner.y + v) + corner.x;
-      __builtin_prefetch(row - kReach_px);
-      __builtin_prefetch(row + kReach_px);
-    }
-  if (frame.depth_m.empty()) return;
-  const int x = static_cast<int>(corner.x * level.scale_x);
-  const int y = static_cast<int>(corner.y * level.scale_y);
-  for (int v = -1; v <= 1; ++v) __builtin_prefetch(&frame.depth_m(x, y + v));
-}
-
 void append(const PyramidLevel& level, int octave, const Corner& corner, const RgbdFrame& frame,
             double max_depth_m, Features& features) {
   const cv::Point2f peak = peak_of(level.image, corner);
@@ -131,10 +116,8 @@ Features extract(const RgbdFrame& frame, const Camera& camera, const FeatureConf
   features.keypoints.reserve(static_cast<std::size_t>(config.count));
   features.descriptors.reserve(static_cast<std::size_t>(config.count));
   for (std::size_t l = 0; l < pyramid.size(); ++l)
-    for (std::size_t i = 0; i < corners[l].size(); ++i) {
-      if (i + 1 < corners[l].size()) prefetch(pyramid[l], corners[l][i + 1], frame);
-      append(pyramid[l], static_cast<int>(l), corners[l][i], frame, config.max_depth_m, features);
-    }
+    for (const Corner& corner : corners[l])
+      append(pyramid[l], static_cast<int>(l), corner, frame, config.max_depth_m, features);
   undistort(camera, features.keypoints);
   return features;
 }
