@@ -13,16 +13,12 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/png_chunks.hpp"
+
 namespace mh {
 namespace {
 
 using Byte = std::uint8_t;
-
-std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<Byte>(bytes[at + i]);
-  return value;
-}
 
 struct PlainPng {
   int width = 0, height = 0, channels = 1, bytes_per_channel = 1;
@@ -34,16 +30,16 @@ struct PlainPng {
 
 /// Reads the header and joins the data; nullopt if the PNG is of a kind that is not decoded here.
 std::optional<PlainPng> read_chunks(std::string_view bytes) {
-  constexpr std::size_t kSignature = 8, kHeader = 13;
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return std::nullopt;
+  constexpr std::size_t kHeader = 13;
+  if (!bytes.starts_with(kPngSignature)) return std::nullopt;
   PlainPng png;
-  for (std::size_t at = kSignature; at + 12 <= bytes.size();) {
-    const std::size_t length = big_endian(bytes, at);
-    if (length > bytes.size() - at - 12) return std::nullopt;
-    const std::string_view type = bytes.substr(at + 4, 4), data = bytes.substr(at + 8, length);
+  std::string_view left = png_chunks(bytes);
+  while (const auto chunk = next_png_chunk(left)) {
+    const auto& [type, data, summed, checksum] = *chunk;
     if (type == "IHDR") {
-      if (at != kSignature || length != kHeader) return std::nullopt;
-      const std::uint32_t width = big_endian(data, 0), height = big_endian(data, 4);
+      const bool is_first = png.width == 0 && png.compressed.empty();
+      if (!is_first || data.size() != kHeader) return std::nullopt;
+      const std::uint32_t width = big_endian_32(data, 0), height = big_endian_32(data, 4);
       const int bits = data[8], color = data[9];
       const bool is_plain =
           ((bits == 8 && (color == 0 || color == 2)) || (bits == 16 && color == 0)) &&
@@ -56,10 +52,10 @@ std::optional<PlainPng> read_chunks(std::string_view bytes) {
       png.compressed += data;
     } else if (type == "IEND") {
       return png.width > 0 ? std::optional(std::move(png)) : std::nullopt;
-    } else if (type == "tRNS" || (type != "PLTE" && type[0] >= 'A' && type[0] <= 'Z')) {
+    } else if (png.width == 0 || type == "tRNS" ||
+               (type != "PLTE" && type[0] >= 'A' && type[0] <= 'Z')) {
       return std::nullopt;
     }
-    at += 12 + length;
   }
   return std::nullopt;
 }
