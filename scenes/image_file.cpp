@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/png_chunks.hpp"
 #include "scenes/png_pixels.hpp"
 #include "scenes/tga.hpp"
 #include "slam/io/error.hpp"
@@ -72,14 +73,12 @@ bool jpeg_is_whole(std::string_view bytes) {
 
 /// Checks a PNG's chunks up to IEND, with their checksums.
 const char* png_fault(std::string_view bytes) {
-  for (std::size_t at = 8; at + 12 <= bytes.size();) {
-    const std::size_t length = big_endian(bytes, at, 4);
-    if (length > bytes.size() - at - 12) break;
-    const auto* typed = reinterpret_cast<const Bytef*>(bytes.data() + at + 4);
-    if (crc32(0, typed, static_cast<uInt>(length + 4)) != big_endian(bytes, at + 8 + length, 4))
+  std::string_view left = png_chunks(bytes);
+  while (const auto chunk = next_png_chunk(left)) {
+    const auto* summed = reinterpret_cast<const Bytef*>(chunk->summed.data());
+    if (crc32(0, summed, static_cast<uInt>(chunk->summed.size())) != chunk->checksum)
       return "is damaged: its checksum is wrong";
-    if (bytes.substr(at + 4, 4) == "IEND") return nullptr;
-    at += 12 + length;
+    if (chunk->type == "IEND") return nullptr;
   }
   return "is truncated";
 }

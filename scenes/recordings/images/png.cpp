@@ -14,6 +14,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "scenes/png_chunks.hpp"
+
 namespace mh {
 namespace {
 
@@ -112,17 +114,12 @@ std::string with_text(std::string png, std::string_view keyword, std::string_vie
 }
 
 std::string text_in(std::string_view png, std::string_view keyword) {
-  constexpr std::size_t kHead_bytes = 8, kChunk_bytes = 12;  // length, name and sum of a chunk
-  for (std::size_t at = kHead_bytes; at + kChunk_bytes <= png.size();) {
-    std::size_t length = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      length = length << 8 | static_cast<unsigned char>(png[at + i]);
-    if (length > png.size() - at - kChunk_bytes) break;
-    const std::string_view content = png.substr(at + 8, length);
-    if (png.substr(at + 4, 4) == "tEXt" && content.starts_with(keyword) &&
-        content.size() > keyword.size() && content[keyword.size()] == '\0')
+  std::string_view left = png_chunks(png);
+  while (const auto chunk = next_png_chunk(left)) {
+    const std::string_view content = chunk->data;
+    if (chunk->type == "tEXt" && content.starts_with(keyword) && content.size() > keyword.size() &&
+        content[keyword.size()] == '\0')
       return std::string(content.substr(keyword.size() + 1));
-    at += kChunk_bytes + length;
   }
   return {};
 }
