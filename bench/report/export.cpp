@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/report/table2.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/results/rows.hpp"
 #include "bench/store/store.hpp"
@@ -54,23 +55,45 @@ std::string latex_cell(std::string_view text) {
   return safe;
 }
 
-/// "& ATE m & RPE m/fr": the headings of the figures in an overview.
-template <class Score>
-std::string latex_overview_headings() {
+/// "& ATE m & RPE m/fr": the headings of a trajectory's figures in an overview.
+std::string latex_trajectory_headings() {
   std::string text;
-  for (const Figure& figure : figures_of(Score()))
+  for (const Figure& figure : figures_of(TrajectoryScore()))
     if (figure.metric.in_overview) text += " & " + latex_cell(figure.metric.heading);
   return text;
 }
 
-std::string latex_overview(const std::vector<Figure>& figures, bool known) {
+/// "& 0.0123 & 87.50\,\%"; "& -- & --" if no trial succeeded.
+std::string latex_trajectory(const TrajectoryScore& score, bool known) {
   std::string text;
-  for (const Figure& figure : figures) {
+  for (const Figure& figure : figures_of(score)) {
     if (!figure.metric.in_overview) continue;
     std::string cell = known ? shown(figure) : "-";
     if (cell == "-") cell = "--";
     if (cell.ends_with('%')) cell.replace(cell.size() - 1, 1, "\\,\\%");
     text += " & " + cell;
+  }
+  return text;
+}
+
+/// "& success (\%) & mean distance (m)": the headings of Table 2's columns.
+std::string latex_query_headings() {
+  std::string text;
+  for (const Table2Column& column : kTable2Columns)
+    text +=
+        " & " + latex_cell(column.unit.empty() ? std::string(column.title)
+                                               : fmt::format("{} ({})", column.title, column.unit));
+  return text;
+}
+
+/// The cells of Table 2's columns; "--" each if nothing was asked.
+std::string latex_queries(const QuerySummary& summary) {
+  std::string text;
+  for (const Table2Column& column : kTable2Columns) {
+    const auto value = summary.queries > 0 ? column.measured(summary) : std::nullopt;
+    text +=
+        value ? fmt::format(" & {:.{}f}", (column.unit == "%" ? 100 : 1) * *value, column.decimals)
+              : " & --";
   }
   return text;
 }
@@ -177,8 +200,8 @@ std::string export_latex(const Store& store) {
   const BenchResults results = load_results(store, suite);
   const std::vector<SharedSlamConfig> points = parameter_points(suite);
   std::string headings = "environment & level & labels & system & " + latex_headings(suite.sweep) +
-                         "trials" + latex_overview_headings<TrajectoryScore>() + " & queries" +
-                         latex_overview_headings<QuerySummary>();
+                         "trials" + latex_trajectory_headings() + " & query set" +
+                         latex_query_headings();
   const auto columns = static_cast<std::size_t>(std::ranges::count(headings, '&')) + 1;
   std::string text = fmt::format("\\begin{{tabular}}{{llll{}}}\n\\toprule\n{} \\\\\n\\midrule\n",
                                  std::string(columns - 4, 'r'), headings);
@@ -200,10 +223,9 @@ std::string export_latex(const Store& store) {
     head += row.trials.size() == trials ? fmt::format("{}", trials)
                                         : fmt::format("{} of {}", row.trials.size(), trials);
     if (row.failed > 0) head += fmt::format(", {} failed", row.failed);
-    head += latex_overview(figures_of(row.trajectory), !row.trials.empty());
+    head += latex_trajectory(row.trajectory, !row.trials.empty());
     const auto add_row = [&](std::string_view set, const QuerySummary& summary) {
-      text += head + " & " + latex_cell(set) +
-              latex_overview(figures_of(summary), summary.queries > 0) + " \\\\\n";
+      text += head + " & " + latex_cell(set) + latex_queries(summary) + " \\\\\n";
     };
     bool asked = false;
     for (const QuerySet set : kQuerySets) {
