@@ -26,6 +26,8 @@ inline constexpr Table2Column kTable2Columns[] = {
      [](const QuerySummary& s) { return std::optional(s.queries); }},
     {"success", "success", "%", 2, [](const QuerySummary& s) { return std::optional(s.success); },
      &PublishedRow::success, "Reloc. success (%)"},
+    {"success_in_map", "success where mapped", "%", 2,
+     [](const QuerySummary& s) { return s.success_in_map; }, nullptr, "Where mapped (%)"},
     {"correct", "correct", "%", 2, [](const QuerySummary& s) { return s.correct; }, nullptr,
      "Correct (%)"},
     {"false_positive", "false pos.", "%", 2,

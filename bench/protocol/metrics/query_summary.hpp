@@ -34,7 +34,8 @@ struct QuerySummary {
   /// Shares of all queries; absent if none can be judged because the truth is unknown.
   std::optional<double> correct, false_positive;
   std::optional<double> in_map;          ///< share of queries whose place is in the map
-  std::optional<double> success_in_map;  ///< share of those queries that were answered
+  std::optional<double> success_in_map;  ///< share of those queries that were answered: mapping and
+                                         ///< relocalization told apart
   /// Distance to the local truth, over the answered queries; absent if none was answered.
   std::optional<double> distance_mean_m, distance_median_m;
   std::optional<double> aligned_distance_mean_m;  ///< the same, in the globally aligned frame
@@ -60,7 +61,11 @@ void fields(S& summary, Visit& v) {
   v(Metric{"correct", "correct", "%", 2, kMore, "queries", true}, correct);
   v(Metric{"false_positive", "false pos.", "%", 2, kLess, "queries", true}, false_positive);
   v(Metric{.name = "in_map", .heading = "in map", .unit = "%", .decimals = 2}, in_map);
-  v(Metric{.name = "success_in_map", .heading = "success there", .unit = "%", .decimals = 2},
+  v(Metric{.name = "success_in_map",
+           .heading = "where mapped",
+           .unit = "%",
+           .decimals = 2,
+           .in_overview = true},
     success_in_map);
   v(Metric{"distance_mean_m", "mean m", "m", 4, kLess, "", true}, distance_mean_m);
   v(Metric{"distance_median_m", "median m", "m", 4, kLess}, distance_median_m);

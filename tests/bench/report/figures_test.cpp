@@ -148,22 +148,24 @@ Cells below(const std::string& text, const Cells& heading, const std::string& na
 
 TEST_F(Figures, OfTheTextTableStandUnderTheirHeadings) {
   const std::string table = results_table(suite_, runs_);
-  const Cells held_out = {"held out",      "success", "correct",  "false pos.", "in map",
-                          "success there", "mean m",  "median m", "aligned m",  "attempts"};
+  const Cells held_out = {"held out",     "success", "correct",  "false pos.", "in map",
+                          "where mapped", "mean m",  "median m", "aligned m",  "attempts"};
   EXPECT_EQ(below(table, held_out, "semantic"),
-            (Cells{"semantic", "75.00%", "62.50%", "12.50%", "-", "-", "0.2000", "0.0350", "0.7000",
-                   "2.25"}))
+            (Cells{"semantic", "75.00%", "62.50%", "12.50%", "87.50%", "71.43%", "0.2000", "0.0350",
+                   "0.7000", "2.25"}))
       << table;
-  EXPECT_EQ(below(table, held_out, "plain"), (Cells{"plain", "62.50%", "25.00%", "37.50%", "-", "-",
-                                                    "0.5000", "0.4500", "0.6250", "2.75"}));
+  EXPECT_EQ(below(table, held_out, "plain"),
+            (Cells{"plain", "62.50%", "25.00%", "37.50%", "87.50%", "57.14%", "0.5000", "0.4500",
+                   "0.6250", "2.75"}));
   Cells second_tour = held_out;
   second_tour[0] = "2nd tour";
   EXPECT_EQ(below(table, second_tour, "semantic"),
-            (Cells{"semantic", "60.00%", "40.00%", "20.00%", "-", "-", "0.2400", "0.0700", "0.4900",
-                   "3.20"}))
+            (Cells{"semantic", "60.00%", "40.00%", "20.00%", "80.00%", "50.00%", "0.2400", "0.0700",
+                   "0.4900", "3.20"}))
       << table;
-  EXPECT_EQ(below(table, second_tour, "plain"), (Cells{"plain", "80.00%", "20.00%", "60.00%", "-",
-                                                       "-", "0.7000", "0.7500", "1.0750", "2.40"}));
+  EXPECT_EQ(below(table, second_tour, "plain"),
+            (Cells{"plain", "80.00%", "20.00%", "60.00%", "80.00%", "75.00%", "0.7000", "0.7500",
+                   "1.0750", "2.40"}));
 }
 
 TEST_F(Figures, OfTheTextTablesHeadAreSuccessCorrectAndMeanDistance) {
@@ -171,12 +173,16 @@ TEST_F(Figures, OfTheTextTablesHeadAreSuccessCorrectAndMeanDistance) {
   const std::size_t second = table.find("  second tour, 5 queries\n");
   ASSERT_NE(second, std::string::npos) << table;
   EXPECT_NE(table.find("  held-out frames (the paper's way), 8 queries\n"), std::string::npos);
-  const Cells heading = {"Reloc. success (%)", "Correct (%)", "Average distance (m)"};
-  EXPECT_EQ(below(table, heading, "semantic"), (Cells{"semantic", "75.00", "62.50", "0.2000"}));
-  EXPECT_EQ(below(table, heading, "plain"), (Cells{"plain", "62.50", "25.00", "0.5000"}));
+  const Cells heading = {"Reloc. success (%)", "Where mapped (%)", "Correct (%)",
+                         "Average distance (m)"};
+  EXPECT_EQ(below(table, heading, "semantic"),
+            (Cells{"semantic", "75.00", "71.43", "62.50", "0.2000"}));
+  EXPECT_EQ(below(table, heading, "plain"), (Cells{"plain", "62.50", "57.14", "25.00", "0.5000"}));
   const Cells of_second = {"second tour, 5 queries"};
-  EXPECT_EQ(below(table, of_second, "semantic"), (Cells{"semantic", "60.00", "40.00", "0.2400"}));
-  EXPECT_EQ(below(table, of_second, "plain"), (Cells{"plain", "80.00", "20.00", "0.7000"}));
+  EXPECT_EQ(below(table, of_second, "semantic"),
+            (Cells{"semantic", "60.00", "50.00", "40.00", "0.2400"}));
+  EXPECT_EQ(below(table, of_second, "plain"),
+            (Cells{"plain", "80.00", "75.00", "20.00", "0.7000"}));
 }
 
 TEST_F(Figures, OfQueriesHaveNoHeadWhereNothingWasAsked) {
@@ -268,17 +274,30 @@ TEST_F(Figures, OfTableOneAreMeansOverScenes) {
     if (run.spec.environment.name == "nook" && run.spec.system.kind == SystemKind::kPlain)
       run = made_up_run(run.spec, kSemantic);
   const std::string table = results_table(two, runs);
-  const Cells heading = {
-      "environments",      "system",  "scenes",     "ATE m",  "RPE m/fr",          "complete",
-      "held out: success", "correct", "false pos.", "mean m", "2nd tour: success", "correct",
-      "false pos.",        "mean m"};
-  const Cells semantic = {"rooms",  "semantic", "2",      "0.0111", "0.00333", "87.50%", "75.00%",
-                          "62.50%", "12.50%",   "0.2000", "60.00%", "40.00%",  "20.00%", "0.2400"};
+  const Cells heading = {"environments",
+                         "system",
+                         "scenes",
+                         "ATE m",
+                         "RPE m/fr",
+                         "complete",
+                         "held out: success",
+                         "correct",
+                         "false pos.",
+                         "where mapped",
+                         "mean m",
+                         "2nd tour: success",
+                         "correct",
+                         "false pos.",
+                         "where mapped",
+                         "mean m"};
+  const Cells semantic = {"rooms",  "semantic", "2",      "0.0111", "0.00333", "87.50%",
+                          "75.00%", "62.50%",   "12.50%", "71.43%", "0.2000",  "60.00%",
+                          "40.00%", "20.00%",   "50.00%", "0.2400"};
   EXPECT_EQ(below(table, heading, "rooms"), semantic) << table;
   // The plain system's line is the next one.
   EXPECT_EQ(below(table, semantic, "rooms"),
             (Cells{"rooms", "plain", "2", "0.0333", "0.00555", "75.00%", "68.75%", "43.75%",
-                   "25.00%", "0.3500", "70.00%", "30.00%", "40.00%", "0.4700"}))
+                   "25.00%", "64.29%", "0.3500", "70.00%", "30.00%", "40.00%", "62.50%", "0.4700"}))
       << table;
   // Each figure is a mean over two scenes, so it is half of the difference in the first room. The
   // -0.2 is for the second tour.
@@ -332,12 +351,12 @@ TEST_F(Figures, OfTheJsonsRowsHaveTheirNames) {
   EXPECT_EQ(semantic["mapping"], nlohmann::json::parse(R"({"failures": 0.0, "restarts": 6.0,
       "dropped": 7.0, "penalized": null})"));
   EXPECT_EQ(semantic["held_out"], nlohmann::json::parse(R"({"queries": 8.0, "success": 0.75,
-      "correct": 0.625, "false_positive": 0.125, "in_map": null, "success_in_map": null, "distance_mean_m": 0.2, "distance_median_m": 0.035,
+      "correct": 0.625, "false_positive": 0.125, "in_map": 0.875, "success_in_map": 0.714285714286, "distance_mean_m": 0.2, "distance_median_m": 0.035,
       "aligned_distance_mean_m": 0.7, "attempts": 2.25, "candidates": {"keyframes": 120.0,
       "c1": 60.0, "c2": 30.0, "c3": 12.0, "final": 4.0, "single": 0.375, "label_mass": 0.31,
       "gamma": 1.75, "unscored": 0.11, "stale": 0.22, "stale_weight": 0.33, "stale_age": 4.4}})"));
   EXPECT_EQ(semantic["second_tour"], nlohmann::json::parse(R"({"queries": 5.0, "success": 0.6,
-      "correct": 0.4, "false_positive": 0.2, "in_map": null, "success_in_map": null, "distance_mean_m": 0.24, "distance_median_m": 0.07,
+      "correct": 0.4, "false_positive": 0.2, "in_map": 0.8, "success_in_map": 0.5, "distance_mean_m": 0.24, "distance_median_m": 0.07,
       "aligned_distance_mean_m": 0.49, "attempts": 3.2, "candidates": {"keyframes": 100.0,
       "c1": 64.0, "c2": 32.0, "c3": 16.0, "final": 2.4, "single": 0.2, "label_mass": 0.17,
       "gamma": 0.85, "unscored": null, "stale": null, "stale_weight": null,
@@ -361,7 +380,7 @@ TEST_F(Figures, OfTheJsonsRunsHaveTheirNames) {
   nlohmann::json query = run["points"][0]["held_out"][5];  // a false answer
   for (const char* pose : {"truth", "estimate"}) query.erase(pose);
   EXPECT_EQ(query, nlohmann::json::parse(R"({"frame": 179, "stamp_ns": 179, "success": true,
-      "correct": false, "false_positive": true, "in_map": null, "map": 0, "stage": "verified", "attempts": 3, "blank_frames": 0,
+      "correct": false, "false_positive": true, "in_map": true, "map": 0, "stage": "verified", "attempts": 3, "blank_frames": 0,
       "distance_m": 1.0, "angle_deg": 10.0, "aligned_distance_m": 1.5, "candidates":
       {"keyframes": 120, "c1": 60, "c2": 30, "c3": 12, "final": 5, "label_mass": 0.31, "gamma": 1.75,
       "unscored": 0.11, "stale": 0.22, "stale_weight": 0.33, "stale_age": 4.4},
@@ -439,16 +458,16 @@ TEST_F(Figures, OfTheLatexTableStandUnderTheirHeadings) {
                             "RPE m/fr", "complete", "query set", "queries per environment",
                             "success (\\%)", "correct (\\%)", "false pos. (\\%)",
                             "mean distance (m)", "median distance (m)", "attempts"}));
-  EXPECT_EQ(rows[1],
-            (Cells{"den", "pepper", "exact", "semantic", "1", "0.0111", "0.00333", "87.50\\,\\%",
-                   "held\\_out", "8.0", "75.00", "62.50", "12.50", "0.2000", "0.0350", "2.25"}));
-  EXPECT_EQ(rows[2],
-            (Cells{"den", "pepper", "exact", "semantic", "1", "0.0111", "0.00333", "87.50\\,\\%",
-                   "second\\_tour", "5.0", "60.00", "40.00", "20.00", "0.2400", "0.0700", "3.20"}));
-  EXPECT_EQ(rows[3],
-            (Cells{"den", "pepper", "exact", "plain", "1", "0.0555", "0.00777", "62.50\\,\\%",
-                   "held\\_out", "8.0", "62.50", "25.00", "37.50", "0.5000", "0.4500", "2.75"}));
-  EXPECT_EQ(rows[4][11], "20.00");
+  EXPECT_EQ(rows[1], (Cells{"den", "pepper", "exact", "semantic", "1", "0.0111", "0.00333",
+                            "87.50\\,\\%", "held\\_out", "8.0", "75.00", "71.43", "62.50", "12.50",
+                            "0.2000", "0.0350", "2.25"}));
+  EXPECT_EQ(rows[2], (Cells{"den", "pepper", "exact", "semantic", "1", "0.0111", "0.00333",
+                            "87.50\\,\\%", "second\\_tour", "5.0", "60.00", "50.00", "40.00",
+                            "20.00", "0.2400", "0.0700", "3.20"}));
+  EXPECT_EQ(rows[3], (Cells{"den", "pepper", "exact", "plain", "1", "0.0555", "0.00777",
+                            "62.50\\,\\%", "held\\_out", "8.0", "62.50", "57.14", "25.00", "37.50",
+                            "0.5000", "0.4500", "2.75"}));
+  EXPECT_EQ(rows[4][12], "20.00");
 }
 
 TEST_F(Figures, OfALatexTableHaveNamesThatLatexCanTypeset) {

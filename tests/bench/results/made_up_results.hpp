@@ -12,7 +12,7 @@
 namespace mh {
 
 /// Answers to one set of queries: the first ones are correct, the next ones false, the rest
-/// unanswered.
+/// unanswered. The first query's place is in no map.
 struct MadeUpAnswers {
   int correct = 0;
   std::vector<double> distances_m;   ///< of the answered queries
@@ -55,6 +55,7 @@ inline std::vector<QueryScore> made_up_queries(const MadeUpAnswers& a) {
                            .stale_weight = a.stale_weight,
                            .stale_age = a.stale_age};
     q.answer.stage = a.unanswered;
+    q.in_map = i > 0;
     if (i < a.distances_m.size()) {
       q.success = true;
       q.correct = i < static_cast<std::size_t>(a.correct);
