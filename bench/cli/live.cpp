@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "bench/cli/arguments.hpp"
 #include "bench/cli/commands.hpp"
+#include "bench/cli/ros_output.hpp"
 #include "bench/cli/scene_option.hpp"
 #include "bench/cli/usual_cache.hpp"
 #include "bench/live/live_drive.hpp"
@@ -16,6 +19,7 @@
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/shipped.hpp"
+#include "slam/io/files.hpp"
 
 namespace mh::cli {
 namespace {
@@ -23,8 +27,40 @@ namespace {
 struct LiveArguments {
   std::string scene, robot = "pepper", level = "pepper", vocabulary = "vocabulary";
   LiveAddress address{.port = 8642};
+  std::filesystem::path out;
   std::uint64_t seed = 0;
   bool fast = false;
+};
+
+constexpr const char* kScript = "driven.yaml";
+
+/// What is driven, in a folder: messages as NAME.mcap, and the commands since the robot was last
+/// put down, as a script.
+class LiveRecording {
+ public:
+  LiveRecording(const std::filesystem::path& out, const std::vector<TopicSpec>& topics)
+      : out_(out),
+        folder_(out, "live", {ros_file("mcap", out).filename().string(), kScript}),
+        file_(RosOption().open("mcap", out)) {
+    for (const TopicSpec& topic : topics) topics_.push_back(file_->add_topic(topic));
+  }
+  void add(const CommandScript& driven, const std::vector<MessageLog::Entry>& messages) {
+    driven_ = driven;
+    for (const MessageLog::Entry& entry : messages)
+      file_->write(topics_[entry.topic], entry.stamp_ns, entry.message);
+  }
+  void finish() {
+    file_->finish();
+    write_atomically(out_ / kScript, commands_text(driven_));
+    fmt::print("live: recorded in {}\n", out_.string());
+  }
+
+ private:
+  std::filesystem::path out_;
+  OutputFolder folder_;
+  std::unique_ptr<MessageWriter> file_;
+  std::vector<std::uint16_t> topics_;
+  CommandScript driven_;
 };
 
 std::string new_token() {
@@ -49,14 +85,15 @@ void run(LiveArguments options) {
   if (options.address.host != "127.0.0.1" && options.address.token.empty())
     options.address.token = new_token();
 
-  LiveServer server(
-      options.address, data_folder() / "bench/live/page", [&] { return drive.greeting(); },
-      [&](const std::string& message) {
-        const std::string why = drive.take(message);
-        return why.empty() ? "" : nlohmann::json{{"error", why}}.dump();
-      });
+  LiveServer server(options.address,
+                    {.page = data_folder() / "bench/live/page",
+                     .greeting = [&] { return drive.greeting(); },
+                     .take = [&](const std::string& command) { return drive.take(command); },
+                     .topics = drive.topics()});
   fmt::print("live: {}\n", server.url());
   std::fflush(stdout);
+  std::optional<LiveRecording> recording;
+  if (!options.out.empty()) recording.emplace(options.out, drive.topics());
 
   const SignalWatch watch;
   using Clock = std::chrono::steady_clock;
@@ -64,7 +101,11 @@ void run(LiveArguments options) {
       std::chrono::duration<double>(LiveDrive::kStep_s));
   auto due = Clock::now();
   while (watch.signal() == 0) {
-    LiveDrive::Shown shown = drive.step(server.viewers() > 0);
+    LiveDrive::Shown shown =
+        drive.step((server.viewers() > 0 ? LiveDrive::kPage : 0) |
+                   (server.subscriptions() > 0 || recording ? LiveDrive::kMessages : 0));
+    if (recording) recording->add(drive.driven(), shown.messages);
+    server.send_messages(std::move(shown.messages));
     if (!shown.state.empty()) {
       server.send_text(std::move(shown.state));
       char kind = 0;
@@ -75,6 +116,7 @@ void run(LiveArguments options) {
     due = std::max(due + period, Clock::now() - period);
     if (!options.fast) std::this_thread::sleep_until(due);
   }
+  if (recording) recording->finish();
 }
 
 }  // namespace
@@ -98,6 +140,10 @@ void add_live(CLI::App& app) {
                       "Address to listen on; any other than 127.0.0.1 requires a token");
   command->add_option("--token", options->address.token,
                       "Token required from every browser (default: random if one is required)");
+  command->add_option("--out", options->out,
+                      "Folder that receives what is driven: all messages as NAME.mcap, and the "
+                      "commands since the last kidnapping as driven.yaml, for motion "
+                      "commands:FILE");
   command->add_option("--seed", options->seed, "Seed of the start and of all noise")
       ->check(seed_number());
   command->add_flag("--fast", options->fast, "Runs as fast as the machine can, not in real time");

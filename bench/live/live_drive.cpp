@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,9 @@
 #include "bench/protocol/episodes/starts.hpp"
 #include "bench/report/drawing/false_colors.hpp"
 #include "scenes/image_file.hpp"
+#include "scenes/recordings/frame_files.hpp"
+#include "scenes/recordings/ros/names.hpp"
+#include "sim/motion/floor_grid.hpp"
 #include "slam/core/labels.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/json_text.hpp"
@@ -49,14 +54,16 @@ SimulationConfig config_of(const SimulatedScene& scene, const Robot& robot, std:
           .seed = seed};
 }
 
-Grid2d<Rgb8> colors_of(const SemanticImage& semantics, int width, int height) {
-  Grid2d<Rgb8> image(width, height);
-  if (semantics.index.empty()) return image;
-  std::vector<Rgb8> color_of;
-  for (const ClassDistribution& entry : semantics.palette)
-    color_of.push_back(class_color(entry.most_probable()));
-  std::transform(semantics.index.begin(), semantics.index.end(), image.begin(),
-                 [&](std::uint8_t k) { return color_of[k]; });
+/// The classes of a frame's pixels; void everywhere in the dark.
+Grid2d<ClassId> classes_of(const RgbdFrame& frame) {
+  if (frame.semantics.index.empty())
+    return Grid2d<ClassId>(frame.color.width(), frame.color.height());
+  return class_image(frame.semantics);
+}
+
+Grid2d<Rgb8> colors_of(const Grid2d<ClassId>& classes) {
+  Grid2d<Rgb8> image(classes.width(), classes.height());
+  std::ranges::transform(classes, image.begin(), class_color);
   return image;
 }
 
@@ -81,7 +88,43 @@ LiveDrive::LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfi
       vocabulary_(std::move(vocabulary)),
       seed_(seed),
       simulation_(scene_, robot_, level_, config_of(scene_, robot_, seed)),
-      slam_(make_slam(with_lens(robot.camera, level), {}, vocabulary_)) {}
+      camera_messages_(log_, with_lens(robot.camera, level), true),
+      robot_messages_(log_, robot_, true, robot.equipment.has_value(), false),
+      slam_topics_{.pose = log_.add_topic<ros::PoseStamped>("/slam/pose"),
+                   .keyframes = log_.add_topic<ros::Path>("/slam/keyframes"),
+                   .landmarks = log_.add_topic<ros::PointCloud2>("/slam/landmarks")},
+      slam_(make_slam(with_lens(robot.camera, level), {}, vocabulary_)) {
+  try {
+    robot_messages_.add_grid(make_floor_grid(*scene_.scene, {.top_m = robot_.height_m}), SE3(), 0);
+  } catch (const InputError&) {  // a scene without a floor has no grid
+  }
+  put_down();
+}
+
+void LiveDrive::put_down() {
+  const SE3 world_from_base = simulation_.truth().world_from_base();
+  const Eigen::Vector3d ahead = world_from_base.rotation().col(0);
+  driven_ = {.name = "driven",
+             .file = {},
+             .start_m = world_from_base.translation().head<2>(),
+             .start_heading_rad = std::atan2(ahead.y(), ahead.x()),
+             .reflex = false};
+}
+
+void LiveDrive::note(const Twist2d& velocity) {
+  const VelocityCommand command{.duration_s = kStep_s,
+                                .forward_m_per_s = velocity.x(),
+                                .left_m_per_s = velocity.y(),
+                                .turn_rad_per_s = velocity.z()};
+  std::vector<VelocityCommand>& all = driven_.commands;
+  const bool is_same = !all.empty() && all.back().forward_m_per_s == command.forward_m_per_s &&
+                       all.back().left_m_per_s == command.left_m_per_s &&
+                       all.back().turn_rad_per_s == command.turn_rad_per_s;
+  if (is_same)
+    all.back().duration_s += kStep_s;
+  else
+    all.push_back(command);
+}
 
 std::string LiveDrive::greeting() const {
   Json rooms = Json::array(), things = Json::array(), names = Json::array();
@@ -186,6 +229,7 @@ void LiveDrive::obey(const Asked& asked) {
     const auto [place_m, heading_rad] =
         draw_place(*scene_.scene, robot_, RandomStream(seed_).fork(++carried_));
     simulation_.carry_to(place_m, heading_rad);
+    put_down();
     dark_steps_ = kDarkSteps;
     lifted_ = true;
   }
@@ -193,7 +237,7 @@ void LiveDrive::obey(const Asked& asked) {
   if (dark_steps_ > 0) --dark_steps_;
 }
 
-LiveDrive::Shown LiveDrive::step(bool is_watched) {
+LiveDrive::Shown LiveDrive::step(int wanted) {
   Asked asked;
   {
     const std::lock_guard lock(mutex_);
@@ -210,6 +254,7 @@ LiveDrive::Shown LiveDrive::step(bool is_watched) {
   }
   obey(asked);
   const RobotObservation seen = simulation_.step(asked.velocity, kStep_s);
+  note(asked.velocity);
   if (!seen.frame) return {};
   RgbdFrame frame = *seen.frame;
   if (wheels_ && !lifted_) frame.odom_from_camera = seen.odom_from_camera;
@@ -219,12 +264,75 @@ LiveDrive::Shown LiveDrive::step(bool is_watched) {
   if (!world_from_map_ && report.world_from_camera)
     world_from_map_ =
         simulation_.truth_of_frame()->world_from_camera * report.world_from_camera->inverse();
-  if (!is_watched) return {};
-  return {.state = state(seen, report),
-          .color = encode_jpeg(frame.color, kJpegQuality),
-          .depth = encode_jpeg(colors_of(frame.depth_m), kJpegQuality),
-          .labels = encode_jpeg(
-              colors_of(frame.semantics, frame.color.width(), frame.color.height()), kJpegQuality)};
+  Shown shown;
+  if ((wanted & kMessages) != 0) shown.messages = messages(seen, report);
+  if ((wanted & kPage) != 0) {
+    shown.state = state(seen, report);
+    shown.color = encode_jpeg(frame.color, kJpegQuality);
+    shown.depth = encode_jpeg(colors_of(frame.depth_m), kJpegQuality);
+    shown.labels = encode_jpeg(colors_of(classes_of(frame)), kJpegQuality);
+  }
+  return shown;
+}
+
+std::vector<MessageLog::Entry> LiveDrive::messages(const RobotObservation& seen,
+                                                   const StepReport& report) {
+  const ExactFrame frame{*seen.frame, classes_of(*seen.frame), seen.instances,
+                         simulation_.truth_of_frame()->world_from_camera};
+  const Stamp frame_ns = frame.seen.stamp_ns;
+  std::vector<MessageLog::Entry> all = log_.take_entries();  // the grid, once
+  const auto append = [&](std::vector<MessageLog::Entry> more) {
+    std::ranges::move(more, std::back_inserter(all));
+  };
+  if (!has_told_) append(camera_messages_.once(frame_ns));
+  has_told_ = true;
+  append(camera_messages_.of(frames_, frame));
+  const ros::Header header{static_cast<std::uint32_t>(frames_), {frame_ns}, ros::kMapFrame};
+  if (world_from_map_ && report.world_from_camera)
+    log_.add(
+        slam_topics_.pose, frame_ns,
+        ros::PoseStamped{header, ros::pose_message(*world_from_map_ * *report.world_from_camera)});
+  if (frames_ % kStepsPerMap == 1 && world_from_map_) {
+    ros::Path path{header, {}};
+    for (const Keyframe& keyframe : slam_.map.keyframes())
+      if (!keyframe.erased)
+        path.poses.push_back(
+            {header, ros::pose_message(*world_from_map_ * keyframe.camera_from_world.inverse())});
+    log_.add(slam_topics_.keyframes, frame_ns, path);
+    add_landmarks(header);
+  }
+  const SE3 world_from_base = simulation_.truth().world_from_base();
+  robot_messages_.add({seen.stamp_ns, world_from_base, world_from_base * robot_.base_from_camera,
+                       seen.odom_from_base, &seen.reading});
+  append(log_.take_entries());
+  return all;
+}
+
+void LiveDrive::add_landmarks(const ros::Header& header) {
+  struct Point {
+    float x, y, z;
+    std::uint8_t blue, green, red, none;  // the field "rgb", as PCL packs it
+    std::uint32_t label;
+  };
+  std::vector<Point> points;
+  for (const Landmark& landmark : slam_.map.landmarks()) {
+    if (landmark.erased) continue;
+    const Eigen::Vector3f at = (*world_from_map_ * landmark.position_in_world).cast<float>();
+    const Rgb8 color = class_color(landmark.label);
+    points.push_back({at.x(), at.y(), at.z(), color.b, color.g, color.r, 0, landmark.label});
+  }
+  ros::PointCloud2 cloud;
+  cloud.header = header;
+  cloud.width = static_cast<std::uint32_t>(points.size());
+  cloud.points = {{"x", offsetof(Point, x)},
+                  {"y", offsetof(Point, y)},
+                  {"z", offsetof(Point, z)},
+                  {"rgb", offsetof(Point, blue)},
+                  {"label", offsetof(Point, label), ros::PointField::kUint32}};
+  cloud.point_step = sizeof(Point);
+  cloud.row_step = static_cast<std::uint32_t>(sizeof(Point) * points.size());
+  cloud.data = {reinterpret_cast<const char*>(points.data()), sizeof(Point) * points.size()};
+  log_.add(slam_topics_.landmarks, header.stamp.ns, cloud);
 }
 
 std::string LiveDrive::state(const RobotObservation& seen, const StepReport& report) const {

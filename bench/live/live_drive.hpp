@@ -6,7 +6,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "scenes/recordings/messages/robot_types.hpp"
+#include "scenes/recordings/ros/camera_messages.hpp"
+#include "sim/motion/commands.hpp"
+#include "sim/world/robot_messages.hpp"
 #include "sim/world/simulation.hpp"
 #include "slam/pipeline/slam.hpp"
 
@@ -30,13 +35,23 @@ class LiveDrive {
   /// @returns why the message was not understood; empty if it was understood
   std::string take(const std::string& message);
 
-  /// What to show after a step; empty if there is no viewer.
+  /// What to show after a step; empty what nobody wants.
   struct Shown {
-    std::string state;                 ///< JSON
-    std::string color, depth, labels;  ///< JPEG
+    std::string state;                        ///< JSON
+    std::string color, depth, labels;         ///< JPEG
+    std::vector<MessageLog::Entry> messages;  ///< what a ROS 2 robot would publish, by stamp
   };
+  enum Wanted { kNothing = 0, kPage = 1, kMessages = 2 };
   /// Drives and maps for kStep_s of simulated time.
-  Shown step(bool is_watched = true);
+  /// @param wanted  any of Wanted, combined by |
+  Shown step(int wanted = kPage);
+
+  /// The topics of the messages: those of `drive` and `render`, and what SLAM made of them:
+  /// `/slam/pose`, and once a second `/slam/keyframes` and `/slam/landmarks`.
+  const std::vector<TopicSpec>& topics() const { return log_.topics(); }
+  /// The commands since the robot was last put down, as a script that `drive` repeats
+  /// (`commands:FILE`).
+  const CommandScript& driven() const { return driven_; }
 
  private:
   struct Asked {
@@ -47,7 +62,11 @@ class LiveDrive {
     std::optional<double> gamma, xi;
   };
   void obey(const Asked& asked);
+  void put_down();
+  void note(const Twist2d& velocity);
   std::string state(const RobotObservation& seen, const StepReport& report) const;
+  std::vector<MessageLog::Entry> messages(const RobotObservation& seen, const StepReport& report);
+  void add_landmarks(const ros::Header& header);
 
   SimulatedScene scene_;
   Robot robot_;
@@ -55,7 +74,15 @@ class LiveDrive {
   std::shared_ptr<const Vocabulary> vocabulary_;
   std::uint64_t seed_;
   Simulation simulation_;
+  CommandScript driven_;
+  MessageLog log_{ros::Wire::kCdr};
+  CameraMessages camera_messages_;
+  RobotMessages robot_messages_;
+  struct {
+    std::size_t pose, keyframes, landmarks;
+  } slam_topics_;
   SlamState slam_;
+  bool has_told_ = false;              ///< what messages say once
   std::optional<SE3> world_from_map_;  ///< known from the first tracked frame on
   std::uint64_t frames_ = 0, carried_ = 0;
   int dark_steps_ = 0;  ///< number of steps until the light is on again

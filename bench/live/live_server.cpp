@@ -7,7 +7,9 @@
 #include <cctype>
 #include <chrono>
 #include <deque>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -21,7 +23,9 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <nlohmann/json.hpp>
 
+#include "bench/live/foxglove.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 
@@ -36,7 +40,7 @@ using Tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
 constexpr std::size_t kMostConnections = 256, kMostViewers = 32, kMostQueued = 16,
-                      kMostMessageBytes = 4096, kMostHeaderBytes = 8192;
+                      kMostMessageBytes = 4096, kMostFoxgloveBytes = 65536, kMostHeaderBytes = 8192;
 constexpr auto kRequestTime = std::chrono::seconds(5);
 
 struct PageFile {
@@ -54,9 +58,17 @@ bool is_same(std::string_view a, std::string_view b) {
   return differs == 0;
 }
 
+using SharedBytes = std::shared_ptr<const std::string>;
+
+SharedBytes shared(std::string bytes) {
+  return std::make_shared<const std::string>(std::move(bytes));
+}
+
 struct Outgoing {
-  std::shared_ptr<const std::string> content;
-  bool is_image = false;
+  SharedBytes content;
+  std::string head = {};  ///< sent before the content
+  bool is_binary = false;
+  bool may_be_missed = false;  ///< by a client that lags behind
 };
 
 /// The value of a key in a target's query; empty if the query lacks the key.
@@ -81,20 +93,24 @@ struct LiveServer::Impl {
   asio::io_context io{1};
   Tcp::acceptor acceptor{io};
   LiveAddress address;
-  std::filesystem::path page;
-  std::function<std::string()> greeting;
-  std::function<std::string(const std::string&)> heard;
-  std::set<std::shared_ptr<Viewer>> joined;  // used only on the server's thread
-  std::atomic<int> count{0};
+  LiveShow show;
+  // Used only on the server's thread.
+  std::set<std::shared_ptr<Viewer>> joined;
+  std::map<std::size_t, std::pair<Stamp, SharedBytes>> latched;  ///< last messages, by topic
+
+  std::atomic<int> viewers{0}, subscriptions{0};
   std::thread thread;
 
   void accept();
-  void send(Outgoing message);
+  void send(const Outgoing& message);
+  void send(const std::vector<MessageLog::Entry>& messages);
+  void count();
   /// The reason for refusing a request; empty if it is not refused.
   std::string refusal(const http::request<http::string_body>& request) const;
 };
 
-/// One connection: a request for a part of the page, or a WebSocket.
+/// One connection: a request for a part of the page, or a WebSocket, of the page or of a client of
+/// Foxglove's protocol.
 class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   Viewer(Impl& server, Tcp::socket socket) : server_(server), stream_(std::move(socket)) {
@@ -111,9 +127,10 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
                        if (!error) self->answer();
                      });
   }
+  const std::optional<FoxgloveClient>& foxglove() const { return foxglove_; }
   void queue(Outgoing message) {
     if (queue_.size() >= kMostQueued) {
-      if (message.is_image) return;
+      if (message.may_be_missed) return;
       if (queue_.size() >= 4 * kMostQueued) return leave();
     }
     queue_.push_back(std::move(message));
@@ -127,14 +144,20 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
       return reply(http::status::forbidden, "text/plain", why + "\n");
     std::string target = text_of(request.target());
     target = target.substr(0, target.find('?'));
-    if (websocket::is_upgrade(request) && target == "/ws") {
+    if (websocket::is_upgrade(request)) {
+      const auto asked = request[http::field::sec_websocket_protocol];
+      for (const auto& protocol : http::token_list(asked))
+        if (text_of(protocol) == FoxgloveClient::kSubprotocol && target == "/")
+          foxglove_.emplace(server_.show.topics);
+    }
+    if (foxglove_ || (websocket::is_upgrade(request) && target == "/ws")) {
       if (server_.joined.size() < kMostViewers) return upgrade();
       return reply(http::status::service_unavailable, "text/plain", "there are too many viewers\n");
     }
     if (request.method() == http::verb::get)
       for (const PageFile& file : kPage)
         if (target == file.target)
-          return reply(http::status::ok, file.type, read_file(server_.page / file.file));
+          return reply(http::status::ok, file.type, read_file(server_.show.page / file.file));
     reply(http::status::not_found, "text/plain", "nothing found here\n");
   }
 
@@ -158,33 +181,58 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
     stream_.expires_never();
     socket_ = std::make_unique<websocket::stream<beast::tcp_stream>>(std::move(stream_));
     socket_->set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-    socket_->read_message_max(kMostMessageBytes);
+    socket_->read_message_max(foxglove_ ? kMostFoxgloveBytes : kMostMessageBytes);
+    if (foxglove_)
+      socket_->set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+        response.set(http::field::sec_websocket_protocol, FoxgloveClient::kSubprotocol);
+      }));
     socket_->async_accept(parser_.get(), [self = shared_from_this()](Error error) {
       if (error) return;
       self->server_.joined.insert(self);
-      ++self->server_.count;
-      self->queue({std::make_shared<const std::string>(self->server_.greeting()), false});
+      self->server_.count();
+      for (std::string& text : self->foxglove_ ? self->foxglove_->greeting()
+                                               : std::vector{self->server_.show.greeting()})
+        self->queue({shared(std::move(text))});
       self->buffer_.clear();
       self->read();
     });
   }
 
+  void take(const std::string& message) {
+    if (foxglove_) return take_of_foxglove(message);
+    if (!socket_->got_text()) return;
+    if (const std::string why = server_.show.take(message); !why.empty())
+      queue({shared(nlohmann::json{{"error", why}}.dump())});
+  }
+
+  void take_of_foxglove(const std::string& message) {
+    FoxgloveClient::Heard heard =
+        socket_->got_text() ? foxglove_->take_text(message) : foxglove_->take_binary(message);
+    server_.count();
+    if (!heard.command.empty())
+      if (const std::string why = server_.show.take(heard.command); !why.empty())
+        heard.answer = foxglove_error(why);
+    if (!heard.answer.empty()) queue({shared(std::move(heard.answer))});
+    for (const std::size_t topic : heard.begun)
+      if (const auto last = server_.latched.find(topic); last != server_.latched.end()) {
+        const auto& [stamp_ns, bytes] = last->second;
+        queue({bytes, *foxglove_->head(topic, stamp_ns), true});
+      }
+  }
+
   void read() {
     socket_->async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
       if (error) return self->leave();
-      if (self->socket_->got_text()) {
-        std::string answer = self->server_.heard(beast::buffers_to_string(self->buffer_.data()));
-        if (!answer.empty())
-          self->queue({std::make_shared<const std::string>(std::move(answer)), false});
-      }
+      self->take(beast::buffers_to_string(self->buffer_.data()));
       self->buffer_.consume(self->buffer_.size());
       self->read();
     });
   }
 
   void write() {
-    socket_->text(!queue_.front().is_image);
-    socket_->async_write(asio::buffer(*queue_.front().content),
+    const Outgoing& first = queue_.front();
+    socket_->binary(first.is_binary);
+    socket_->async_write(std::array{asio::buffer(first.head), asio::buffer(*first.content)},
                          [self = shared_from_this()](Error error, std::size_t) {
                            if (error) return self->leave();
                            self->queue_.pop_front();
@@ -193,18 +241,20 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
   }
 
   void leave() {
-    if (server_.joined.erase(shared_from_this()) > 0) --server_.count;
+    server_.joined.erase(shared_from_this());
+    server_.count();
     Error no_matter;
     beast::get_lowest_layer(*socket_).socket().close(no_matter);
   }
 
   Impl& server_;
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{kMostHeaderBytes + kMostMessageBytes};
+  beast::flat_buffer buffer_{kMostHeaderBytes + kMostFoxgloveBytes};
   http::request_parser<http::string_body> parser_;
   http::response<http::string_body> response_;
   std::unique_ptr<websocket::stream<beast::tcp_stream>> socket_;
-  std::deque<Outgoing> queue_;  // the first message is being written
+  std::optional<FoxgloveClient> foxglove_;  // nullopt: the page
+  std::deque<Outgoing> queue_;              // the first message is being written
 };
 
 void LiveServer::Impl::accept() {
@@ -216,10 +266,32 @@ void LiveServer::Impl::accept() {
   });
 }
 
-void LiveServer::Impl::send(Outgoing message) {
-  asio::post(io, [this, message = std::move(message)] {
-    for (const auto& viewer : std::vector(joined.begin(), joined.end())) viewer->queue(message);
-  });
+void LiveServer::Impl::send(const Outgoing& message) {
+  for (const auto& viewer : std::vector(joined.begin(), joined.end()))
+    if (!viewer->foxglove()) viewer->queue(message);
+}
+
+void LiveServer::Impl::send(const std::vector<MessageLog::Entry>& messages) {
+  for (const MessageLog::Entry& message : messages) {
+    const SharedBytes bytes = shared(message.message);
+    const bool is_latched = show.topics[message.topic].latched;
+    if (is_latched) latched[message.topic] = {message.stamp_ns, bytes};
+    for (const auto& viewer : std::vector(joined.begin(), joined.end()))
+      if (viewer->foxglove())
+        if (auto head = viewer->foxglove()->head(message.topic, message.stamp_ns))
+          viewer->queue({bytes, *std::move(head), true, !is_latched});
+  }
+}
+
+void LiveServer::Impl::count() {
+  std::size_t of_foxglove = 0, wanted = 0;
+  for (const auto& viewer : joined)
+    if (viewer->foxglove()) {
+      ++of_foxglove;
+      wanted += viewer->foxglove()->subscriptions();
+    }
+  viewers = static_cast<int>(joined.size() - of_foxglove);
+  subscriptions = static_cast<int>(wanted);
 }
 
 std::string LiveServer::Impl::refusal(const http::request<http::string_body>& request) const {
@@ -237,20 +309,18 @@ std::string LiveServer::Impl::refusal(const http::request<http::string_body>& re
     if (!is_part && !is_same(query_value(target, "token"), address.token))
       return "the token is missing or wrong";
   }
-  if (const std::string origin = text_of(request[http::field::origin]);
-      !origin.empty() && origin != "http://" + host)
+  // Foxglove's own page has a foreign origin: a token vouches for it.
+  const std::string origin = text_of(request[http::field::origin]);
+  const bool is_vouched_for = !address.token.empty() && websocket::is_upgrade(request);
+  if (!origin.empty() && origin != "http://" + host && !is_vouched_for)
     return "pages from other sites may not open this";
   return "";
 }
 
-LiveServer::LiveServer(const LiveAddress& address, const std::filesystem::path& page,
-                       std::function<std::string()> greeting,
-                       std::function<std::string(const std::string&)> heard)
+LiveServer::LiveServer(const LiveAddress& address, LiveShow show)
     : impl_(std::make_unique<Impl>()) {
   impl_->address = address;
-  impl_->page = page;
-  impl_->greeting = std::move(greeting);
-  impl_->heard = std::move(heard);
+  impl_->show = std::move(show);
   Error error;
   const auto host = asio::ip::make_address(address.host, error);
   if (error) throw InputError(fmt::format("host '{}': is not an address", address.host));
@@ -289,13 +359,24 @@ int LiveServer::port() const {
   return impl_->acceptor.local_endpoint().port();
 }
 void LiveServer::send_text(std::string text) {
-  impl_->send({std::make_shared<const std::string>(std::move(text)), false});
+  asio::post(impl_->io, [impl = impl_.get(), bytes = shared(std::move(text))] {
+    impl->send(Outgoing{bytes});
+  });
 }
 void LiveServer::send_image(std::string bytes) {
-  impl_->send({std::make_shared<const std::string>(std::move(bytes)), true});
+  asio::post(impl_->io, [impl = impl_.get(), bytes = shared(std::move(bytes))] {
+    impl->send(Outgoing{.content = bytes, .is_binary = true, .may_be_missed = true});
+  });
+}
+void LiveServer::send_messages(std::vector<MessageLog::Entry> messages) {
+  asio::post(impl_->io,
+             [impl = impl_.get(), messages = std::move(messages)] { impl->send(messages); });
 }
 int LiveServer::viewers() const {
-  return impl_->count;
+  return impl_->viewers;
+}
+int LiveServer::subscriptions() const {
+  return impl_->subscriptions;
 }
 
 }  // namespace mh

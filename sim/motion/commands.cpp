@@ -95,6 +95,27 @@ CommandScript load_commands(const std::filesystem::path& file) {
   return script;
 }
 
+std::string commands_text(const CommandScript& script) {
+  std::string text =
+      fmt::format("name: {}\nstart: {{position: [{}, {}], heading_deg: {}}}\n", script.name,
+                  script.start_m.x(), script.start_m.y(), script.start_heading_rad / kDegree);
+  if (script.reflex) text += fmt::format("reflex: {}\n", *script.reflex);
+  text += "commands:\n";
+  for (const VelocityCommand& c : script.commands) {
+    text += fmt::format("- {{for_s: {}", c.duration_s);
+    const auto add = [&](const char* key, double value) {
+      if (value != 0) text += fmt::format(", {}: {}", key, value);
+    };
+    add("forward_m_per_s", c.forward_m_per_s);
+    add("left_m_per_s", c.left_m_per_s);
+    add("turn_deg_per_s", c.turn_rad_per_s / kDegree);
+    if (c.head_yaw_rad) text += fmt::format(", head_yaw_deg: {}", *c.head_yaw_rad / kDegree);
+    if (c.head_pitch_rad) text += fmt::format(", head_pitch_deg: {}", *c.head_pitch_rad / kDegree);
+    text += "}\n";
+  }
+  return text;
+}
+
 CommandedDrive drive(const Scene& scene, const Robot& robot, const CommandScript& script,
                      const std::vector<MovingObstacle>& others) {
   const std::optional<HeadJoints> head = robot.equipment ? robot.equipment->head : std::nullopt;

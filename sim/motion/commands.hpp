@@ -39,6 +39,10 @@ struct CommandScript {
 /// @throws InputError naming file, line, field and value.
 CommandScript load_commands(const std::filesystem::path& file);
 
+/// The script as a file that load_commands() reads. Angles are in degrees there, so they may differ
+/// in their last bits.
+std::string commands_text(const CommandScript& script);
+
 struct CommandedDrive {
   DrivenPath path;
   double reflex_time_s = 0;  ///< time that the reflex kept the robot below the commanded speed

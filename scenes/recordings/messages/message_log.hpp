@@ -27,7 +27,13 @@ class MessageLog {
 
   template <class M>
   std::size_t add_topic(std::string name, bool latched = false) {
-    topics_.push_back(topic_spec<M>(std::move(name), wire_, latched));
+    return add_topic(topic_spec<M>(std::move(name), wire_, latched));
+  }
+  /// @returns the topic of that name, if there is one already
+  std::size_t add_topic(TopicSpec topic) {
+    const auto known = std::ranges::find(topics_, topic.name, &TopicSpec::name);
+    if (known != topics_.end()) return static_cast<std::size_t>(known - topics_.begin());
+    topics_.push_back(std::move(topic));
     return topics_.size() - 1;
   }
   template <class M>
@@ -41,6 +47,8 @@ class MessageLog {
   ros::Wire wire() const { return wire_; }
   const std::vector<TopicSpec>& topics() const { return topics_; }
   const std::vector<Entry>& entries() const { return entries_; }
+  /// Returns the messages and forgets them.
+  std::vector<Entry> take_entries() { return std::exchange(entries_, {}); }
 
  private:
   ros::Wire wire_;

@@ -123,4 +123,53 @@ struct OccupancyGrid {
   }
 };
 
+struct Path {
+  static constexpr const char* kType = "nav_msgs/Path";
+  static constexpr const char* kMd5 = "6227e2b7e9cce15051f669a5e197bbf7";
+  Header header;
+  std::vector<PoseStamped> poses;
+  static void fields(auto& m, auto& f) {
+    f("header", m.header);
+    f("poses", m.poses);
+  }
+};
+
+struct PointField {
+  static constexpr const char* kType = "sensor_msgs/PointField";
+  static constexpr std::uint8_t kUint32 = 6, kFloat32 = 7;
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = kFloat32;
+  std::uint32_t count = 1;
+  static void fields(auto& m, auto& f) {
+    f("name", m.name);
+    f("offset", m.offset);
+    f("datatype", m.datatype);
+    f("count", m.count);
+  }
+};
+
+struct PointCloud2 {
+  static constexpr const char* kType = "sensor_msgs/PointCloud2";
+  static constexpr const char* kMd5 = "1158d486dd51d683ce2f1be655c3c181";
+  Header header;
+  std::uint32_t height = 1, width = 0;
+  std::vector<PointField> points;  ///< what a point consists of
+  bool is_bigendian = false;
+  std::uint32_t point_step = 0, row_step = 0;
+  Bytes data;
+  bool is_dense = true;
+  static void fields(auto& m, auto& f) {
+    f("header", m.header);
+    f("height", m.height);
+    f("width", m.width);
+    f("fields", m.points);
+    f("is_bigendian", m.is_bigendian);
+    f("point_step", m.point_step);
+    f("row_step", m.row_step);
+    f("data", m.data);
+    f("is_dense", m.is_dense);
+  }
+};
+
 }  // namespace mh::ros
