@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Digests of the code, made anew by each build: the keys of results and of the cache hold them.
+# Digests of the code, recomputed by each build: part of the keys of results and of cache entries.
 get_property(bits GLOBAL PROPERTY MH_BITS)
 set(lines "BITS|${bits}\n")
 foreach(key LIGHT DETECT RUN AUDIT)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=... -DOUT=... -DDECIDES=... -P code_version.cmake: writes digests of what decides what a
-# stage makes: the compiler's flags and the files that CMake's decides() named (DECIDES: a line
-# BITS|FLAGS, then KEY|PATTERN each). They are part of the keys of cached entries and of finished runs, so that
-# neither outlives a change of the code.
+# cmake -DROOT=... -DOUT=... -DDECIDES=... -P code_version.cmake: for each key, writes a digest of
+# the code that determines its results: the compiler flags and the files declared with decides(),
+# both listed in the file DECIDES (first line BITS|FLAGS, then lines KEY|PATTERN). The keys of cache
+# entries and finished runs contain these digests: when the code changes, they become invalid.
 cmake_minimum_required(VERSION 3.25)
 
 file(STRINGS ${DECIDES} lines)
@@ -33,9 +33,9 @@ foreach(key IN LISTS keys)
   string(APPEND definitions "#define MH_CODE_${key} \"${digest}\"\n")
 endforeach()
 
-# Where git is not installed: what .git says, a worktree's included. Changes in files go unseen.
+# Without git: reads the commit from .git, also in a worktree. Uncommitted changes go unnoticed.
 function(commit_from_files variable)
-  set(${variable} "unknown" PARENT_SCOPE)  # no clone
+  set(${variable} "unknown" PARENT_SCOPE)  # not a git clone
   set(folder ${ROOT}/.git)
   if(EXISTS ${folder} AND NOT IS_DIRECTORY ${folder})
     file(READ ${folder} text)

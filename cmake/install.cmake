@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where: the program, its data, and the paper's equations as a
+# What `cmake --install` installs, and where: the program, its data, and the paper's equations as a
 # header-only package for find_package(Modelhouse).
 include(CMakePackageConfigHelpers)
 
 install(TARGETS modelhouse modelhouse-library-host RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
-# Data keep the layout of the sources: suites name their files relative to their own folder.
+# Data keep the layout of the source tree, since suites refer to files relative to their folder.
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)
 foreach(folder assets bench/live/page bench/report/pages/bundle bench/scenarios bench/studies bench/suites robots/pepper robots/turtlebot3
                scenes/model_house scenes/rooms sim/sensors/levels)
@@ -24,7 +24,7 @@ install(FILES ${made}/completion.zsh RENAME _modelhouse
 install(FILES ${made}/completion.fish RENAME modelhouse.fish
         DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
-# With ${data_dir}/python on PYTHONPATH: import modelhouse.
+# To be used by `import modelhouse`, with ${data_dir}/python on PYTHONPATH.
 install(DIRECTORY python/modelhouse/ DESTINATION ${data_dir}/python/modelhouse
         PATTERN "__pycache__" EXCLUDE)
 install(TARGETS modelhouse_python LIBRARY DESTINATION ${data_dir}/python/modelhouse)
@@ -39,7 +39,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Modelhouse)
 install(EXPORT ModelhouseTargets NAMESPACE Modelhouse:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/ModelhouseConfig.cmake.in
   ${PROJECT_BINARY_DIR}/ModelhouseConfig.cmake INSTALL_DESTINATION ${package_dir})
-# Header-only: any architecture may use what any other installed.
+# Header-only: a package installed on one architecture works on all others.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/ModelhouseConfigVersion.cmake
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/ModelhouseConfig.cmake

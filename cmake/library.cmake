@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# made/targets.txt holds each target's sources and links: tests/architecture holds the includes to them.
+# made/targets.txt lists the sources and links of each target; tests/architecture checks that
+# includes agree with it.
 file(WRITE ${PROJECT_BINARY_DIR}/made/targets.txt "")
 function(note_target name sources public private)
   set(named "")
@@ -12,8 +13,8 @@ function(note_target name sources public private)
   file(APPEND ${PROJECT_BINARY_DIR}/made/targets.txt "${name}|${named}|${public}|${private}\n")
 endfunction()
 
-# decides(KEY PATTERN...): files that decide what stands under a key of results or of the cache
-# (cmake/code_version.cmake). Tests, pages, command line and docs do not.
+# decides(KEY PATTERN...): declares files that affect the results or cache entries of a key
+# (cmake/code_version.cmake). Tests, web pages, command line and docs do not affect any.
 function(decides key)
   foreach(pattern ${ARGN})
     cmake_path(ABSOLUTE_PATH pattern NORMALIZE)
@@ -22,9 +23,9 @@ function(decides key)
 endfunction()
 
 # mh_library(name [FOLDERS...] [SOURCES...] PUBLIC libs... PRIVATE libs... [DECIDES keys...] [QUICK])
-# makes mh_name, alias mh::name, of these sources and of all .cpp files below the folders that no
-# library before it has. QUICK: what plans, stores and reports spends its time elsewhere: a tenth less
-# of a compiler's.
+# adds the library mh_name, alias mh::name, with these sources and all .cpp files in the folders
+# that no earlier library contains. QUICK: compiles with -O1, which takes a tenth less time, for
+# code whose speed does not matter (planning, storing, reporting).
 function(mh_library name)
   cmake_parse_arguments(ARG "QUICK" "" "FOLDERS;SOURCES;PUBLIC;PRIVATE;DECIDES" ${ARGN})
   set(sources "")
@@ -60,7 +61,7 @@ function(mh_library name)
       decides(${key} ${folder}/*.cpp ${folder}/*.hpp)
     endforeach()
     foreach(source IN LISTS ARG_SOURCES)
-      cmake_path(IS_PREFIX PROJECT_BINARY_DIR ${source} is_made)  # of files that are named themselves
+      cmake_path(IS_PREFIX PROJECT_BINARY_DIR ${source} is_made)  # its inputs are declared instead
       if(NOT is_made)
         decides(${key} ${source})
       endif()

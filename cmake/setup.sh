@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by tests/run.sh and bench/run.sh: installing, configuring and building, in one place.
+# Sourced by tests/run.sh and bench/run.sh: functions that install, configure and build.
 # Sets `root` (the repository) and `build_jobs`; the caller has set -euo pipefail.
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -9,7 +9,7 @@ fail() {
   exit "${2:-2}"
 }
 
-# Compilers of Eigen-heavy files take up to 2 GB each: no more of them than memory holds.
+# Compiling a file that uses much of Eigen takes up to 2 GB: limits the jobs by available memory.
 count_build_jobs() {
   local processors memory_gb
   processors=$(nproc)
@@ -24,15 +24,15 @@ build_jobs=$(count_build_jobs)
 missing_packages() {
   local wanted installed
   wanted=$(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$root/packages.txt")
-  # dpkg-query fails when it does not know one of them; what it does know is still listed.
+  # dpkg-query fails if it does not know one of the packages, but still lists the others.
   # shellcheck disable=SC2086
   installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' $wanted 2>/dev/null |
     awk '$2 == "installed" {print $1}' || true)
   grep -vxF -f <(printf '%s\n' "$installed" | sed '/^$/d') <<<"$wanted" || true
 }
 
-# Installs what packages.txt lists and this machine lacks; does nothing, and needs no rights,
-# when nothing is missing.
+# Installs the packages of packages.txt that this machine lacks. If none is missing, it does nothing
+# and does not need root.
 install_packages() {
   local how_to_skip="or install the libraries of packages.txt yourself and pass --no-install"
   command -v apt-get >/dev/null ||
@@ -50,7 +50,7 @@ install_packages() {
   echo "Installing $(wc -l <<<"$missing") packages with apt-get (log: $log) ..."
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C
     apt-get -y -o DPkg::Lock::Timeout=600)
-  # A failed update may still leave usable lists (a mirror on disk): the install decides.
+  # Package lists may be usable even if the update fails (a mirror on disk): try to install anyway.
   "${apt[@]}" update </dev/null >"$log" 2>&1 || true
   # shellcheck disable=SC2086
   if ! "${apt[@]}" install --no-install-recommends $missing </dev/null >>"$log" 2>&1; then
@@ -59,10 +59,10 @@ install_packages() {
   fi
 }
 
-# configure PRESET: cheap when nothing changed, and every script configures alike, so that a build
-# made by one is finished work for the other.
+# configure PRESET: takes little time if nothing changed. All scripts configure in the same way, so
+# that each can use what another one has built.
 configure() {
-  # ccache wants a folder to write into even where HOME is unset or read-only.
+  # ccache needs a writable folder even if HOME is unset or read-only.
   [[ -n ${CCACHE_DIR:-} || -w ${HOME:-/nonexistent} ]] || export CCACHE_DIR=$root/build/ccache
   cmake -S "$root" --preset "$1" --log-level=WARNING
 }

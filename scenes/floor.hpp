@@ -26,8 +26,8 @@ struct FoundFloor {
   Eigen::AlignedBox2d things_m;  ///< empty: unknown
 };
 
-/// Clips rooms that are boxes to 2 m around the things in the scene: ground that extends to the
-/// horizon is floor, but no robot or camera moves far away from all objects.
+/// Clips rooms that are boxes to 2 m around the things in the scene: a ground plane may extend to
+/// the horizon, but robots and cameras stay near the objects.
 void end_rooms_near_things(std::vector<Room>& rooms, const Eigen::AlignedBox2d& things_m);
 
 /// Finds the floor of a scene that does not state one: from the faces of a walkable class or, if

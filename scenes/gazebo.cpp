@@ -131,7 +131,7 @@ class WorldReader {
     std::optional<ClassId> class_id = rules_.find({model.Name()});
     if (!class_id && guess_class(model.Name()) != kVoid) class_id = guess_class(model.Name());
     const bool known = std::ranges::any_of(parts.class_of, [](ClassId c) { return c != kVoid; });
-    if (!class_id && !known) class_id = kVoid;  // void, not unset, makes it one object
+    if (!class_id && !known) class_id = kVoid;  // void instead of nullopt: the model is one object
     append_part(scene_, std::move(parts), Eigen::Affine3d::Identity(), model.Name(), class_id);
   }
 

@@ -35,6 +35,6 @@ done
 [[ $install == no ]] || install_packages
 configure "$preset"
 build "$preset"
-# One more than there are processors: some tests wait.
+# One more job than there are processors, since some tests spend time waiting.
 exec ctest --test-dir "$root/build/$preset" --output-on-failure --no-tests=error \
   --parallel "$((build_jobs + 1))" "$@" </dev/null

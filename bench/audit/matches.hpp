@@ -105,7 +105,7 @@ void fields(M& matches, Visit& v) {
 using MatchAudit = std::array<StageMatches, kMatchStageCount>;
 void add(const MatchAudit& more, MatchAudit& sum);
 
-/// The two ends of a decision: the frame's feature, and the map's point.
+/// The two ends of the match that was decided on: the frame's feature, and the map's point.
 using EndsOf = std::function<std::pair<MatchEnd, MatchEnd>(const MatchDecision&)>;
 
 /// Compares the decisions of one step with the truth. Pairs with an end that shows no surface are

@@ -93,8 +93,8 @@ class Frames {
   std::vector<std::string> images_;
 };
 
-/// Appends a frame's results in COCO's format. The category of COCO's 80 classes is COCO's id; the
-/// category of other classes is their index, starting from 1.
+/// Appends a frame's results in COCO's format. For COCO's 80 classes, `category_id` is COCO's own
+/// id; for other classes, it is the index of the class, starting from 1.
 void add_results(nlohmann::ordered_json& json, std::size_t frame, const Detected& found,
                  bool of_coco) {
   std::map<int, int> category;  // COCO's ids by index among the 80

@@ -102,8 +102,8 @@ class Worst {
   std::vector<JudgedFrame> frames_;
 };
 
-/// Scores of the detector and, on the same frames, of the simulated detector of the level with the
-/// settings that were measured.
+/// Scores of the detector and, on the same frames, of the level's simulated detector with the
+/// measured settings.
 struct Judged {
   DetectorScore real;
   std::optional<DetectorScore> simulated;
@@ -152,7 +152,7 @@ Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, W
   const SensorConfig sensors = load_sensor_config(options.level);
   const KeepDetections keep = detections_in(cache);
   DetectorJudge real(confidence);
-  std::vector<RenderedFrame> exact;  // with only what the simulated detector uses
+  std::vector<RenderedFrame> exact;  // reduced to what the simulated detector uses
   std::vector<SE3> poses;
   for_each_moment(options, robot, sensors, [&](const Moment& moment, std::size_t index) {
     const RgbdFrame& frame = moment.sensed.frame;

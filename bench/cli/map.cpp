@@ -66,7 +66,7 @@ void add_band(CLI::App& command, ObstacleGridConfig& band) {
       ->check(number_between(-1000.0, 1000.0));
 }
 
-/// First line of a file with a path.
+/// First line of a file that contains a robot's path.
 constexpr std::string_view kPathHead = "x_m,y_m\n";
 
 std::string place(const Vector2d& p) {

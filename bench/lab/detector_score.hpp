@@ -29,7 +29,7 @@ struct ClassScore {
   std::size_t objects = 0, right = 0, wrong_class = 0;  ///< at the detector's own threshold
 };
 
-/// How labels made of boxes agree with the exact classes of the pixels.
+/// How well labels made from boxes agree with the exact classes of the pixels.
 struct LabelScore {
   double right_share = 0;  ///< share of the labeled pixels whose label is right
   double found_share = 0;  ///< share of the pixels of COCO's objects with the right label

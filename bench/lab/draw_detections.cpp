@@ -36,7 +36,7 @@ void outline(Canvas& canvas, const ImageBox& box, Rgb8 color, double thickness) 
   canvas.line({box.left, bottom}, {box.left, box.top}, color, thickness);
 }
 
-/// Draws boxes with an edge that is visible on dark and bright ground, then their names in the
+/// Draws boxes with an edge that is visible on dark and bright areas, then their names in the
 /// given order. A name is drawn above its box, below it or inside, wherever there is no other name
 /// yet.
 void draw_boxes(Canvas& canvas, const std::vector<NamedBox>& boxes) {

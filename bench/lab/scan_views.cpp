@@ -62,7 +62,7 @@ std::vector<SE3> scan_views(const Scene& scene, std::uint64_t seed, std::size_t 
     const Vector3d eye(x, y, scene.floor.middle_m.z() + dice.number(1.1, 1.6));
     const double yaw = dice.number(-std::numbers::pi, std::numbers::pi);
     const double pitch = dice.number(-30, 12) * kDegree;
-    // Four random numbers are drawn but not used: without them, a seed would give different views.
+    // Four random numbers are drawn and discarded, so that a seed keeps giving the same views.
     for (int i = 0; i < 4; ++i) dice.number(0, 1);
     // A person does not scan a wall from very close: there must be free space 1 m ahead.
     const Vector2d ahead = eye.head<2>() + Vector2d(std::cos(yaw), std::sin(yaw));

@@ -240,7 +240,7 @@ SensorSheets draw_sensor_sheets(const Scene& scene, std::shared_ptr<const Render
         const RenderedFrame seen = renderer->render(camera, path[i].world_from_camera);
         return color_image(sense(seen, camera, c, stream.fork(i), 0).color);
       },
-      RandomStream(6));  // with this seed, both shares lose some of the ten frames
+      RandomStream(6));  // with this seed, "mild" and "strong" both lose some of the ten frames
 
   const RenderedFrame truth = renderer->render(camera, pose);
   std::vector<Factor> factors = label_factors();

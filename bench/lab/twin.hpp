@@ -62,7 +62,7 @@ struct TwinFrame {
   /// Median over the pixels where both images have a return; absent if there is no such pixel.
   std::optional<double> depth_difference_m;  ///< |rendered - recorded|
   KeypointAgreement across;                  ///< recorded keypoints in the rendering
-  KeypointAgreement noise;  ///< rendered keypoints in a rendering with different noise of the level
+  KeypointAgreement noise;  ///< rendered keypoints in a rendering with other draws of the noise
 };
 
 /// Compares frames of a recording with those of its twin, at a fixed interval.

@@ -31,7 +31,8 @@ class LiveDrive {
   /// The first message to a viewer: the plan, the classes, the robot. Safe to call from another
   /// thread.
   std::string greeting() const;
-  /// Takes a viewer's message, which acts from the next step on. Safe to call from another thread.
+  /// Takes a viewer's message, which takes effect at the next step. Safe to call from another
+  /// thread.
   /// @returns why the message was not understood; empty if it was understood
   std::string take(const std::string& message);
 

@@ -298,7 +298,8 @@ std::string LiveServer::Impl::refusal(const http::request<http::string_body>& re
   const std::string host = text_of(request[http::field::host]);
   const int port = acceptor.local_endpoint().port();
   if (address.token.empty()) {
-    // The owner of a foreign host name that resolves to this machine could let a page of theirs in.
+    // Otherwise, the owner of a foreign host name that resolves to this machine could give their
+    // own page access (DNS rebinding).
     const bool is_ours = host == fmt::format("127.0.0.1:{}", port) ||
                          host == fmt::format("localhost:{}", port) ||
                          host == fmt::format("[::1]:{}", port);

@@ -32,7 +32,7 @@ void write_marked(const fs::path& file, const cv::Mat& image, const std::string&
   write_atomically(file, with_text(encode_png(image), kMadeOf, made_of));
 }
 
-/// File that states what a run was made from, if the run has no images.
+/// Name of the file that states what a run was made from. Only runs without images have it.
 constexpr const char* kRunKey = "run.key";
 
 std::string mark_of(const fs::path& image) {

@@ -199,8 +199,8 @@ class System:
         """Forgets everything, the map included."""
 
     def freeze(self) -> Optional[List[Tuple[str, Pose]]]:
-        """From now on, the map must not change. May return the final trajectory, as Frame.stamp_text
-        and pose of each tracked frame; None means that the poses in the replies are used."""
+        """From now on, the map must not change. May return the final trajectory, a list with
+        (Frame.stamp_text, pose) of each tracked frame; None: the poses in the replies are used."""
         return None
 
 

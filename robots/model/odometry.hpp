@@ -12,8 +12,8 @@
 namespace mh {
 
 /// Simulates wheel odometry, one motion after another. Between two poses each rim turns as far as
-/// the true motion (a constant twist) requires; the reading is that distance times (1 + scale) and
-/// the wheel's own (1 + scale_spread * normal), plus slip: a normal error of variance
+/// the true motion (a constant twist) requires; the reading is that distance times (1 + scale),
+/// times (1 + scale_spread * normal) of this wheel, plus slip: a normal error of variance
 /// slip_per_sqrt_m^2 times the distance. The poses are integrated from the readings. So the drift
 /// of a straight drive of length L is scale * L along it on average, and its random part grows with
 /// the square root of L, as in Martinelli, "The odometry error of a mobile robot with a synchronous

@@ -22,7 +22,7 @@ constexpr double kReplan_s = 1.0;
 constexpr double kProgress_m = 0.10;
 constexpr double kBackOff_s = 1.5, kBackOff_m_per_s = 0.08;
 constexpr double kShown_m = 1.5;       // anything nearer is considered for braking
-constexpr double kSamePlace_m = 0.10;  // less counts as equally near: the shortest path decides
+constexpr double kSamePlace_m = 0.10;  // a smaller difference does not count: path length decides
 constexpr double kFaced_rad = 0.1;
 constexpr double kBeforeThing_m = 0.1;
 constexpr double kReachSlack_m = 0.3;  // distances to the goal are computed this far beyond reach_m

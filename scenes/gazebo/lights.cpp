@@ -37,7 +37,7 @@ float edge_for_light_m(const Scene& scene) {
                          .cross(scene.positions_m[c] - scene.positions_m[a])
                          .cast<double>()
                          .norm();
-  constexpr double kMostFaces = 1e6, kFacesPerSquare = 4.0;  // halving edges can leave up to four
+  constexpr double kMostFaces = 1e6, kFacesPerSquare = 4.0;  // at most, since edges are halved
   return static_cast<float>(std::max(1.0, std::sqrt(kFacesPerSquare * area_m2 / kMostFaces)));
 }
 

@@ -336,7 +336,7 @@ void build_garden(const HousePlan& house, const GardenPlan& garden, MeshBuilder&
   const auto y0 = static_cast<float>(e.y0) - d, y1 = static_cast<float>(e.y1) + d;
   constexpr float kGround = -0.35F;
   // With the exposure set for indoors, the outside would be too bright, so all images are darkened.
-  // Images that are not lit by the sun may glow.
+  // Only images on sides without sun get the emission `glow`.
   const auto image = [&](Side side, float width_m, bool sunlit) {
     MaterialSpec spec = garden.material;
     spec.name = fmt::format("{}_{}", spec.name, side_name(side));

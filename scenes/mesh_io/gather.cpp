@@ -38,7 +38,7 @@ std::optional<ClassId> extra_class(const aiMetadata& extras) {
   return id && *id < classes().size() ? id : std::nullopt;
 }
 
-/// The label of a node: its extras first, then its name.
+/// The label of a node: from its extras or, for what they do not state, from its name.
 NodeLabel label_of(const aiNode& node) {
   NodeLabel label = parse_node_name(node.mName.C_Str());
   if (node.mMetaData == nullptr) return label;

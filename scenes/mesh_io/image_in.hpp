@@ -17,7 +17,7 @@ namespace mh {
 struct ImageIn {
   SharedGrid<Rgb8> color{};
   SharedGrid<std::uint8_t> opacity{};     ///< empty if the file has none
-  std::string fault = "is not an image";  ///< why color is empty, if it is
+  std::string fault = "is not an image";  ///< if color is empty: why
 };
 
 /// The images of a scene's materials. Each is decoded only once, no matter how many files contain

@@ -65,7 +65,7 @@ const aiScene& read(Assimp::Importer& importer, const fs::path& file, const Mesh
     if (auto split = ply_with_corners(map_file(file).view, file.string()))
       in_memory[file] = *std::move(split);
   importer.SetIOHandler(new NotedFiles(std::move(in_memory), textures));  // takes ownership
-  // No step may reorder vertices or faces: labels next to a PLY depend on their order.
+  // No step may reorder vertices or faces, since the labels file of a PLY refers to them by order.
   const unsigned steps =
       format.ply ? unsigned{aiProcess_Triangulate} : aiProcess_Triangulate | aiProcess_GlobalScale;
   const aiScene* in = nullptr;

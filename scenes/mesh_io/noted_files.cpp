@@ -38,7 +38,7 @@ Assimp::IOStream* NotedFiles::Open(const char* file, const char*) {
     const auto known = in_memory_.find(file);
     HeldBytes bytes = known != in_memory_.end() ? hold(known->second) : map_file(file);
     const std::string_view name = file;
-    const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // on a byte order mark
+    const bool stumbles = name.ends_with(".obj") || name.ends_with(".mtl");  // assimp, on a BOM
     std::string_view part = stumbles ? without_mark(bytes.view, file) : bytes.view;
     if (auto repaired = stumbles ? repaired_obj(part) : std::nullopt) {
       bytes = hold(std::move(*repaired));

@@ -77,7 +77,7 @@ class ScanNetWriter : public SequenceWriter {
     write_atomically(folder_ / "intrinsic" / "extrinsic_color.txt", identity);
     write_atomically(folder_ / "intrinsic" / "extrinsic_depth.txt", identity);
     write_atomically(folder_ / kLabelTableV2, label_table_text());
-    // Named like the info file of an extracted .sens, which readers expect.
+    // The info file of an extracted .sens; readers expect this name.
     write_atomically(
         folder_ / "_info.txt",
         fmt::format("m_versionNumber = 4\nm_sensorName = Modelhouse\nm_colorWidth = {0}\n"

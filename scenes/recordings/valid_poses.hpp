@@ -10,8 +10,8 @@
 
 namespace mh {
 
-/// Reads the true poses of a recording; nullopt if no valid ones are left. @param notes  receives
-/// what was left out (trajectory_io.hpp), or that there is no truth
+/// Reads the true poses of a recording; nullopt if no valid ones are left.
+/// @param notes  receives what was left out (trajectory_io.hpp), or that there is no ground truth
 /// @throws InputError if the file cannot be read or does not contain poses.
 std::optional<Trajectory> read_truth(const std::filesystem::path& file,
                                      std::vector<std::string>& notes);

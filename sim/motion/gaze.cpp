@@ -114,7 +114,7 @@ class Gaze {
   }
   Look look_of(InstanceId id) const { return id < looks_.size() ? looks_[id] : Look{}; }
 
-  /// Returns the things in a direction, in order; the last is where the view at eye level ends.
+  /// Returns the things in a direction, nearest first; the last is where the eye-level view ends.
   std::vector<Sight> sights(const Vector2d& from_m, double yaw_rad) const {
     const FloorGrid &low = ground_.floor, &eyes = ground_.eyes;
     const Vector2d step = eyes.resolution_m * Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));

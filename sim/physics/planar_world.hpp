@@ -73,8 +73,8 @@ class PlanarWorld {
   /// Accelerates toward the command within the limits and advances by one step.
   Contact step(const BaseCommand& command);
   BaseState state() const;
-  /// Returns what the base touches at its current place; what crosses its axis is treated as
-  /// overlapping by the whole footprint radius.
+  /// Returns what the base touches at its current place. Anything that crosses the vertical axis of
+  /// the base counts as an overlap by the whole footprint radius.
   Contact contact();
   double step_s() const;
 

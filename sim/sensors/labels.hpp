@@ -101,9 +101,9 @@ void fields(C& c, Visit& v) {
 }
 
 /// Label faults depend on what is seen and from where, as a network's do: each is decided by a
-/// standard normal number that is the sum of a part that is constant for an instance, a part that
-/// changes smoothly with the view (over about 1 m and 30 degrees; equal for equal views, whenever
-/// they occur) and a part drawn again in each frame. The shares of the three parts are our choice,
+/// standard normal number, the sum of three parts. One is constant for an instance, one changes
+/// smoothly with the view (over about 1 m and 30 degrees; equal for equal views, whenever they
+/// occur), and one is drawn again in each frame. The shares of the three parts are our choice,
 /// since no published data give them.
 struct LabelConfig {
   LabelNoiseConfig noise = {};

@@ -29,7 +29,7 @@ Curve tone_curve(double contrast) {
   return curve;
 }
 
-/// Shares of the luma (Rec. 601) by channel and input gray level.
+/// What each channel contributes to the luma (Rec. 601), by channel and input gray level.
 std::array<Curve, 3> luma_shares(const Curve& curve) {
   std::array<Curve, 3> shares{};
   for (std::size_t v = 0; v < curve.size(); ++v)

@@ -15,7 +15,7 @@
 
 namespace mh {
 
-/// A drive, as its robot would report it.
+/// A drive and what the robot measured on it, as input of robot_messages().
 struct DriveRecord {
   const Robot& robot;
   const DrivenPath& path;                 ///< path that the robot drove

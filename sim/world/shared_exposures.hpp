@@ -32,9 +32,9 @@ std::string folder_of(const std::vector<RandomStream>& noises);
 /// exposure makes it and writes it into a file, the others read it. An exposure that is missing or
 /// damaged there is made again: the file saves time and never changes a bit.
 ///
-/// Nothing is written beyond the limit, nor once the disk has less than kLeaveFree_bytes left. A
-/// process that needs an exposure that another one is making makes one that both will need next or,
-/// if there is none, waits.
+/// Nothing is written beyond the limit, nor once the disk has less than kLeaveFree_bytes left. If
+/// another process is making the exposure that this one needs, this one makes an exposure that both
+/// will need next or, if there is none, waits.
 class SharedExposures {
  public:
   using Make = std::function<Shutter::Exposed(std::size_t)>;

@@ -35,7 +35,7 @@ struct FiledBox {
   double left = 0, top = 0, width = 0, height = 0;
   double score = 1;
   int network_class = 0;
-  bool normalized = false;  ///< in shares of the image, not pixels
+  bool normalized = false;  ///< as fractions of the image's size, not in pixels
 };
 
 /// The boxes of a frame, and the file's name for the frame, for messages.
@@ -144,8 +144,8 @@ void for_each_line(const fs::path& file, const char* columns, const Visit& visit
 /// The file of class names that annotation programs write next to YOLO's text files.
 constexpr const char* kFolderClasses = "classes.txt";
 
-/// YOLO's text: FRAME.txt of lines "class x y width height [score]", center and size in shares of
-/// the image.
+/// YOLO's text: FRAME.txt of lines "class x y width height [score]", center and size as fractions
+/// of the image's size.
 void read_yolo_folder(const fs::path& folder, const ClassNames& names, FiledBoxes& all) {
   for (const std::string& name : list_folder(folder, "*.txt")) {
     if (name == kFolderClasses) continue;

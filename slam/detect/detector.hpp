@@ -23,7 +23,7 @@ class Detector {
  public:
   virtual ~Detector() = default;
   /// Equal images give equal bits.
-  /// @param index, stamp_ns  of the frame in its sequence: boxes in files are found by them
+  /// @param index, stamp_ns  of the frame in its sequence, by which boxes in files are looked up
   virtual Detected detect(const Grid2d<Rgb8>& color, std::size_t index, Stamp stamp_ns) const = 0;
   virtual const ClassNames& names() const = 0;
   /// One line for the user: "yolox, 80 classes, input 416 x 416".

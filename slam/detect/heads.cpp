@@ -66,7 +66,7 @@ std::optional<Matrix> as_matrix(const Tensor& tensor) {
   return Matrix{shape[shape.size() - 2], shape.back(), tensor.values};
 }
 
-/// Whether a tensor has a channel per class, and the proportions of the input to within a cell.
+/// Whether a tensor has a channel per class, and the aspect ratio of the input to within a cell.
 /// (Outputs of other networks, such as Yolo-FastestV2, are ordered by height, width, channels.)
 bool is_segmentation(const Tensor& tensor, const InputSize& input) {
   const auto& s = tensor.shape;
@@ -102,8 +102,8 @@ Matrix transposed(const Matrix& m) {
   return {m.columns, m.rows, m.values, true};
 }
 
-/// Whether a matrix has one box per column, judging by the boxes' positions; its shape also fits
-/// one box per row.
+/// Whether a matrix whose shape fits one box per row in fact has one box per column, judging by the
+/// boxes' positions.
 bool has_boxes_in_columns(const Matrix& m, const InputSize& input) {
   const std::vector<Cell> by_row = cells_of(m.rows, input), by_column = cells_of(m.columns, input);
   return m.rows > 4 && !by_column.empty() && is_decoded(transposed(m), by_column) &&

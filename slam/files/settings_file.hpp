@@ -15,7 +15,7 @@ namespace mh {
 /// Content of a settings file: the camera, how its images are stored, and SLAM's parameters.
 struct Settings {
   Camera camera;
-  bool has_camera = false;           ///< a file without one serves sources that provide their own
+  bool has_camera = false;           ///< not needed if the recording or scene provides its
                                      ///< camera
   double depth_per_meter = 5000;     ///< value of a depth pixel at one meter
   bool has_depth_per_meter = false;  ///< whether the file sets it

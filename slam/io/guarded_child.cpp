@@ -52,7 +52,7 @@ enum class Word : char { kDone = 'D', kInput = 'I', kMachine = 'M', kOther = 'E'
 /// What a child leaves in shared memory for its parent, even if it crashes.
 struct Note {
   char file[4000];           ///< the file being read, zero-terminated
-  std::int64_t processor_s;  ///< current processor limit
+  std::int64_t processor_s;  ///< current limit of CPU time
   std::uint64_t memory_bytes;
 };
 

@@ -3,9 +3,9 @@
 
 namespace mh {
 
-/// Removes a folder with all that it contains, at any depth and despite missing permissions of its
-/// folders. Links are not followed; what cannot be removed stays. Makes only system calls, so that
-/// a forked process may call it.
+/// Removes a folder and everything in it, at any depth, even if folders in it lack permissions.
+/// Links are not followed; what cannot be removed stays. Makes only system calls, so that a forked
+/// process may call it.
 void remove_tree(const char* folder);
 
 }  // namespace mh

@@ -11,8 +11,8 @@ namespace mh {
 /// @throws InputError naming the file if the mark is UTF-16's.
 std::string_view without_mark(std::string_view text, const std::filesystem::path& file);
 
-/// Returns the whole content of a text file, without_mark(), its lines ending in \n (or \r\n) even
-/// where a bare \r ends them. @throws InputError naming it.
+/// Returns the whole content of a text file, without_mark(). Lines end in \n or \r\n; in a
+/// file without any \n, each \r is replaced by one. @throws InputError naming the file.
 std::string read_text(const std::filesystem::path& file);
 
 }  // namespace mh

@@ -19,8 +19,8 @@ std::string place_in(const std::string& file, const YAML::Node& node) {
   return line > 0 ? fmt::format("{}:{}", file, line) : file;
 }
 
-/// Visits every node once for each path that leads to it, to find duplicate keys, and to find
-/// aliases that contain themselves or multiply, with which reading would never end.
+/// Visits every node once for each path that leads to it. Finds duplicate keys, and aliases that
+/// contain themselves or lead to so many values that reading would never end.
 class Walk {
  public:
   explicit Walk(const std::string& file) : file_(file) {}

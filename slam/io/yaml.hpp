@@ -15,7 +15,7 @@
 #include "slam/io/error.hpp"
 
 namespace YAML {
-class Node;  // keeps its headers out of every including file
+class Node;  // declared here so that including files do not need yaml-cpp
 }
 
 namespace mh {

@@ -10,7 +10,7 @@
 
 namespace mh {
 
-/// Where a piece of the map may be in another one, and what supports it.
+/// A possible pose of one piece of the map in another, and the keyframes that support it.
 struct PiecePlace {
   KeyframeId origin, other;  ///< Keyframe::origin of the two pieces
   SE3 other_from_own;   ///< between the two pieces' worlds, according to the last keyframe that
@@ -50,8 +50,8 @@ std::optional<Loop> detect_loop(KeyframeId newest, LoopMemory& memory, const Sla
 /// Looks for the newest keyframe's place in other pieces of the map. A place is accepted once
 /// LoopConfig::joining keyframes agree on it, over a path of LoopConfig::joining_m, and no other
 /// place is supported by half as many keyframes or more.
-/// @param is_reachable  whether the newest keyframe's piece can be where the place puts it. The
-///   argument holds the other piece and, in place of a camera pose, other_from_own
+/// @param is_reachable  whether the newest keyframe's piece can be where a place puts it. Its
+///   argument holds the other piece's origin and, as camera_from_world, PiecePlace::other_from_own
 std::optional<Loop> recognize_piece(KeyframeId newest, LoopMemory& memory,
                                     const SlamContext& context, RandomStream stream,
                                     const IsPossible& is_reachable);

@@ -45,7 +45,7 @@ struct DetectionAssociation::Detection {
   ClassId class_id = kVoid;
   std::vector<std::uint64_t> voxels;
   std::map<Object, double>
-      before;  ///< by object: the share of its voxels that belonged to it before, by votes
+      before;  ///< by object: its mean share of the earlier votes in the detection's voxels
   Object object = 0;
 };
 

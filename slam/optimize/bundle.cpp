@@ -159,7 +159,7 @@ double cost_of(const Phase& phase, const Workspace& w, const State& state) {
 
 /// Adds a motion to the blocks of its free poses. With left perturbations, the residual changes by
 /// the perturbation of b minus the adjoint of b_from_a times that of a; the derivative of log is
-/// taken as 1.
+/// taken as the identity.
 void linearize_motion(const BundleMotion& m, const BundleProblem& problem, Workspace& w,
                       const State& state) {
   const Vector6d r = motion_residual(m, state);

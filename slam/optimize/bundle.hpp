@@ -41,9 +41,9 @@ struct BundleResult {
   std::vector<SE3> camera_from_world;  ///< all, fixed ones unchanged
   std::vector<Eigen::Vector3d> points_in_world;
   std::vector<std::uint8_t> outlier;  ///< per observation: beyond its gate or behind the camera
-  double initial_cost = 0;  ///< sum of Huber's rho over all observations; without the motions
+  double initial_cost = 0;  ///< sum of Huber's rho over all observations; motions not included
   double final_cost =
-      0;  ///< sum of squared whitened residuals over the inliers; also without the motions
+      0;  ///< sum of squared whitened residuals over the inliers; motions are not included
   int iterations = 0;  ///< trial steps of both phases
 };
 

@@ -95,8 +95,8 @@ std::optional<PoseEstimate> solve_pnp_ransac(std::span<const PoseObservation> ob
   Consensus best = best_consensus(observations, camera, config, gates, stream);
   if (best.count < 4) return std::nullopt;
 
-  // A pose from three noisy points misses inliers that the refined one explains: refine twice on
-  // its own consensus, then classify all observations.
+  // A pose from three noisy points misses inliers that agree with the refined pose. So each of two
+  // passes refines the pose on its inliers and then classifies all observations.
   PoseConfig refine = gates;
   refine.min_inliers = 4;
   for (int pass = 0; pass < 2; ++pass) {

@@ -12,8 +12,8 @@ namespace mh {
 struct PoseGraphEdge {
   std::uint32_t a = 0, b = 0;  ///< indices of poses
   SE3 a_from_b;
-  double weight = 1;  ///< of its squared error, relative to the other edges: how strongly the two
-                      ///< are constrained
+  double weight = 1;  ///< of its squared error, relative to the other edges: how strongly it
+                      ///< constrains the two poses
 };
 
 struct PoseGraphConfig {

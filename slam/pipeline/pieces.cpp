@@ -17,7 +17,7 @@ KeyframeId piece_of(const SlamState& state, TrackedFrames::const_iterator frame)
   return state.map.at(frame->second.reference).origin;
 }
 
-/// The camera's pose at a later time if it keeps moving as in the fifth of a second before the
+/// The camera's pose at a later time, extrapolated from its motion during the last 0.2 s before the
 /// frame.
 SE3 moved_on(const SlamState& state, TrackedFrames::const_iterator frame, Stamp stamp_ns) {
   constexpr Stamp kBefore_ns = 200'000'000;
@@ -75,7 +75,7 @@ bool is_reachable(const SlamState& state, KeyframeId origin, const MapPose& othe
     }
     if (left == entered || !was_there) continue;
     const SE3 expected =
-        moved_on(state, frame, next->first);  // camera from the world of the piece that was left
+        moved_on(state, frame, next->first);  // camera_from_world, in the world of piece `left`
     const SE3 there = map_pose(state, next->second).camera_from_world;
     other_from_piece = other_from_piece * expected.inverse() * there;
     const Eigen::Vector3d place_m = other_from_piece * there.inverse().translation();

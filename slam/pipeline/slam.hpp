@@ -103,9 +103,9 @@ void set_query_settings(SlamState& state, const SemanticConfig& settings);
 /// The pose of a tracked frame in the current map.
 MapPose map_pose(const SlamState& state, const TrackedFrame& frame);
 
-/// The pose of each tracked frame once (from its last attempt), ordered by stamp: the pose relative
-/// to its reference keyframe, composed with that keyframe's current pose, in the world of its piece
-/// of the map. The world of the first piece has its origin at the first camera pose.
+/// One pose per tracked frame (from its last attempt), ordered by stamp: the pose relative to its
+/// reference keyframe, composed with that keyframe's current pose, in the world of its piece of the
+/// map. The world of the first piece has its origin at the first camera pose.
 Trajectory trajectory(const SlamState& state);
 
 }  // namespace mh

@@ -5,8 +5,8 @@
 
 namespace mh {
 
-/// How many of the similarities that equation 5 summed, over all of its sums, were computed for an
-/// earlier query or for none. Similarities of keyframes that share nothing with the query are not
+/// Counts the similarities in all sums of equation 5, and among them those that were computed for
+/// an earlier query or never. Similarities of keyframes that share nothing with the query are not
 /// counted: they are 0 by definition.
 struct SummedScores {
   int terms = 0;

@@ -20,8 +20,8 @@ struct PlaceMatchers {
   Matcher projection = Matcher::kRelocalizationProjection;
 };
 
-/// The settings that a trial depends on and that may differ between queries: if they are equal, a
-/// result can be reused.
+/// The settings that a trial depends on and that may differ between queries. If they are equal, the
+/// result of an earlier trial can be reused.
 using TrialKey = std::tuple<double, bool, WiderSearch, double>;
 inline TrialKey trial_key(const SemanticConfig& s) {
   return {s.xi, s.void_is_a_label, s.wider_search, s.min_agreement};

@@ -20,12 +20,12 @@ struct Located {
   std::optional<InertialMotion> inertial = {};  ///< at this frame
 };
 
-/// A frame's place by another sensor alone: the last frame's pose, moved by what the wheels or the
-/// inertial sensor measured since.
+/// A frame's pose according to another sensor alone: the last frame's pose plus the motion that the
+/// wheels or the inertial sensor have measured since.
 struct Reckoned {
   SE3 camera_from_world;
   Reckoning reckoning;
-  Matrix6d covariance;  ///< it has grown since an image last determined the pose
+  Matrix6d covariance;  ///< it grows until an image determines the pose again
   std::optional<InertialMotion> inertial = {};  ///< at this frame, if that sensor was used
 
   /// Whether a pose from an image may be that of this frame. One based on many landmarks overrules

@@ -15,7 +15,7 @@ namespace mh {
 /// with its row. Rows are counted in the undistorted image; lens distortion shifts them, but only
 /// by a small share of the readout.
 /// @param velocity_per_s  twist of the camera: camera_from_world(t) = exp(t v) camera_from_world(0)
-/// @param readout_s       from the first row to the last; with 0, no bit changes
+/// @param readout_s       from the first row to the last; 0 changes nothing
 void straighten(std::span<Keypoint> keypoints, const Camera& camera, const Vector6d& velocity_per_s,
                 double readout_s);
 

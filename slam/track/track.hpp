@@ -71,8 +71,8 @@ struct LocalMapResult {
   std::vector<LandmarkId> expected;  ///< landmarks that should have been visible
 };
 
-/// Refines a pose with every landmark of the local map that is found in the frame, and with the
-/// passing points.
+/// Refines a pose with every landmark of the local map that is found in the frame, and with
+/// `tracked.passing`.
 /// @returns nullopt if the optimization fails.
 std::optional<LocalMapResult> track_local_map(const Query& query, const TrackedPose& tracked,
                                               const LocalMap& local, const SlamContext& context);

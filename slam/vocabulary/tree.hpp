@@ -27,8 +27,8 @@ std::string encode(const VocabularyTree& tree);
 
 /// Reads DBoW2's text format (ORB-SLAM's ORBvoc.txt): a line "k L scoring weighting", then a line
 /// "parent is_leaf byte*32 weight" for each node except the root; ids count from 1 in the order of
-/// these lines. Words are renumbered breadth first; scoring and weighting are checked and not used,
-/// since word weights come from the lines and views are compared by L1.
+/// these lines. Words are renumbered breadth first. Scoring and weighting are checked but not used,
+/// since word weights come from the lines and vectors are always compared by their L1 distance.
 /// @param name  of the file, for messages.
 /// @throws InputError "name:line: ..." if the text is not such a tree.
 VocabularyTree read_dbow2_text(std::string_view text, const std::string& name);

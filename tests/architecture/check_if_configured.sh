@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The test Rooms.IncludesFollowTheLinkLines without a build, where `cmake --preset release` was run.
+# Runs the test Architecture.IncludesFollowTheLinkLines without building. Does nothing unless
+# `cmake --preset release` was run.
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 targets=$root/build/release/made/targets.txt
 [[ -f $targets ]] || exit 0

@@ -61,7 +61,7 @@ def places(targets, links):
         return lines + 9 * (sum(hidden(*e, box) for e in mine for box in targets) +
                             sum(hidden(*e, name) for e in edges if name not in e))
 
-    for _ in range(6):  # moves each box to the place of least cost; the first one among equals
+    for _ in range(6):  # moves each box to the place with the lowest cost, the first of equal ones
         for name in sorted(targets):
             best = None
             for x in slots[folder(targets, name)]:

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Names the files among its arguments that are larger than 1 MB; assets/ may hold what the program
-# needs.
+# Names the files among its arguments that are larger than 1 MB and fails if there are any. Files in
+# assets/ are exempt, since the program needs them.
 status=0
 for file in "$@"; do
   [[ $file == assets/* || ! -f $file ]] && continue

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder for the bytes as a file that is read as boxes or as class names.
+/// A folder in which the bytes become a file that is read as boxes or as class names.
 struct Files {
   fs::path folder = fs::temp_directory_path() / ("mh_fuzz_boxes_" + std::to_string(getpid()));
   Files() { fs::create_directories(folder / "yolo"); }

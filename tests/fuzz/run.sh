@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the fuzzers (preset fuzz) and runs each for so many seconds, from the committed seeds; what
-# they find lands in build/fuzz/findings. Usage: tests/fuzz/run.sh [SECONDS] [NAME...]
+# Builds the fuzzers (preset fuzz) and runs each for SECONDS, starting from the committed seeds.
+# What they find is written to build/fuzz/findings. Usage: tests/fuzz/run.sh [SECONDS] [NAME...]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:-300}

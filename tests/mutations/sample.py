@@ -23,7 +23,7 @@ from sites import Site, sites_of
 HERE = Path(__file__).resolve().parent
 SOURCES = ('slam', 'bench', 'sim/sensors')
 PASSED_OVER = ('bench/lab/micro/',)
-# The kinds are drawn in turn; logic counts as a relation.
+# Each kind is drawn in turn; 'logic' counts as 'relation'.
 KINDS = ('relation', 'arithmetic', 'constant', 'arguments', 'statement')
 KIND_OF = {'logic': 'relation'}
 LONGEST_TEST_S, LEAST_LIMIT_S, TIMES_SLOWER = 600, 60, 3
@@ -274,7 +274,8 @@ def judge(copy, mutant, experience, most_tests):
     file = copy.tree / mutant.file
     content = file.read_text()
     objects = copy.objects_of(mutant.file)
-    # For a header that half of the project includes, the tests build what they need.
+    # For a header that half of the project includes, no object files are compared: each test's
+    # build compiles what the test needs.
     compared = objects if len(objects) <= MOST_COMPARED else []
     if compared and not copy.ninja(*compared):
         sys.exit(f'{mutant.file}: does not build as it is:\n{copy.log.read_text()[-2000:]}')

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# follow.sh PAGE BUILD_DIR: does in a fresh clone what the ```bash blocks of a page say, line by line
-# as printed, in their order. A line whose comment tells minutes or hours ("# 15 min") is not run:
-# its program's help must know every option that it names. Lines with sudo are left out.
+# follow.sh PAGE BUILD_DIR: runs the ```bash blocks of a page in a fresh clone, line by line as
+# printed, in order. A line whose comment gives a time in minutes or hours ("# 15 min") is not run:
+# instead, its program's help must list every option that the line uses. Lines that begin with sudo
+# are skipped.
 set -euo pipefail
 
 root=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd -P)
@@ -15,7 +16,7 @@ if grep -q python_slam "$root/$page" && ! /usr/bin/python3 -c 'import cv2' 2>/de
   exit 77
 fi
 
-# The clone: every file that is or may become part of the repository, and what was built of it.
+# The clone: every file that is or may become part of the repository, and what was built from it.
 rm -rf -- "$work"
 mkdir -p "$work/clone/build" "$work/home"
 if git -C "$root" rev-parse --git-dir >/dev/null 2>&1; then
@@ -27,7 +28,7 @@ else
 fi
 ln -s "$build" "$work/clone/build/release"
 
-# Commands of the page, one a line: blocks joined, continued lines too.
+# The page's commands, one per line: blocks are concatenated, and continued lines are joined.
 sed -n '/^```bash$/,/^```$/p' "$root/$page" | grep -v '^```' |
   sed -e ':more' -e '/\\$/{N;s/\\\n[[:space:]]*//;b more' -e '}' >"$work/commands"
 [[ -s $work/commands ]] || { echo "$page holds no commands"; exit 1; }
@@ -36,7 +37,7 @@ is_long() {
   [[ $1 =~ \#.*[0-9][[:space:]](min|h)([^a-z]|$) ]]
 }
 
-# parse LINE: the line's program must know its options.
+# parse LINE: the help of the line's program must list the line's options.
 parse() {
   local words word help program=()
   read -ra words <<<"${1%%#*}"
@@ -72,7 +73,7 @@ while IFS= read -r line; do
   else
     echo "+ $line"
     SECONDS=0
-    # In this shell, so that cd and export hold for the lines below.
+    # In this shell, so that cd and export stay in effect for the following lines.
     eval "$line" </dev/null || { echo "failed: $line"; exit 1; }
     echo "  ($SECONDS s)"
     run=$((run + 1))

@@ -177,7 +177,7 @@ class SearchTest(unittest.TestCase):
         env.reset(seed=3)
         cut = [env.step((0.1, 0, 0.1, 0))[3] for _ in range(30)]
         self.assertTrue(cut[-1] and not any(cut[:-2]))
-        # A robot placed next to the goal has arrived without a path.
+        # A robot that is placed next to the goal arrives at once, without driving.
         env.reset(seed=3)
         places = [(x, y) for x in np.arange(0, 5, 0.1) for y in np.arange(0, 4.2, 0.1)
                   if env.start.is_arrival(x, y)]

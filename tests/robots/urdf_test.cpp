@@ -70,7 +70,7 @@ TEST(LoadUrdf, PepperIsAsPublished) {
 TEST(LoadUrdf, TheHeadMovesItsCameras) {
   const KinematicTree tree = load_urdf(kFolder + "pepper.urdf");
   // Aldebaran's Stand posture: the published pose of the top camera is (0.0266, -0.003, 1.1667),
-  // 10.6 deg upwards.
+  // 10.6 deg upward.
   const SE3 pose = tree.root_from("CameraTop_frame", {{"HeadPitch", -0.21169},
                                                       {"HeadYaw", -0.00767},
                                                       {"HipPitch", -0.02608},

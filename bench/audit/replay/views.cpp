@@ -53,7 +53,7 @@ class ViewsOf {
  private:
   Json keyframes() const {
     std::map<Stamp, const MappedFrame*>
-        call_of;  // the call that made the keyframe; the last one, since earlier ones were culled
+        call_of;  // the last call that added a keyframe at this stamp; earlier ones were culled
     for (const MappedFrame& call : run_.mapping.calls)
       if (call.keyframe_added) call_of[call.stamp_ns] = &call;
     Json list = Json::array();

@@ -35,7 +35,7 @@ struct EpisodePlace {
   std::uint64_t system_seed = 0;  ///< of the SLAM system's draws
 };
 
-/// The state of an episode at one time, for logs and images.
+/// The state of an episode at one moment, for logs and images.
 struct EpisodeMoment {
   double time_s = 0;
   const RgbdFrame* frame = nullptr;  ///< null if no frame arrived

@@ -141,7 +141,9 @@ Json headline(const Suite& suite, std::span<const Row> rows, const SystemPair& s
   if (!other.empty()) text += fmt::format("; {} has {}", follower, gains_text(suite, other));
   if (decided) text += ".";
   const Judged* shown = decided ? lead.front() : nullptr;
-  if (shown == nullptr && !family.empty()) {  // the comparison closest to a finding
+  // If nothing is decided, the largest difference is shown, preferably one by the suite's measure
+  // that is not saturated.
+  if (shown == nullptr && !family.empty()) {
     const auto told = [&](const Judged* j) {
       return std::tuple(j->comparison.what.measure == name(suite.measure), !j->saturated,
                         std::abs(j->comparison.difference));

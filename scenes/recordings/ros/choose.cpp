@@ -54,8 +54,8 @@ std::string parent_of(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
 }
 
-/// If there are several topics, those whose names begin like the color topic's ("/camera2/..."), or
-/// all if none does.
+/// Of several topics, returns those of the same camera as the color topic, judging by the beginning
+/// of the name ("/camera2/..."); all topics if there are none of that camera.
 std::vector<const ImageTopic*> of_same_camera(std::vector<const ImageTopic*> topics,
                                               const ImageTopic& color) {
   const auto camera_of = [](const std::string& name) { return name.substr(0, name.find('/', 1)); };

@@ -48,7 +48,7 @@ void add_ply(std::vector<HostileCase>& cases) {
   cases.push_back(scene("ply_of_100_gigabytes", "a.ply+", triangle_ply(),
                         "it has 107.4 GB, at most 4.3 GB can be read"));
   cases.back().arguments.pop_back();
-  std::string obeyed = ascii;  // holds a sequence that a terminal would obey
+  std::string obeyed = ascii;  // contains an escape sequence that a terminal would execute
   obeyed.replace(obeyed.find("property float z"), 16, "property \x1b[2J\xff z");
   cases.push_back(scene("ply_that_clears_the_screen", "a.ply", obeyed, "a.ply:6: '?[2J?'"));
   std::string lists = ascii;

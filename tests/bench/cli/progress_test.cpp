@@ -89,7 +89,7 @@ TEST(Progress, OnATerminalClearsTheLineKeepsToItsWidthAndEndsIt) {
     progress.end();
   }
   std::fclose(file);
-  // A terminal returns what was written in pieces, and an error once the other side is closed.
+  // Reads from a terminal return the output in pieces, and fail once the other side is closed.
   std::array<char, 256> piece{};
   for (ssize_t count; (count = read(terminal, piece.data(), piece.size())) > 0;)
     text.append(piece.data(), static_cast<std::size_t>(count));

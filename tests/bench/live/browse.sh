@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# browse.sh PROGRAM BROWSER [SCREENSHOTS]: runs browse.mjs against `modelhouse live`. 77: there is no browser.
+# browse.sh PROGRAM BROWSER [SCREENSHOTS]: runs browse.mjs against `modelhouse live`. Exit code 77:
+# there is no browser.
 set -euo pipefail
 here=$(dirname -- "${BASH_SOURCE[0]}")
 program=$1 browser=$2

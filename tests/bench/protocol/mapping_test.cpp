@@ -160,7 +160,8 @@ TEST(MapSequence, FramesBringTheReadingsSinceTheFrameBefore) {
 }
 
 // Frames 80 to 99 are never tracked. By hand: 79 + 5 * 50 calls up to the sixth failure of 80 (see
-// above), then 30 to 119 without 59, 80, 89, 119 = 86, which shows 81 to 99 without 89 once: 415.
+// above), then 30 to 119 without 59, 80, 89, 119 = 86: 415 in all. In these last calls, each of 81
+// to 99 (except 89) is shown once.
 TEST(MapSequence, AHopelessSpellIsShownOnce) {
   FakeSystem system([](Stamp frame, int) { return frame < 80 || frame > 99; });
   ProtocolConfig config;

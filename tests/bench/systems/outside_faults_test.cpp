@@ -233,8 +233,8 @@ TEST_F(OutsideFaults, TimeAndMemoryAreLimited) {
   EXPECT_HOLDS(trajectory_error(glutton), "its limit is 50 MB");
 }
 
-/// Starts processes that no process group or session holds, that ignore SIGTERM, and whose parents
-/// are gone; writes their ids into the folder PIDS and waits until all of them run.
+/// Starts processes that ignore SIGTERM, in several sessions, some of them with parents that have
+/// exited; each writes its id into the folder PIDS. Waits until all of them run.
 const std::string kEscapes =
     "sleeper='trap \"\" TERM HUP INT; echo $$ > $PIDS/$$; while :; do sleep 60; done'; "
     "sh -c \"$sleeper\" & setsid sh -c \"$sleeper\" & (setsid sh -c \"$sleeper\" &) ; "

@@ -248,7 +248,7 @@ TEST_F(OutsideOdometry, GoesThroughTheWholeProtocol) {
   EXPECT_EQ(score.completeness, 1.0);
   ASSERT_TRUE(score.ate_rmse_m);
   EXPECT_LT(*score.ate_rmse_m,
-            0.05);  // odometry drifts, since it adjusts no earlier poses; the camera sways by 0.4 m
+            0.05);  // odometry drifts: it never corrects earlier poses; the camera sways by 0.4 m
   EXPECT_GT(*score.ate_rmse_m, 1e-6);  // there is noise: no system can be this accurate
 
   for (const std::size_t index : test_frames(kCount, {})) {

@@ -76,7 +76,7 @@ TEST_F(SevenScenes, DepthIsRegisteredToTheColorCamera) {
   for (int v = 1; v + 1 < 480; ++v)
     for (int u = 1; u + 1 < 640; ++u) {
       const Class here = class_of(u, v);
-      bool at_edge = false;  // a point may be rounded across it
+      bool at_edge = false;  // rounding may move a point across it
       for (int k = 0; k < 9; ++k)
         at_edge = at_edge || class_of(u + k % 3 - 1, v + k / 3 - 1) != here;
       if (at_edge) continue;

@@ -73,7 +73,7 @@ TEST(HandheldScan, KeepsClearAndSeesTheWholeRoom) {
       EXPECT_GE(grid.clearance_at(p.head<2>()), 0.1) << p.transpose();
       EXPECT_NEAR(p.z(), 1.4, 0.2);
       const Eigen::Vector3d ahead = pose.world_from_camera.rotation().col(2);
-      // The left end, the middle and the right end of the image.
+      // The left edge, the middle and the right edge of the image.
       const double half_view_rad = std::atan(0.5 * camera.width_px / camera.fx_px);
       for (const double aside_rad : {-half_view_rad, 0.0, half_view_rad})
         quarters.insert(std::lround((std::atan2(ahead.y(), ahead.x()) + aside_rad) / M_PI_2 + 8) %

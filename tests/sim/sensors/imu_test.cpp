@@ -105,7 +105,7 @@ TEST(Imu, ErrsByItsNoiseBiasAndWalk) {
   white.gyro_noise = 1e-3;
   EXPECT_NEAR(spread(white), 1e-3 * std::sqrt(200.0), 2e-4);
   ImuConfig walks = exact();
-  walks.gyro_walk = 1e-3;  // 1e-2 after 100 s, 7e-3 on average
+  walks.gyro_walk = 1e-3;  // 1e-2 after 100 s; rms over them 7e-3
   EXPECT_GT(spread(walks), 2e-3);
   EXPECT_LT(spread(walks), 2e-2);
   ImuConfig biased = exact();

@@ -37,7 +37,7 @@ constexpr double kAngles_rad[] = {
 
 // The axes have no zero component, so each entry of both matrices matters. Tolerance: a few units
 // in the last place of 1. In the closed form of the rotation, (1 - cos) / angle^2 suffers from
-// cancellation: an error of half a unit divided by angle^2, and then multiplied by angle^2 again.
+// cancellation, but its error of half a unit is divided by angle^2 and then multiplied by it again.
 TEST(Se3, ExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
   for (const double angle_rad : kAngles_rad)
     for (const Eigen::Vector3d& axis :
@@ -48,9 +48,9 @@ TEST(Se3, ExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
     }
 }
 
-// V's closed form divides the canceled 1 - cos by angle^2 and multiplies by the angle once: at 1e-5
-// rad its error is 1e-16 / 1e-5 = 1e-11, while its second-order term is 1.7e-11. The bound is
-// therefore the largest error that this allows.
+// V's closed form divides 1 - cos, which suffers from cancellation, by angle^2 and multiplies it by
+// the angle only once: at 1e-5 rad its error is 1e-16 / 1e-5 = 1e-11, while its second-order term
+// is 1.7e-11. The bound below therefore includes the largest error that cancellation can cause.
 TEST(Se3, TranslationOfExpIsItsPowerSeriesOnBothSidesOfTheSwitch) {
   const Eigen::Vector3d rho(0.7, -1.1, 0.4);
   for (const double angle_rad : kAngles_rad)

@@ -45,8 +45,8 @@ TEST(RecognizeHead, GoesByTheOutputsShape) {
   EXPECT_EQ(of(Made({1, 41, 8})), Head::kAuto);
 }
 
-// Outputs of detectors must not be taken for segmentation: Yolo-FastestV2's 22 x 22 x 95 is not 22
-// classes, and YOLOv4's raw scales are not 255.
+// Outputs of detectors must not be taken for segmentation: the 22 in Yolo-FastestV2's 22 x 22 x 95
+// is not a number of classes, nor is the 255 in YOLOv4's raw scales.
 TEST(RecognizeHead, TakesNoDetectorsScalesForSegmentation) {
   const auto of = [](const std::vector<Made>& made) {
     std::vector<Tensor> tensors;

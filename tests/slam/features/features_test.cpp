@@ -165,7 +165,8 @@ TEST(Extract, SpreadsKeypointsOverUnevenTexture) {
 }
 
 TEST(Extract, LowThresholdServesCellsWithoutStrongCorners) {
-  // Squares 12 gray levels brighter than the background: invisible at 20, visible at 7.
+  // Squares 12 gray levels brighter than the background: not found at a FAST threshold of 20, but
+  // found at 7.
   cv::Mat image(kHeight, kWidth, CV_8U, cv::Scalar(100));
   for (int y = 30; y < kHeight - 40; y += 40)
     for (int x = 30; x < kWidth - 40; x += 40)
@@ -337,8 +338,8 @@ TEST(Extract, UndistortedKeypointsDistortBackToTheirPixels) {
   const RgbdFrame frame = frame_of(squares(kWidth, kHeight, 10));
   Camera camera = camera_of(frame);
   const Features raw = extract(frame, camera, {});
-  // Freiburg 1 of the TUM benchmark, which is strong and has tangential terms, and the color camera
-  // of an Azure Kinect.
+  // The lens distortion of Freiburg 1 of the TUM benchmark, which is strong and has tangential
+  // terms, and that of an Azure Kinect's color camera.
   for (const Distortion& d :
        {Distortion{.k1 = 0.2624, .k2 = -0.9531, .p1 = -0.0054, .p2 = 0.0026, .k3 = 1.1633},
         Distortion{0.5286, -2.6450, 0.00082, -0.00022, 1.5006, 0.4073, -2.4695, 1.4282}}) {

@@ -13,7 +13,7 @@
 namespace mh::testing {
 
 // Imitates a lens and a sensor: without them, neighboring pixels are equally good corners, and
-// non-maximal suppression drops both.
+// non-maximum suppression drops both.
 inline void soften(cv::Mat& image) {
   cv::GaussianBlur(image, image, {5, 5}, 0.8);
   for (int y = 0; y < image.rows; ++y)

@@ -74,8 +74,8 @@ TEST(MapFile, LoadingChangesNothing) {
   EXPECT_EQ(loaded.map.digest(), midway().map.digest());
 }
 
-/// Writes the content of a map file independently of the code under test: readers in other
-/// languages can go by it. If it has to change, kMapFileVersion must be raised.
+/// Writes the content of a map file independently of the code under test, so that readers in other
+/// languages can be modeled on it. If it has to change, kMapFileVersion must be raised.
 class Layout {
  public:
   explicit Layout(const SlamState& s)
