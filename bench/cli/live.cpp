@@ -19,13 +19,14 @@
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/shipped.hpp"
+#include "sim/world/lit_scene.hpp"
 #include "slam/io/files.hpp"
 
 namespace mh::cli {
 namespace {
 
 struct LiveArguments {
-  std::string scene, robot = "pepper", level = "pepper", vocabulary = "vocabulary";
+  std::string scene, robot = "pepper", level = "pepper", vocabulary = "vocabulary", pedestrian;
   LiveAddress address{.port = 8642};
   std::filesystem::path out;
   std::uint64_t seed = 0;
@@ -81,6 +82,9 @@ void run(LiveArguments options) {
       options.scene, usual_cache(),
       [](std::string_view line) { fmt::print(stderr, "live: {}\n", line); }, &warnings);
   print_warnings(warnings);
+  if (!options.pedestrian.empty())
+    scene.pedestrian = make_pedestrian_scene(*scene.scene, scene.renderer,
+                                             load_pedestrian(options.pedestrian));
   LiveDrive drive(std::move(scene), robot, level, vocabulary, options.seed);
   if (options.address.host != "127.0.0.1" && options.address.token.empty())
     options.address.token = new_token();
@@ -132,6 +136,8 @@ void add_live(CLI::App& app) {
   command->add_option("--robot", options->robot, "Robot (YAML), or the name of a shipped one");
   command->add_option("--level", options->level,
                       "Sensor level (YAML), or the name of a shipped one");
+  command->add_option("--pedestrian", options->pedestrian,
+                      "Adds a pedestrian (YAML) who walks through the scene");
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--port", options->address.port, "Port to listen on; 0: any free one")

@@ -15,7 +15,7 @@
 namespace mh {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Ordered = nlohmann::ordered_json;
 
 constexpr char kMessageData = 1;  // the same in both directions
 constexpr std::size_t kMostPublished = 64;
@@ -29,14 +29,14 @@ void append(std::string& bytes, T value) {
 }
 
 /// An id as the protocol has them: a whole number of 32 bits.
-std::optional<std::uint32_t> id_of(const Json& json) {
+std::optional<std::uint32_t> id_of(const Ordered& json) {
   if (!json.is_number_unsigned() || json.get<std::uint64_t>() > UINT32_MAX) return std::nullopt;
   return json.get<std::uint32_t>();
 }
 
 /// An object's list, or an empty one.
-const Json& list_of(const Json& json, const char* key) {
-  static const Json kNone = Json::array();
+const Ordered& list_of(const Ordered& json, const char* key) {
+  static const Ordered kNone = Ordered::array();
   const auto found = json.find(key);
   return found != json.end() && found->is_array() ? *found : kNone;
 }
@@ -47,9 +47,9 @@ FoxgloveClient::Heard refused(const std::string& why) {
 
 ros::Twist twist_of(std::string_view bytes, const std::string& encoding) {
   if (encoding == "cdr") return ros::parsed<ros::Twist>(bytes, ros::Wire::kCdr);
-  const Json json = parse_json_or_discard<Json>(bytes);
+  const Ordered json = parse_json_or_discard<Ordered>(bytes);
   const auto number = [&](const char* part, const char* axis) {
-    const Json::json_pointer at(fmt::format("/{}/{}", part, axis));
+    const Ordered::json_pointer at(fmt::format("/{}/{}", part, axis));
     if (!json.is_object() || !json.contains(at) || !json.at(at).is_number())
       throw InputError(fmt::format("has no number {}.{}", part, axis));
     return json.at(at).get<double>();
@@ -61,17 +61,17 @@ ros::Twist twist_of(std::string_view bytes, const std::string& encoding) {
 
 std::string foxglove_error(const std::string& why) {
   constexpr int kError = 2;
-  return Json{{"op", "status"}, {"level", kError}, {"message", why}}.dump();
+  return Ordered{{"op", "status"}, {"level", kError}, {"message", why}}.dump();
 }
 
 std::vector<std::string> FoxgloveClient::greeting() const {
   // Clients choose panels and datatypes by the distribution: message types are alike in all.
-  const Json info = {{"op", "serverInfo"},
-                     {"name", "modelhouse"},
-                     {"capabilities", {"clientPublish"}},
-                     {"supportedEncodings", {"cdr", "json"}},
-                     {"metadata", {{"ROS_DISTRO", "humble"}}}};
-  Json channels = Json::array();
+  const Ordered info = {{"op", "serverInfo"},
+                        {"name", "modelhouse"},
+                        {"capabilities", {"clientPublish"}},
+                        {"supportedEncodings", {"cdr", "json"}},
+                        {"metadata", {{"ROS_DISTRO", "humble"}}}};
+  Ordered channels = Ordered::array();
   for (std::size_t i = 0; i < topics_.size(); ++i)
     channels.push_back({{"id", i},
                         {"topic", topics_[i].name},
@@ -79,17 +79,17 @@ std::vector<std::string> FoxgloveClient::greeting() const {
                         {"schemaName", ros::type_name(topics_[i].type, ros::Wire::kCdr)},
                         {"schema", topics_[i].definition},
                         {"schemaEncoding", "ros2msg"}});
-  return {info.dump(), Json{{"op", "advertise"}, {"channels", channels}}.dump()};
+  return {info.dump(), Ordered{{"op", "advertise"}, {"channels", channels}}.dump()};
 }
 
 FoxgloveClient::Heard FoxgloveClient::take_text(std::string_view text) {
-  const Json json = parse_json_or_discard<Json>(text);
+  const Ordered json = parse_json_or_discard<Ordered>(text);
   if (!json.is_object() || !json.contains("op") || !json["op"].is_string())
     return refused("expected an object with a text 'op'");
   const std::string op = json["op"];
   Heard heard;
   if (op == "subscribe") {
-    for (const Json& wanted : list_of(json, "subscriptions")) {
+    for (const Ordered& wanted : list_of(json, "subscriptions")) {
       const auto id =
           wanted.is_object() && wanted.contains("id") ? id_of(wanted["id"]) : std::nullopt;
       const auto topic = wanted.is_object() && wanted.contains("channelId")
@@ -103,12 +103,12 @@ FoxgloveClient::Heard FoxgloveClient::take_text(std::string_view text) {
     return heard;
   }
   if (op == "unsubscribe") {
-    for (const Json& id : list_of(json, "subscriptionIds"))
+    for (const Ordered& id : list_of(json, "subscriptionIds"))
       std::erase_if(subscription_of_, [&](const auto& s) { return id_of(id) == s.second; });
     return heard;
   }
   if (op == "advertise") {
-    for (const Json& channel : list_of(json, "channels")) {
+    for (const Ordered& channel : list_of(json, "channels")) {
       const auto text_of = [&](const char* key) {
         return channel.is_object() && channel.contains(key) && channel[key].is_string()
                    ? channel[key].get<std::string>()
@@ -127,7 +127,7 @@ FoxgloveClient::Heard FoxgloveClient::take_text(std::string_view text) {
     return heard;
   }
   if (op == "unadvertise") {
-    for (const Json& id : list_of(json, "channelIds"))
+    for (const Ordered& id : list_of(json, "channelIds"))
       if (const auto known = id_of(id)) published_.erase(*known);
     return heard;
   }
@@ -148,7 +148,8 @@ FoxgloveClient::Heard FoxgloveClient::take_binary(std::string_view bytes) const 
     const ros::Twist twist = twist_of(bytes.substr(kHeadBytes), encoding);
     for (const double value : {twist.linear.x, twist.linear.y, twist.angular.z})
       if (!std::isfinite(value)) return refused(fmt::format("{}: is not finite", topic));
-    return {.command = Json{{"drive", {twist.linear.x, twist.linear.y, twist.angular.z}}}.dump()};
+    return {.command =
+                Ordered{{"drive", {twist.linear.x, twist.linear.y, twist.angular.z}}}.dump()};
   } catch (const InputError& error) {
     return refused(fmt::format("{}: {}", topic, error.what()));
   }

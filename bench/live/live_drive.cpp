@@ -89,7 +89,7 @@ LiveDrive::LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfi
       seed_(seed),
       simulation_(scene_, robot_, level_, config_of(scene_, robot_, seed)),
       camera_messages_(log_, with_lens(robot.camera, level), true),
-      robot_messages_(log_, robot_, true, robot.equipment.has_value(), false),
+      robot_messages_(log_, robot_, true, robot.equipment != nullptr, false),
       slam_topics_{.pose = log_.add_topic<ros::PoseStamped>("/slam/pose"),
                    .keyframes = log_.add_topic<ros::Path>("/slam/keyframes"),
                    .landmarks = log_.add_topic<ros::PointCloud2>("/slam/landmarks")},
@@ -108,7 +108,8 @@ void LiveDrive::put_down() {
              .file = {},
              .start_m = world_from_base.translation().head<2>(),
              .start_heading_rad = std::atan2(ahead.y(), ahead.x()),
-             .reflex = false};
+             .reflex = false,
+             .commands = {}};
 }
 
 void LiveDrive::note(const Twist2d& velocity) {
@@ -253,8 +254,9 @@ LiveDrive::Shown LiveDrive::step(int wanted) {
     asked_.xi.reset();
   }
   obey(asked);
-  const RobotObservation seen = simulation_.step(asked.velocity, kStep_s);
-  note(asked.velocity);
+  velocity_ = asked.velocity;
+  const RobotObservation seen = simulation_.step(velocity_, kStep_s);
+  note(velocity_);
   if (!seen.frame) return {};
   RgbdFrame frame = *seen.frame;
   if (wheels_ && !lifted_) frame.odom_from_camera = seen.odom_from_camera;
@@ -364,6 +366,7 @@ std::string LiveDrive::state(const RobotObservation& seen, const StepReport& rep
       {"inliers", report.inliers},
       {"keyframes", slam_.map.keyframe_count()},
       {"landmarks", slam_.map.landmark_count()},
+      {"command", {velocity_.x(), velocity_.y(), velocity_.z()}},
       {"light", light_ && dark_steps_ == 0},
       {"wheels", wheels_},
       {"gamma", slam_.config.semantics.gamma},

@@ -75,6 +75,7 @@ class LiveDrive {
   std::shared_ptr<const Vocabulary> vocabulary_;
   std::uint64_t seed_;
   Simulation simulation_;
+  Twist2d velocity_ = Twist2d::Zero();  ///< commanded for the last step
   CommandScript driven_;
   MessageLog log_{ros::Wire::kCdr};
   CameraMessages camera_messages_;

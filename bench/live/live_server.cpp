@@ -184,7 +184,8 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
     socket_->read_message_max(foxglove_ ? kMostFoxgloveBytes : kMostMessageBytes);
     if (foxglove_)
       socket_->set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-        response.set(http::field::sec_websocket_protocol, FoxgloveClient::kSubprotocol);
+        response.set(http::field::sec_websocket_protocol,
+                     std::string(FoxgloveClient::kSubprotocol));
       }));
     socket_->async_accept(parser_.get(), [self = shared_from_this()](Error error) {
       if (error) return;

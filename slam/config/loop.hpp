@@ -64,8 +64,8 @@ void fields(C& c, Visit& v) {
   v("joining", joining, setting::kCount, "keyframes that must agree before pieces are joined,");
   v("joining_m", joining_m, setting::kLength_m, "over this length of the camera's path,");
   v("joining_within_m", joining_within_m, setting::kLength_m,
-    "and only if the motion between the pieces is known this accurately, so that no look-alike "
-    "place is within reach; 0: always");
+    "and only if the motion between the pieces is known this accurately (by track.max_speed_m_s), "
+    "so that no look-alike place is within reach; 0: always");
 }
 
 }  // namespace mh

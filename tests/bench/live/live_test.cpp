@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drive behind `modelhouse live`, and the server that shows it.
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,10 +17,14 @@
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
 
+#include "bench/live/foxglove.hpp"
 #include "bench/live/live_drive.hpp"
 #include "bench/live/live_server.hpp"
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/suite/cache.hpp"
+#include "scenes/floor.hpp"
+#include "scenes/load.hpp"
+#include "scenes/recordings/ros/names.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 #include "source_dir.hpp"
@@ -133,6 +140,59 @@ TEST(LiveDrive, TheSameCommandsGiveTheSameBits) {
   }
 }
 
+TEST(LiveDrive, PublishesWhatARobotOfRos2Would) {
+  const auto drive = made_drive();
+  std::map<std::string, std::size_t> count;
+  Stamp last_ns = 0;
+  std::string pose;
+  for (int i = 0; i < 20; ++i) {
+    drive->take(R"({"drive": [0, 0, 0.4]})");
+    const LiveDrive::Shown shown = drive->step(LiveDrive::kMessages);
+    EXPECT_EQ(shown.state + shown.color, "") << "nobody watches the page";
+    for (const MessageLog::Entry& entry : shown.messages) {
+      EXPECT_GE(entry.stamp_ns, last_ns);
+      last_ns = entry.stamp_ns;
+      ++count[drive->topics()[entry.topic].name];
+      if (drive->topics()[entry.topic].name == "/slam/pose") pose = entry.message;
+      if (drive->topics()[entry.topic].name == "/slam/landmarks") {
+        const auto cloud = ros::parsed<ros::PointCloud2>(entry.message, ros::Wire::kCdr);
+        EXPECT_GT(cloud.width, 100U);
+        EXPECT_EQ(cloud.data.size(), cloud.width * cloud.point_step);
+      }
+    }
+  }
+  for (const char* each :
+       {"/camera/color/image_raw", "/camera/depth_registered/image", "/camera/labels/image",
+        "/odom", "/scan/front", "/imu/data", "/tf", "/ground_truth/pose", "/slam/pose"})
+    EXPECT_EQ(count[each], 20U) << each;
+  for (const char* once : {"/map", "/tf_static", "/camera/labels/names"})
+    EXPECT_GE(count[once], 1U) << once;
+  EXPECT_EQ(count["/slam/landmarks"], 2U) << "once a second";
+  const SE3 estimate = ros::pose_of(ros::parsed<ros::PoseStamped>(pose, ros::Wire::kCdr).pose);
+  EXPECT_LT((estimate.translation()).norm(), 20) << "in the frame of the house";
+}
+
+TEST(LiveDrive, WhatWasDrivenCanBeDrivenAgain) {
+  const auto drive = made_drive();
+  held(*drive, R"({"drive": [0.3, 0, 0]})", 3);
+  drive->take(R"({"do": "kidnap"})");
+  Json last;
+  for (const auto& [command, steps] : std::vector<std::pair<const char*, int>>{
+           {R"({"drive": [0, 0, 0.8]})", 9}, {R"({"drive": [0.3, 0.1, -0.2]})", 12}, {"", 5}})
+    last = held(*drive, command, steps);
+  const fs::path file = fs::temp_directory_path() / fmt::format("mh_driven_{}.yaml", getpid());
+  write_atomically(file, commands_text(drive->driven()));
+  const CommandScript script = load_commands(file);
+  fs::remove(file);
+  ASSERT_EQ(script.commands.size(), 2U) << "the last command is held for half a second";
+  const Scene scene = load_scene(MH_SOURCE_DIR "/bench/scenarios/room.yaml");
+  const CommandedDrive again =
+      mh::drive(*LevelScene(scene), load_robot(MH_SOURCE_DIR "/robots/pepper/pepper.yaml"), script);
+  const Eigen::Vector3d end_m = again.path.base.back().world_from_camera.translation();
+  EXPECT_NEAR(end_m.x(), last.at("base")[0].get<double>(), 6e-4);  // the state is in mm
+  EXPECT_NEAR(end_m.y(), last.at("base")[1].get<double>(), 6e-4);
+}
+
 class LiveServing : public testing::Test {
  protected:
   LiveServing() {
@@ -144,8 +204,15 @@ class LiveServing : public testing::Test {
 
   std::unique_ptr<LiveServer> serve(const LiveAddress& address = {}) {
     return std::make_unique<LiveServer>(
-        address, folder_, [] { return std::string("hello"); },
-        [](const std::string& message) { return message == "quiet" ? "" : "heard " + message; });
+        address, LiveShow{.page = folder_,
+                          .greeting = [] { return std::string("hello"); },
+                          .take =
+                              [this](const std::string& message) {
+                                heard_ = message;
+                                return message == "quiet" ? "" : "heard " + message;
+                              },
+                          .topics = {topic_spec<ros::String>("/said", ros::Wire::kCdr),
+                                     topic_spec<ros::String>("/kept", ros::Wire::kCdr, true)}});
   }
 
   static asio::ip::tcp::socket connect(asio::io_context& io, int port) {
@@ -170,8 +237,21 @@ class LiveServing : public testing::Test {
   }
 
   struct Viewer {
-    explicit Viewer(int port, const std::string& target = "/ws") : socket(connect(io, port)) {
+    explicit Viewer(int port, const std::string& target = "/ws", const std::string& protocol = "",
+                    const std::string& origin = "")
+        : socket(connect(io, port)) {
+      socket.set_option(
+          beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
+            if (!protocol.empty()) request.set(http::field::sec_websocket_protocol, protocol);
+            if (!origin.empty()) request.set(http::field::origin, origin);
+          }));
       socket.handshake(fmt::format("127.0.0.1:{}", port), target);
+    }
+    void write(const Json& message) { socket.write(asio::buffer(message.dump())); }
+    void write_bytes(const std::string& bytes) {
+      socket.binary(true);
+      socket.write(asio::buffer(bytes));
+      socket.binary(false);
     }
     std::string read() {
       beast::flat_buffer buffer;
@@ -183,7 +263,10 @@ class LiveServing : public testing::Test {
   };
 
   const fs::path folder_ = fs::temp_directory_path() / ("mh_live_" + std::to_string(getpid()));
+  std::string heard_;  // read after an answer alone: another thread writes it
 };
+
+const std::string kFoxglove(FoxgloveClient::kSubprotocol);
 
 TEST_F(LiveServing, ThePageIsAllThatItServes) {
   const auto server = serve();
@@ -226,7 +309,7 @@ TEST_F(LiveServing, ViewersAreGreetedHeardAndShownEverything) {
   EXPECT_EQ(server->viewers(), 2);
   first.socket.write(asio::buffer(std::string("quiet")));
   first.socket.write(asio::buffer(std::string("me")));
-  EXPECT_EQ(first.read(), "heard me");
+  EXPECT_EQ(first.read(), R"({"error":"heard me"})");
   server->send_text("state");
   server->send_image(std::string(100'000, 'x'));
   for (Viewer* viewer : {&first, &second}) {
@@ -234,6 +317,93 @@ TEST_F(LiveServing, ViewersAreGreetedHeardAndShownEverything) {
     EXPECT_EQ(viewer->read(), std::string(100'000, 'x'));
     EXPECT_TRUE(viewer->socket.got_binary());
   }
+}
+
+TEST_F(LiveServing, FoxglovesClientsAreToldTheTopicsAndGetWhatTheySubscribeTo) {
+  const auto server = serve();
+  server->send_messages({{5, 1, "old"}});  // nobody is there; it is kept
+  Viewer viewer(server->port()), client(server->port(), "/", kFoxglove);
+  EXPECT_EQ(viewer.read(), "hello");
+  const Json info = Json::parse(client.read()), channels = Json::parse(client.read());
+  EXPECT_EQ(info.at("op"), "serverInfo");
+  EXPECT_EQ(channels.at("op"), "advertise");
+  ASSERT_EQ(channels.at("channels").size(), 2U);
+  EXPECT_EQ(channels.at("channels")[0],
+            Json::parse(R"({"id": 0, "topic": "/said", "encoding": "cdr",
+      "schemaName": "std_msgs/msg/String", "schema": "string data\n", "schemaEncoding": "ros2msg"})"));
+  EXPECT_EQ(server->viewers(), 1) << "the page's alone";
+  EXPECT_EQ(server->subscriptions(), 0);
+  client.write({{"op", "subscribe"},
+                {"subscriptions", {{{"id", 7}, {"channelId", 1}}, {{"id", 8}, {"channelId", 0}}}}});
+  EXPECT_EQ(client.read(), std::string("\1\7\0\0\0\5\0\0\0\0\0\0\0old", 16)) << "latched";
+  EXPECT_TRUE(client.socket.got_binary());
+  EXPECT_EQ(server->subscriptions(), 2);
+  server->send_messages({{258, 0, "new"}});
+  EXPECT_EQ(client.read(), std::string("\1\10\0\0\0\2\1\0\0\0\0\0\0new", 16));
+  client.write({{"op", "unsubscribe"}, {"subscriptionIds", {8}}});
+  client.write({{"op", "sing"}});
+  EXPECT_THAT(client.read(), HasSubstr("'sing': is not supported"));
+  EXPECT_EQ(server->subscriptions(), 1);
+  server->send_messages({{9, 0, "missed"}, {9, 1, "kept"}});
+  EXPECT_THAT(client.read(), testing::EndsWith("kept"));
+}
+
+TEST_F(LiveServing, FoxglovesClientsDriveTheRobot) {
+  const auto server = serve();
+  Viewer client(server->port(), "/", kFoxglove);
+  client.read();
+  client.read();
+  client.write({{"op", "advertise"},
+                {"channels",
+                 {{{"id", 3}, {"topic", "/cmd_vel"}, {"encoding", "cdr"}, {"schemaName", "x"}},
+                  {{"id", 4}, {"topic", "/cmd_vel"}, {"encoding", "json"}, {"schemaName", "x"}},
+                  {{"id", 5}, {"topic", "/other"}, {"encoding", "json"}, {"schemaName", "x"}}}}});
+  const auto published = [](char id, const std::string& data) {
+    return std::string("\1", 1) + id + std::string(3, '\0') + data;
+  };
+  client.write_bytes(
+      published(3, ros::serialized(ros::Twist{{0.25, -0.5, 9}, {9, 9, 0.75}}, ros::Wire::kCdr)));
+  EXPECT_THAT(client.read(), HasSubstr("heard"));
+  EXPECT_EQ(Json::parse(heard_), Json::parse(R"({"drive": [0.25, -0.5, 0.75]})"));
+  client.write_bytes(
+      published(4, R"({"linear": {"x": 1, "y": 2, "z": 0}, "angular": {"x": 0, "y": 0, "z": 3}})"));
+  EXPECT_THAT(client.read(), HasSubstr("heard"));
+  EXPECT_EQ(Json::parse(heard_), Json::parse(R"({"drive": [1.0, 2.0, 3.0]})"));
+  client.write_bytes(published(5, "{}"));  // nobody listens
+  for (const auto& [sent, answer] : std::map<std::string, std::string>{
+           {published(3, "short"), "/cmd_vel: is not in CDR"},
+           {published(3, ros::serialized(ros::Twist{{NAN, 0, 0}, {}}, ros::Wire::kCdr)), "finite"},
+           {published(4, "{}"), "has no number linear.x"},
+           {published(4, std::string(5000, '[')), "has no number linear.x"},
+           {published(6, ""), "channel 6: was not advertised"},
+           {"", "expected the data of a message"},
+           {"\2", "expected the data of a message"}}) {
+    client.write_bytes(sent);
+    EXPECT_THAT(client.read(), HasSubstr(answer));
+  }
+  for (const auto& [sent, answer] : std::map<std::string, std::string>{
+           {"[]", "expected an object"},
+           {std::string(5000, '['), "expected an object"},
+           {R"({"op": 1})", "expected an object"},
+           {R"({"op": "subscribe", "subscriptions": [{"id": 0, "channelId": 2}]})", "subscribe:"},
+           {R"({"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 0}]})", "subscribe:"},
+           {R"({"op": "subscribe", "subscriptions": [3]})", "subscribe:"},
+           {R"({"op": "advertise", "channels": [{"id": 1, "topic": "/x", "encoding": "xml"}]})",
+            "'xml' is neither"},
+           {R"({"op": "advertise", "channels": [7]})", "advertise:"}}) {
+    client.socket.write(asio::buffer(sent));
+    EXPECT_THAT(client.read(), HasSubstr(answer)) << sent;
+  }
+}
+
+TEST_F(LiveServing, AForeignPageNeedsTheToken) {
+  const auto open = serve(), asking = serve({.token = "secret"});
+  const std::string foreign = "https://app.foxglove.dev";
+  EXPECT_THROW(Viewer(open->port(), "/", kFoxglove, foreign), boost::system::system_error);
+  EXPECT_THROW(Viewer(asking->port(), "/", kFoxglove, foreign), boost::system::system_error);
+  EXPECT_THAT(Viewer(asking->port(), "/?token=secret", kFoxglove, foreign).read(),
+              HasSubstr("serverInfo"));
+  EXPECT_THROW(Viewer(open->port(), "/", "other.protocol"), boost::system::system_error);
 }
 
 TEST_F(LiveServing, AHostileClientHarmsNobody) {
@@ -263,7 +433,7 @@ TEST_F(LiveServing, AHostileClientHarmsNobody) {
   std::string read;
   while (read != "last") read = good.read();
   good.socket.write(asio::buffer(std::string("me")));
-  EXPECT_EQ(good.read(), "heard me");
+  EXPECT_EQ(good.read(), R"({"error":"heard me"})");
   EXPECT_EQ(get(server->port(), "/").first, 200);
 }
 
