@@ -65,6 +65,16 @@ std::optional<OwnedFolder> place_for(const fs::path& suite) {
   }
 }
 
+/// @throws InputError if a file that will be written is not one that `check` wrote
+void require_own_outputs(const CheckArguments& options) {
+  if (!options.junit.empty())
+    require_replaceable(options.junit, kJunitHead, "`modelhouse check --junit`",
+                        {options.suite, baseline_file(options)});
+  if (options.update)
+    require_replaceable(baseline_file(options), is_baseline, "`modelhouse check --update`",
+                        {options.suite});
+}
+
 /// Runs the suite. Earlier results are reused only if they are from the same check, interrupted.
 /// From the cache, only light and detections are used, since their keys cover everything that
 /// determines them; runs that store no images never take maps from the cache.
@@ -102,6 +112,7 @@ Baseline measure(const Suite& suite, const CheckArguments& of, InputReader& inpu
     throw;
   }
   if (place) place->remove();
+  require_own_outputs(of);  // again: they may have appeared meanwhile
   if (!results.failed.empty()) {
     if (!of.junit.empty()) write_atomically(of.junit, failures_junit(results.failed, suite.name));
     throw_failures(results.failed, results.failed.front().error, "");
@@ -157,12 +168,7 @@ void run(CheckArguments options) {
       throw InputError(fmt::format(
           "{}: trials: {}: system '{}' is not repeatable: at least {} are needed to judge it",
           options.suite, suite.trials, system.name, kFewestRuns));
-  if (!options.junit.empty())
-    require_replaceable(options.junit, kJunitHead, "`modelhouse check --junit`",
-                        {options.suite, baseline_file(options)});
-  if (options.update)
-    require_replaceable(baseline_file(options), is_baseline, "`modelhouse check --update`",
-                        {options.suite});
+  require_own_outputs(options);
   Progress progress("check");
   InputReader inputs([&](std::string_view stage) { progress.say(stage); });
   if (options.update) return update(options, suite, measure(suite, options, inputs, progress));

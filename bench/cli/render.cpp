@@ -24,6 +24,7 @@
 #include "bench/suite/labels.hpp"
 #include "scenes/load.hpp"
 #include "scenes/recordings/euroc.hpp"
+#include "scenes/recordings/file_checksums.hpp"
 #include "scenes/recordings/ros/recorder.hpp"
 #include "scenes/scannet/files.hpp"
 #include "sim/sensors/imu.hpp"
@@ -121,6 +122,7 @@ std::vector<std::string> names_written(const fs::path& out) {
                                  "groundtruth.txt",
                                  "camera.yaml",
                                  "camera_info.yaml",
+                                 FileChecksums::kName,
                                  "mav0",
                                  "_info.txt",
                                  kLabelTableV2,

@@ -39,8 +39,9 @@ namespace websocket = beast::websocket;
 using Tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
-constexpr std::size_t kMostConnections = 256, kMostViewers = 32, kMostQueued = 16,
-                      kMostMessageBytes = 4096, kMostFoxgloveBytes = 65536, kMostHeaderBytes = 8192;
+constexpr std::size_t kMostConnections = 256, kMostViewers = 32, kMostQueuedBytes = 1U << 20U,
+                      kMostQueuedOfFoxglove = 16U << 20U, kMostMessageBytes = 4096,
+                      kMostFoxgloveBytes = 65536, kMostHeaderBytes = 8192;
 constexpr auto kRequestTime = std::chrono::seconds(5);
 
 struct PageFile {
@@ -129,10 +130,12 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
   }
   const std::optional<FoxgloveClient>& foxglove() const { return foxglove_; }
   void queue(Outgoing message) {
-    if (queue_.size() >= kMostQueued) {
+    const std::size_t most = foxglove_ ? kMostQueuedOfFoxglove : kMostQueuedBytes;
+    if (queued_bytes_ > most) {
       if (message.may_be_missed) return;
-      if (queue_.size() >= 4 * kMostQueued) return leave();
+      if (queued_bytes_ > 4 * most) return leave();
     }
+    queued_bytes_ += message.head.size() + message.content->size();
     queue_.push_back(std::move(message));
     if (queue_.size() == 1) write();
   }
@@ -236,6 +239,8 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
     socket_->async_write(std::array{asio::buffer(first.head), asio::buffer(*first.content)},
                          [self = shared_from_this()](Error error, std::size_t) {
                            if (error) return self->leave();
+                           self->queued_bytes_ -= self->queue_.front().head.size() +
+                                                  self->queue_.front().content->size();
                            self->queue_.pop_front();
                            if (!self->queue_.empty()) self->write();
                          });
@@ -256,6 +261,7 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
   std::unique_ptr<websocket::stream<beast::tcp_stream>> socket_;
   std::optional<FoxgloveClient> foxglove_;  // nullopt: the page
   std::deque<Outgoing> queue_;              // the first message is being written
+  std::size_t queued_bytes_ = 0;
 };
 
 void LiveServer::Impl::accept() {

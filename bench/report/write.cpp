@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report/write.hpp"
 
+#include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "bench/report/drawing/contact_sheet.hpp"
@@ -50,14 +56,30 @@ std::string identity_of_views(const World& world, const RunSpec& spec) {
   return text_key(text);
 }
 
+constexpr std::string_view kChart = "chart";  ///< what charts are marked as
+
 /// Draws a chart. Without gnuplot, prints a warning: the results then lack charts, but pages show
 /// the same data.
 void draw_chart(const fs::path& file, const PlotPage& page) {
   try {
     write_plots(file, page);
+    write_atomically(file, with_text(read_file(file), kMadeOf, std::string(kChart)));
   } catch (const MachineError& error) {
     fmt::print(stderr, "bench: warning: {}\n", error.what());
   }
+}
+
+/// Removes the charts of an earlier suite in this folder.
+void remove_other_charts(const fs::path& folder, const std::set<std::string>& kept) {
+  std::error_code error;
+  std::vector<fs::path> old;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if ((name.starts_with("graded-") || name.starts_with("sweep-")) && name.ends_with(".png") &&
+        !kept.contains(name) && mark_of(entry.path()) == kChart)
+      old.push_back(entry.path());
+  }
+  for (const fs::path& file : old) fs::remove(file, error);
 }
 
 }  // namespace
@@ -113,13 +135,18 @@ void write_results(const fs::path& folder, const Suite& suite, std::span<const R
   write_atomically(folder / "reproduction.json", reproduction_json(suite, runs).dump(2) + "\n");
   write_atomically(folder / "times.txt", times_table(suite, runs));
   const std::vector<Row> rows = make_rows(suite, runs);
-  for (const GradedChart& chart : graded_charts(suite, rows))
-    draw_chart(folder / chart.file, chart.page);
+  std::set<std::string> charts;
+  const auto draw = [&](const std::string& name, const PlotPage& page) {
+    charts.insert(name);
+    draw_chart(folder / name, page);
+  };
+  for (const GradedChart& chart : graded_charts(suite, rows)) draw(chart.file, chart.page);
   if (parameter_points(suite).size() > 1)
     for (const SweepResult& result : sweep_results(suite, rows))
-      draw_chart(folder / sweep_image_name(suite.systems[result.system], result.labels,
-                                           suite.levels[result.level]),
-                 sweep_chart(suite, rows, result));
+      draw(
+          sweep_image_name(suite.systems[result.system], result.labels, suite.levels[result.level]),
+          sweep_chart(suite, rows, result));
+  remove_other_charts(folder, charts);
   write_atomically(folder / "table.txt", results_table(suite, runs, failed, missing));
   write_atomically(folder / "results.json",
                    results_json(suite, runs, failed, missing).dump(2) + "\n");

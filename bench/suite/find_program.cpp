@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -242,6 +243,49 @@ fs::path place_of(const OutsideProgram& program, const std::string& text) {
   return program.folder / text;  // absolute if `text` is
 }
 
+std::vector<fs::path> folders_on_path() {
+  std::vector<fs::path> folders;
+  const char* const path = std::getenv("PATH");
+  std::istringstream text(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(text, folder, ':');) folders.emplace_back(folder);
+  return folders;
+}
+
+/// A file of files_of(), whether it exists or not.
+struct NamedFile : ProgramFile {
+  bool on_path = false;  ///< found in a folder of PATH
+};
+
+std::vector<NamedFile> named_files(const OutsideProgram& program) {
+  std::vector<NamedFile> files;
+  bool found_program = false;
+  for (const Word& word : words_of(program)) {
+    if (!word.token.text) continue;
+    const std::string& text = *word.token.text;
+    if (word.program && text.find('/') == std::string::npos) {
+      if (found_program) continue;
+      const fs::path file = what_the_shell_starts(text);
+      found_program = file.is_absolute();  // else a shell builtin or keyword
+      if (found_program) files.push_back({{word.token.raw, file}, true});
+      continue;
+    }
+    found_program = found_program || word.program;
+    const auto add_part = [&](const std::string& raw, const std::string& part) {
+      if (!part.empty() && (part[0] == '/' || !word.elsewhere))
+        files.push_back({{raw, place_of(program, part)}});
+    };
+    add_part(word.token.raw, text);
+    if (const auto end = text.find('='); end != std::string::npos)
+      add_part(word.token.raw.substr(word.token.raw.find('=') + 1), text.substr(end + 1));
+  }
+  for (const std::string& file : {program.library, program.settings})
+    if (!file.empty()) files.push_back({{file, program.folder / file}});
+  if (program.is_library()) files.push_back({{"modelhouse-library-host", library_host()}});
+  for (const std::string& input : program.inputs)
+    files.push_back({{input, program.folder / input}});
+  return files;
+}
+
 }  // namespace
 
 void require_program(const OutsideProgram& program) {
@@ -270,39 +314,35 @@ void require_program(const OutsideProgram& program) {
   if (what_the_shell_starts(word).empty()) refuse("no such program on PATH");
 }
 
+fs::path library_host() {
+  return fs::read_symlink("/proc/self/exe").parent_path() / "modelhouse-library-host";
+}
+
 std::vector<ProgramFile> files_of(const OutsideProgram& program) {
   std::vector<ProgramFile> files;
-  const auto add = [&](const std::string& word, const fs::path& file) {
+  for (NamedFile& named : named_files(program)) {
     std::error_code error;
     const bool known =
-        std::ranges::any_of(files, [&](const ProgramFile& f) { return f.word == word; });
-    if (!known && fs::is_regular_file(file, error) &&
-        access(file.c_str(), R_OK) == 0)  // a program may be executable but not readable
-      files.push_back({word, file});
-  };
-  bool found_program = false;
-  for (const Word& word : words_of(program)) {
-    if (!word.token.text) continue;
-    const std::string& text = *word.token.text;
-    if (word.program && text.find('/') == std::string::npos) {
-      if (found_program) continue;
-      const fs::path file = what_the_shell_starts(text);
-      found_program = file.is_absolute();  // else a shell builtin or keyword
-      if (found_program) add(word.token.raw, file);
-      continue;
-    }
-    found_program = found_program || word.program;
-    const auto add_part = [&](const std::string& raw, const std::string& part) {
-      if (!part.empty() && (part[0] == '/' || !word.elsewhere)) add(raw, place_of(program, part));
-    };
-    add_part(word.token.raw, text);
-    if (const auto end = text.find('='); end != std::string::npos)
-      add_part(word.token.raw.substr(word.token.raw.find('=') + 1), text.substr(end + 1));
+        std::ranges::any_of(files, [&](const ProgramFile& f) { return f.word == named.word; });
+    if (!known && fs::is_regular_file(named.file, error) &&
+        access(named.file.c_str(), R_OK) == 0)  // a program may be executable but not readable
+      files.push_back(std::move(named));
   }
-  for (const std::string& file : {program.library, program.settings})
-    if (!file.empty()) add(file, program.folder / file);
-  for (const std::string& input : program.inputs) add(input, program.folder / input);
   return files;
+}
+
+std::vector<fs::path> places_of(const OutsideProgram& program) {
+  std::vector<fs::path> places;
+  for (const NamedFile& named : named_files(program)) {
+    if (named.on_path)
+      for (const fs::path& folder : folders_on_path()) {
+        const fs::path place = folder / named.file.filename();
+        if (place == named.file) break;
+        places.push_back(place);
+      }
+    places.push_back(named.file);
+  }
+  return places;
 }
 
 std::map<std::string, std::optional<std::string>> variables_of(const OutsideProgram& program) {

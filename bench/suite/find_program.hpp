@@ -25,11 +25,20 @@ struct ProgramFile {
 
 /// Lists these files, each once: the command's first program that is not a shell builtin or
 /// keyword, as /bin/sh will find it; every other word of the command that names a regular file
-/// relative to the program's folder (also after a '='); the library, settings and inputs. Quotes,
+/// relative to the program's folder (also after a '='); the library, settings and inputs, and the
+/// program that runs a library. Quotes,
 /// backslashes, a leading ~ and environment variables are understood. Left out are files that do
 /// not exist or cannot be read, those that > or tee writes to, relative words after a `cd`, and
 /// words with a placeholder, a pattern, a substitution or a variable that the command sets.
 std::vector<ProgramFile> files_of(const OutsideProgram& program);
+
+/// Lists the places where a file that appears, changes or goes away would change what files_of()
+/// lists: its files, those that do not exist yet, and for a program on PATH the same name in the
+/// folders before it.
+std::vector<std::filesystem::path> places_of(const OutsideProgram& program);
+
+/// The program that runs systems in shared libraries, beside this program.
+std::filesystem::path library_host();
 
 /// The environment variables that the command names, with their values; absent if not set.
 /// Variables that it sets itself, and PWD, are left out.

@@ -130,7 +130,10 @@ ChildProcess::ChildProcess(const OutsideProgram& program, std::string command, T
   from_child_ = out[0];
   size_before_mb_ = contents_of(folder_).mb;
   const std::string runs_in = program_.folder.string(), scratch = folder_.string();
-  const Hiding hiding(program_.hidden, needed_by(program_, folder_), folder_);
+  const auto [memory_mb, disk_mb] = std::pair(program_.memory_limit_mb, program_.disk_limit_mb);
+  const double shared_mb =
+      memory_mb > 0 && disk_mb > 0 ? std::min(memory_mb, disk_mb) : std::max(memory_mb, disk_mb);
+  const Hiding hiding(program_.hidden, needed_by(program_, folder_), folder_, shared_mb);
   watcher_.emplace(WatchedCommand{
       .folder = runs_in.c_str(),
       .command = command_.c_str(),

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/suite/find_program.hpp"
 #include "bench/systems/child_process.hpp"
 #include "bench/systems/outside_error.hpp"
 #include "bench/systems/outside_system.hpp"
@@ -30,7 +31,6 @@ using Request = nlohmann::ordered_json;
 using Json = nlohmann::json;
 
 constexpr int kProtocol = 1;
-constexpr const char* kLibraryHost = "modelhouse-library-host";
 constexpr double kFarewell_s = 5;  // docs/outside_systems.md
 constexpr std::size_t kMostOfError = 300;
 
@@ -66,8 +66,7 @@ std::string host_command(const OutsideProgram& program, std::uint64_t seed) {
   const auto quoted = [&](const fs::path& file) {
     return shell_quoted(fs::absolute(file).string());
   };
-  const fs::path own = fs::read_symlink("/proc/self/exe");
-  std::string command = fmt::format("exec {} {} {}", quoted(own.parent_path() / kLibraryHost),
+  std::string command = fmt::format("exec {} {} {}", quoted(library_host()),
                                     quoted(program.folder / program.library), seed);
   if (!program.settings.empty()) command += " " + quoted(program.folder / program.settings);
   return command;

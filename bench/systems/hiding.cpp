@@ -52,14 +52,14 @@ int enter_namespace(const std::string& user_map, const std::string& group_map) {
 
 /// Gives this process its own shared memory, which contains one folder or nothing.
 /// @returns 0, or errno of the call that failed: then nothing has changed
-int make_memory_private(const std::string& of_own) {
+int make_memory_private(const std::string& of_own, const char* options) {
   if (of_own.empty())
-    return mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, "mode=1777") == 0 ? 0 : errno;
+    return mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, options) == 0 ? 0 : errno;
   const char* const own = of_own.c_str();
   // Opened in this namespace, since a folder of the outer namespace cannot be mounted here.
   const int folder = open(own, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (folder < 0) return errno;
-  if (mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, "mode=1777") != 0) return errno;
+  if (mount("tmpfs", kMemory, "tmpfs", MS_NOSUID | MS_NODEV, options) != 0) return errno;
   char link[32];
   *fmt::format_to_n(link, sizeof link - 1, "/proc/self/fd/{}", folder).out = 0;
   if (mkdir(own, 0700) == 0 && mount(link, own, nullptr, MS_BIND, nullptr) == 0)
@@ -103,8 +103,11 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 }  // namespace
 
 Hiding::Hiding(std::span<const fs::path> hidden, std::span<const fs::path> needed,
-               const fs::path& own)
-    : user_map_(fmt::format("{0} {0} 1\n", geteuid())),
+               const fs::path& own, double shared_memory_mb)
+    : memory_options_(shared_memory_mb > 0
+                          ? fmt::format("mode=1777,size={:.0f}k", 1024 * shared_memory_mb)
+                          : "mode=1777"),
+      user_map_(fmt::format("{0} {0} 1\n", geteuid())),
       group_map_(fmt::format("{0} {0} 1\n", getegid())) {
   std::error_code error;
   if (lies_in(own, kMemory)) own_ = own.string();
@@ -152,7 +155,7 @@ void Hiding::apply() const {
     return;
   }
   std::string_view uncovered;
-  if (memory_ && make_memory_private(own_) != 0) uncovered = kMemory;
+  if (memory_ && make_memory_private(own_, memory_options_.c_str()) != 0) uncovered = kMemory;
   for (const std::string& folder : folders_)
     if (cover(folder.c_str()) != 0) uncovered = folder;
   for (const std::string& file : files_)

@@ -20,8 +20,10 @@ class Hiding {
   /// @param needed  paths that the program needs: these, and folders that contain one of them, are
   ///                not hidden
   /// @param own     a folder that the bench made for the program, possibly in shared memory
+  /// @param shared_memory_mb  how much its own shared memory holds; 0: as much as the system allows
   Hiding(std::span<const std::filesystem::path> hidden,
-         std::span<const std::filesystem::path> needed, const std::filesystem::path& own);
+         std::span<const std::filesystem::path> needed, const std::filesystem::path& own,
+         double shared_memory_mb);
 
   /// Call it in the process that was forked to become the program: it makes only system calls.
   /// Writes a line about what is hidden to standard error, or nothing if there was nothing to hide.
@@ -29,8 +31,9 @@ class Hiding {
 
  private:
   std::vector<std::string> folders_, files_;
-  bool memory_ = false;  ///< other programs' shared memory is hidden
-  std::string own_;      ///< the own folder, if in shared memory; else empty
+  bool memory_ = false;         ///< other programs' shared memory is hidden
+  std::string memory_options_;  ///< for mount()
+  std::string own_;             ///< the own folder, if in shared memory; else empty
   std::string user_map_, group_map_;
   std::string done_, left_;  ///< parts of apply()'s line
 };

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/recordings/file_checksums.hpp"
 #include "scenes/recordings/sequence_writer.hpp"
 #include "slam/core/imu.hpp"
 #include "slam/core/trajectory.hpp"
@@ -55,6 +56,7 @@ class EurocCameraWriter : public SequenceWriter {
   double right_m_;
   Camera camera_;
   std::vector<int> png_;
+  FileChecksums checksums_;
   std::mutex mutex_;
   std::map<Stamp, SE3> truth_;
 };

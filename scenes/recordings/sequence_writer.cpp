@@ -12,6 +12,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "scenes/image_file.hpp"
+#include "scenes/recordings/file_checksums.hpp"
 #include "scenes/recordings/images/write_image.hpp"
 #include "scenes/recordings/scannet_folder.hpp"
 #include "scenes/recordings/tum_folder.hpp"
@@ -35,41 +36,38 @@ std::string rows(const Eigen::Matrix4d& m) {
 class ScanNetWriter : public SequenceWriter {
  public:
   ScanNetWriter(fs::path folder, const Camera& camera, PngCompression png_compression)
-      : folder_(std::move(folder)), camera_(camera), png_(png_settings(png_compression)) {
+      : folder_(std::move(folder)),
+        camera_(camera),
+        png_(png_settings(png_compression)),
+        checksums_(folder_) {
     for (const char* part : {"color", "depth", "pose", "intrinsic", "label-filt", "instance-filt"})
       make_output_folder(folder_ / part);
   }
 
   void add(std::size_t index, const ExactFrame& frame) override {
-    const std::string name = std::to_string(index);
-    write_atomically(folder_ / "color" / (name + ".jpg"),
-                     encode_jpeg(frame.seen.color, kRecordedJpegQuality));
+    const auto [color, depth, labels, instances, pose] = files_of(index);
+    write_atomically(color, encode_jpeg(frame.seen.color, kRecordedJpegQuality));
     const Grid2d<float>& depth_m = frame.seen.depth_m;
-    cv::Mat depth(depth_m.height(), depth_m.width(), CV_16UC1);
-    std::transform(depth_m.begin(), depth_m.end(), depth.ptr<std::uint16_t>(), millimeters);
-    write_image(folder_ / "depth" / (name + ".png"), depth, png_);
-    cv::Mat labels;  // 16 bits in this layout
-    gray_image(frame.classes).convertTo(labels, CV_16U);
-    write_image(folder_ / "label-filt" / (name + ".png"), labels, png_);
-    write_image(folder_ / "instance-filt" / (name + ".png"), gray_image(frame.instances), png_);
-    write_atomically(folder_ / "pose" / (name + ".txt"), rows(matrix_of(frame.world_from_camera)));
+    cv::Mat depth_mm(depth_m.height(), depth_m.width(), CV_16UC1);
+    std::transform(depth_m.begin(), depth_m.end(), depth_mm.ptr<std::uint16_t>(), millimeters);
+    write_image(depth, depth_mm, png_);
+    cv::Mat classes;  // 16 bits in this layout
+    gray_image(frame.classes).convertTo(classes, CV_16U);
+    write_image(labels, classes, png_);
+    write_image(instances, gray_image(frame.instances), png_);
+    write_atomically(pose, rows(matrix_of(frame.world_from_camera)));
+    checksums_.add(files_of(index));
     count(index);
   }
 
-  bool resume(std::size_t index, Stamp, const SE3& world_from_camera) override {
-    const std::string name = std::to_string(index);
-    const fs::path pose = folder_ / "pose" / (name + ".txt");
-    const std::array images = {
-        folder_ / "color" / (name + ".jpg"), folder_ / "depth" / (name + ".png"),
-        folder_ / "label-filt" / (name + ".png"), folder_ / "instance-filt" / (name + ".png")};
-    if (!std::ranges::all_of(images, is_whole_image) || !fs::exists(pose) ||
-        read_file(pose) != rows(matrix_of(world_from_camera)))
-      return false;
+  bool resume(std::size_t index, Stamp, const SE3&) override {
+    if (!checksums_.hold(files_of(index))) return false;
     count(index);
     return true;
   }
 
   void finish() override {
+    checksums_.finish();
     const std::string k = rows(intrinsics_of(recorded_lens(camera_)));
     const std::string identity = rows(Eigen::Matrix4d::Identity());
     write_atomically(folder_ / "intrinsic" / "intrinsic_color.txt", k);
@@ -87,6 +85,13 @@ class ScanNetWriter : public SequenceWriter {
   }
 
  private:
+  /// Color, depth, classes, instances, pose.
+  std::array<fs::path, 5> files_of(std::size_t index) const {
+    const std::string name = std::to_string(index);
+    return {folder_ / "color" / (name + ".jpg"), folder_ / "depth" / (name + ".png"),
+            folder_ / "label-filt" / (name + ".png"), folder_ / "instance-filt" / (name + ".png"),
+            folder_ / "pose" / (name + ".txt")};
+  }
   void count(std::size_t index) {
     const std::scoped_lock lock(mutex_);
     written_.insert(index);
@@ -95,6 +100,7 @@ class ScanNetWriter : public SequenceWriter {
   fs::path folder_;
   Camera camera_;
   std::vector<int> png_;
+  FileChecksums checksums_;
   std::mutex mutex_;
   std::set<std::size_t> written_;
 };

@@ -230,7 +230,10 @@ RgbdFrame read_frame(const RecordedFrame& recorded, const RecordedCamera& camera
 }
 
 TumWriter::TumWriter(fs::path folder, const Camera& camera, PngCompression png_compression)
-    : folder_(std::move(folder)), camera_(camera), png_(png_settings(png_compression)) {
+    : folder_(std::move(folder)),
+      camera_(camera),
+      png_(png_settings(png_compression)),
+      checksums_(folder_) {
   for (const char* part : {"rgb", "depth", "label"}) {
     make_output_folder(folder_ / part);
     listed_[part];
@@ -239,6 +242,11 @@ TumWriter::TumWriter(fs::path folder, const Camera& camera, PngCompression png_c
 
 fs::path TumWriter::file_of(const char* part, Stamp stamp_ns) const {
   return folder_ / part / (format_stamp(stamp_ns) + ".png");
+}
+
+std::array<fs::path, 4> TumWriter::files_of(Stamp stamp_ns) const {
+  return {file_of("rgb", stamp_ns), file_of("depth", stamp_ns), file_of("label", stamp_ns),
+          file_of("instance", stamp_ns)};
 }
 
 void TumWriter::write(const char* part, Stamp stamp_ns, const cv::Mat& image) {
@@ -276,22 +284,21 @@ void TumWriter::add(std::size_t, const ExactFrame& frame) {
   add_images(frame.seen);
   add_labels(stamp_ns, frame.classes);
   write("instance", stamp_ns, gray_image(frame.instances));
+  checksums_.add(files_of(stamp_ns));
   const std::scoped_lock lock(mutex_);
   truth_[stamp_ns] = frame.world_from_camera;
 }
 
 bool TumWriter::resume(std::size_t, Stamp stamp_ns, const SE3& world_from_camera) {
-  constexpr std::array kParts = {"rgb", "depth", "label", "instance"};
-  if (!std::ranges::all_of(
-          kParts, [&](const char* part) { return is_whole_image(file_of(part, stamp_ns)); }))
-    return false;
+  if (!checksums_.hold(files_of(stamp_ns))) return false;
   const std::scoped_lock lock(mutex_);
-  for (const char* part : kParts) listed_[part].insert(stamp_ns);
+  for (const char* part : {"rgb", "depth", "label", "instance"}) listed_[part].insert(stamp_ns);
   truth_[stamp_ns] = world_from_camera;
   return true;
 }
 
 void TumWriter::finish() {
+  checksums_.finish();
   std::string associations;
   for (const auto& [part, stamps] : listed_) {
     std::string list = "# stamp (s) file\n";

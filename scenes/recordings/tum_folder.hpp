@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -12,6 +13,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "scenes/recordings/class_map.hpp"
+#include "scenes/recordings/file_checksums.hpp"
 #include "scenes/recordings/frame_files.hpp"
 #include "scenes/recordings/sequence_writer.hpp"
 #include "slam/core/camera.hpp"
@@ -72,6 +74,8 @@ class TumWriter : public SequenceWriter {
 
  private:
   std::filesystem::path file_of(const char* part, Stamp stamp_ns) const;
+  /// The files of a frame with its truth.
+  std::array<std::filesystem::path, 4> files_of(Stamp stamp_ns) const;
   void write(const char* part, Stamp stamp_ns, const cv::Mat& image);
   void add_images(const RgbdFrame& frame);
   void add_labels(Stamp stamp_ns, const Grid2d<ClassId>& classes);
@@ -79,6 +83,7 @@ class TumWriter : public SequenceWriter {
   std::filesystem::path folder_;
   Camera camera_;
   std::vector<int> png_;
+  FileChecksums checksums_;                        ///< of frames with their truth
   std::mutex mutex_;                               ///< guards the members below
   std::map<std::string, std::set<Stamp>> listed_;  ///< by part: stamps whose images exist
   std::map<Stamp, SE3> truth_, odometry_;

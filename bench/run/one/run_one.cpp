@@ -126,10 +126,8 @@ RunResult run_one(const RunSpec& spec, const World& world, const RunTools& tools
 
   // The program's files are watched from before it starts, since its own reads of them are not seen
   // here.
-  std::vector<fs::path> of_program;
-  if (spec.system.is_outside())
-    for (const ProgramFile& file : files_of(*spec.system.outside)) of_program.push_back(file.file);
-  PathWatch program_paths(of_program);
+  PathWatch program_paths(spec.system.is_outside() ? places_of(*spec.system.outside)
+                                                   : std::vector<fs::path>());
   require_unchanged(world.held);
 
   std::unique_ptr<System> inner = tools.system

@@ -35,10 +35,4 @@ void write_image(const std::filesystem::path& file, const cv::Mat& image,
   write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-bool is_whole_image(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return false;
-  const std::string bytes = read_file(file);
-  return declared_size(bytes) && image_fault(bytes) == nullptr;
-}
-
 }  // namespace mh

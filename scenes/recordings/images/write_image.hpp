@@ -29,7 +29,4 @@ cv::Mat gray_image(const Grid2d<Number>& grid) {
 void write_image(const std::filesystem::path& file, const cv::Mat& bgr,
                  const std::vector<int>& settings = {});
 
-/// Whether a PNG or JPEG file exists and is intact, as judged by image_fault().
-bool is_whole_image(const std::filesystem::path& file);
-
 }  // namespace mh

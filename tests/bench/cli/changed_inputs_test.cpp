@@ -182,6 +182,63 @@ TEST_F(ChangedInputs, AProgramThatIsReplacedDuringItsRunHasNoResult) {
   }
 }
 
+// While it runs, the program makes what would have been found in its place, and what it would have
+// read. Removed again, neither leaves a trace.
+TEST_F(ChangedInputs, AProgramOrFileThatAppearsDuringARunLeavesNoResult) {
+  for (const char* folder : {"before", "after"}) fs::create_directories(path(folder));
+  write_atomically(path("after/mine"), "#!/bin/sh\n: >\"$1\"; sh \"$2\"\n");
+  fs::permissions(path("after/mine"), fs::perms::owner_all);
+  const std::string before = getenv("PATH");
+  setenv("PATH", (path("before") + ":" + path("after") + ":" + before).c_str(), 1);
+  test::SmallSuite{.systems =
+                       "[{name: p, protocol: trajectory, inputs: [then.sh], command: 'mine "
+                       "{trajectory} " +
+                       path("then.sh") + " gain.cfg'}]",
+                   .labels = "[exact]"}
+      .write(path("suite.yaml"));
+  for (const std::string appears : {"before/mine", "gain.cfg"}) {
+    write_atomically(path("then.sh"),
+                     "cp " + path("after/mine") + " " + path(appears) + "; rm " + path(appears));
+    code_ = run("bench " + path("suite.yaml") + " --frames 45 --out " + path("out"));
+    expect_refused(said_, appears + ": was changed while it was in use");
+    EXPECT_EQ(stored("out/results.sqlite", "runs"), 0);
+  }
+  setenv("PATH", before.c_str(), 1);
+}
+
+// Another suite in the same folder leaves no chart of the first one, but whatever else is there.
+TEST_F(ChangedInputs, ChartsOfAnEarlierSuiteAreRemoved) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is missing";
+  const auto bench = [&](const std::string& more) {
+    test::SmallSuite{.systems = "[plain]", .labels = "[none]", .more = more}.write(
+        path("suite.yaml"));
+    ASSERT_EQ(run("bench " + path("suite.yaml") + " --frames 45 --out " + path("out")), 0) << said_;
+  };
+  bench("parameters: {map: rebuilt, features.count: [500, 700]}\n");
+  const std::string chart = "out/sweep-plain-none-pepper.png";
+  ASSERT_TRUE(fs::exists(path(chart))) << said_;
+  write_atomically(path("out/sweep-mine.png"), "not a chart of the bench");
+  bench("");
+  EXPECT_FALSE(fs::exists(path(chart)));
+  EXPECT_TRUE(fs::exists(path("out/sweep-mine.png")));
+}
+
+// Files of a check that appear while it runs belong to somebody else.
+TEST_F(ChangedInputs, ACheckReplacesNoFileThatAppeared) {
+  test::SmallSuite{
+      .systems = "[plain]", .labels = "[none]", .more = "check: {tolerances: {ate_rmse_m: 0.1}}\n"}
+      .write(path("suite.yaml"));
+  const std::string check = "check " + path("suite.yaml") + " --frames 45 --update --baseline " +
+                            path("base.json") + " --junit " + path("junit.xml");
+  for (const char* name : {"base.json", "junit.xml"}) {
+    const std::string said =
+        disturbed(check, "frame ", [&] { write_atomically(path(name), "somebody's"); });
+    expect_refused(said, name);
+    EXPECT_EQ(content(path(name)), "somebody's");
+    fs::remove(path(name));
+  }
+}
+
 /// Commands with their own vocabulary file, which is memory-mapped: its words change during a run
 /// if the file is written in place.
 class ChangedWords : public ChangedInputs {

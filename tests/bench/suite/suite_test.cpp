@@ -653,7 +653,7 @@ TEST_F(SuiteFile, NamesALibraryAndItsRunIsNamedByWhatItsFilesHold) {
   const auto key = [&] { return run_key(run, inputs_of_program(run.system)); };
   std::string names;
   for (const InputDigest& input : inputs_of_program(run.system)) names += input.name + " ";
-  EXPECT_EQ(names, "vo: libvo.so vo: vo.yaml vo: weights ");
+  EXPECT_EQ(names, "vo: libvo.so vo: vo.yaml vo: modelhouse-library-host vo: weights ");
   const std::string before = key();
   for (const char* name : {"libvo.so", "vo.yaml", "weights"}) {
     put(name, "2");
@@ -742,6 +742,15 @@ TEST(FilesOf, TheFirstWordIsLookedForOnThePath) {
   ASSERT_EQ(files.size(), 1u);
   EXPECT_EQ(files[0].word, "sh");
   EXPECT_TRUE(files[0].file.is_absolute()) << files[0].file;
+}
+
+TEST(FilesOf, ALibraryIsRunByItsHost) {
+  const OutsideProgram program{.name = "mine", .folder = "/", .library = "lib.so"};
+  const auto places = places_of(program);
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_EQ(places[0], "/lib.so");
+  EXPECT_EQ(places[1], library_host());
+  EXPECT_EQ(library_host().filename(), "modelhouse-library-host");
 }
 
 TEST_F(SuiteFile, TheProgramsOfACommandAreSeenAsTheShellReadsThem) {

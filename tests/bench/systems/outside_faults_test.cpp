@@ -415,7 +415,7 @@ TEST_F(OutsideFaults, ATrajectoryIsAFileOfItsFolderOfABearableSize) {
   EXPECT_HOLDS(error("mkdir {trajectory}"), "it is a folder");
   EXPECT_HOLDS(error("ln -s trajectory.txt {trajectory}"), "wrote no trajectory");
   const std::string endless =
-      error("head -c 30000000 /dev/zero | tr '\\0' 'a' > {trajectory}; echo >> {trajectory}");
+      error("head -c 150000000 /dev/zero | tr '\\0' 'a' > {trajectory}; echo >> {trajectory}");
   EXPECT_HOLDS(endless, "trajectory.txt: contains no poses");
   EXPECT_LT(error("printf '1 ' > {trajectory}; head -c 3000000 /dev/zero | tr '\\0' 'a' >> "
                   "{trajectory}; echo ' 0 0 0 0 0 1' >> {trajectory}")
@@ -506,6 +506,17 @@ TEST_F(OutsideFaults, AConversationSeesNoOthersImages) {
   EXPECT_HOLDS(said, "modelhouse-");  // its own folder, which contains its inputs
   EXPECT_HOLDS(said, "Camera.fx");
   EXPECT_FALSE(fs::exists("/dev/shm/left"));
+}
+
+TEST_F(OutsideFaults, SharedMemoryHoldsNoMoreThanAProgramMayUse) {
+  OutsideProgram p = program(OutsideMode::kConversation,
+                             "head -c 150000000 /dev/zero >/dev/shm/fill; ls -s /dev/shm >&2");
+  p.memory_limit_mb = 100;
+  const fs::path log = folder_ / "out" / "outside.log";
+  error_of(p, [&] { make_conversation_system(p, camera_, 0, log); });
+  const std::string said = read_file(log);
+  if (said.starts_with("modelhouse: nothing is hidden")) GTEST_SKIP() << said;
+  EXPECT_HOLDS(said, "No space left on device");
 }
 
 /// Records the timestamps of the frames that it is shown.

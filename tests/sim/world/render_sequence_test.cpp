@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
@@ -15,8 +16,10 @@
 #include "scenes/recordings/scannet_folder.hpp"
 #include "scenes/recordings/tum_folder.hpp"
 #include "scenes/scannet/label_table.hpp"
+#include "slam/core/trajectory_io.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
+#include "slam/io/read_record.hpp"
 #include "tests/sim/boxes.hpp"
 
 namespace mh {
@@ -125,6 +128,26 @@ TEST_F(RenderSequence, MakesAnewWhatWasCutOff) {
     EXPECT_EQ(rendered(layout, name.c_str(), {.resume = true}), whole);
     EXPECT_GE(result_.frames, 4U) << layout;
   }
+}
+
+TEST_F(RenderSequence, MakesAnewWhatShowsSomethingElse) {
+  const auto whole = rendered("tum", "room", {});
+  const auto name = [](std::size_t i) {
+    return fmt::format("{}.png", format_stamp(33'333'333LL * i));
+  };
+  fs::copy_file(folder_ / "room/rgb" / name(0), folder_ / "room/rgb" / name(5),
+                fs::copy_options::overwrite_existing);
+  EXPECT_EQ(rendered("tum", "room", {.resume = true}), whole);
+  EXPECT_EQ(result_.frames, 1U);
+  // A frame that changes while others are rendered is noticed at the end.
+  const auto writer = make_sequence_writer("tum", folder_ / "changed", camera_);
+  EXPECT_THROW(render_sequence(*shutter_, sensors_, *writer, {.threads = 1},
+                               [&](double share) {
+                                 if (share == 1)
+                                   fs::resize_file(folder_ / "changed/rgb" / name(3), 100);
+                               }),
+               InputChanged);
+  EXPECT_FALSE(fs::exists(folder_ / "changed" / "rgb.txt"));
 }
 
 TEST_F(RenderSequence, DroppedFramesAreLeftOutAndTheOthersAreTheSame) {
