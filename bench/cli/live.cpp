@@ -83,8 +83,8 @@ void run(LiveArguments options) {
       [](std::string_view line) { fmt::print(stderr, "live: {}\n", line); }, &warnings);
   print_warnings(warnings);
   if (!options.pedestrian.empty())
-    scene.pedestrian = make_pedestrian_scene(*scene.scene, scene.renderer,
-                                             load_pedestrian(options.pedestrian));
+    scene.pedestrian =
+        make_pedestrian_scene(*scene.scene, scene.renderer, load_pedestrian(options.pedestrian));
   LiveDrive drive(std::move(scene), robot, level, vocabulary, options.seed);
   if (options.address.host != "127.0.0.1" && options.address.token.empty())
     options.address.token = new_token();

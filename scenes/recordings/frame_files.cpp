@@ -65,6 +65,7 @@ std::string settings_text(const Camera& camera) {
   return fmt::format(
       "%YAML:1.0\n"
       "# Written by Modelhouse. Pixel centers at integers; depth is metric and registered.\n"
+      "Camera.type: \"PinHole\"\n"  // ORB-SLAM3 asks for it
       // '#' keeps a decimal point in whole numbers: some readers refuse an integer here.
       "Camera.fx: {:#}\nCamera.fy: {:#}\nCamera.cx: {:#}\nCamera.cy: {:#}\n"
       "Camera.k1: {:#}\nCamera.k2: {:#}\nCamera.p1: {:#}\nCamera.p2: {:#}\nCamera.k3: {:#}\n{}"
