@@ -46,6 +46,7 @@ struct BenchArguments {
   bool no_cache = false;
   bool retry_failed = false;
   bool audit = false;
+  int live_port = 0;
   std::optional<std::size_t> slurm;
   std::string sbatch;
   std::vector<std::string> arguments_of_part;  // as given; --slurm passes them on to the shares
@@ -131,6 +132,12 @@ void run(BenchArguments options) {
   bench.memory_limit_mb = options.memory_limit_mb;
   bench.images_limit_gb = options.images_limit_gb;
   bench.retry_failed = options.retry_failed;
+  bench.live_port = options.live_port;
+  if (bench.live_port != 0) {
+    if (options.jobs > 1 || options.slurm)
+      throw InputError("--live: shows one run at a time: leave out --jobs and --slurm");
+    fmt::print(stderr, "bench: live at http://127.0.0.1:{}/ while a run maps\n", bench.live_port);
+  }
   if (options.slurm) return run_shares(suite, overrides, bench, options);
   std::vector<std::string> names = names_written(bench.out, suite);
   if (options.audit) {
@@ -202,6 +209,11 @@ void add_bench(CLI::App& app) {
   command->add_flag("--no-cache", options->no_cache, "Rebuilds everything, caches nothing");
   command->add_flag("--audit", options->audit,
                     "Audits every query afterward, as `audit` does: maps come from the cache");
+  command
+      ->add_option(
+          "--live", options->live_port,
+          "Port of a page on this machine that shows each run while it maps (docs/live.md)")
+      ->check(CLI::Range(1, 65535));
   command->add_flag("--retry-failed", options->retry_failed, "Tries failed runs again");
   command
       ->add_option(

@@ -113,7 +113,7 @@ void run(LiveArguments options) {
     if (!shown.state.empty()) {
       server.send_text(std::move(shown.state));
       char kind = 0;
-      for (std::string* image : {&shown.color, &shown.depth, &shown.labels})
+      for (std::string* image : {&shown.images.color, &shown.images.depth, &shown.images.labels})
         server.send_image(std::string(1, kind++) + *image);
     }
     // On a machine that is too slow, the robot drives in slow motion instead of in leaps.

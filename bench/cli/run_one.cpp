@@ -3,12 +3,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "bench/cli/commands.hpp"
+#include "bench/live/live_watch.hpp"
 #include "bench/run/execute_run.hpp"
 #include "bench/run/run_process.hpp"
 #include "bench/suite/shipped.hpp"
@@ -74,9 +76,18 @@ void add_run_one(CLI::App& app) {
     if (order.parent != 0) die_with(order.parent);
     offer_python_package();
     ToParent parent;
-    execute_run(order, {.say = [&](std::string_view stage) { parent.say(stage); },
-                        .progress = [&](double share) { parent.share(share); },
-                        .status = [&](std::string_view status) { parent.status(status); }});
+    RunListener listener{.say = [&](std::string_view stage) { parent.say(stage); },
+                         .progress = [&](double share) { parent.share(share); },
+                         .status = [&](std::string_view status) { parent.status(status); }};
+    std::optional<LiveWatch> watch;
+    if (order.live_port != 0) {
+      watch.emplace(order.live_port, order.spec);
+      listener.observe = [&](const World& world, const MappedFrame& call, const RgbdFrame& frame,
+                             const SystemReport& report) {
+        watch->show(world, call, frame, report);
+      };
+    }
+    execute_run(order, listener);
   });
 }
 

@@ -10,12 +10,10 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/core.hpp>
 
+#include "bench/live/live_page.hpp"
 #include "bench/protocol/episodes/starts.hpp"
 #include "bench/report/drawing/false_colors.hpp"
-#include "scenes/image_file.hpp"
-#include "scenes/recordings/frame_files.hpp"
 #include "scenes/recordings/ros/names.hpp"
 #include "sim/motion/floor_grid.hpp"
 #include "slam/core/labels.hpp"
@@ -32,19 +30,7 @@ constexpr int kStepsWithoutDriver = 8;     // half a second until the robot stop
 constexpr int kDarkSteps = 15;             // a kidnapping takes one second
 constexpr std::size_t kMostPoints = 4000;  // most points of the map in one message
 constexpr std::uint64_t kStepsPerMap = 15;
-constexpr int kJpegQuality = 80;
 constexpr double kMaxSpeed_m_per_s = 5, kMaxTurn_rad_per_s = 10;
-
-double rounded(double value) {
-  return std::round(1000 * value) / 1000;
-}
-
-/// Position (x, y) and heading of a camera, seen from above.
-Json from_above(const SE3& world_from_camera) {
-  const Eigen::Vector3d& at = world_from_camera.translation();
-  const Eigen::Vector3d ahead = world_from_camera.rotation().col(2);
-  return {rounded(at.x()), rounded(at.y()), rounded(std::atan2(ahead.y(), ahead.x()))};
-}
 
 SimulationConfig config_of(const SimulatedScene& scene, const Robot& robot, std::uint64_t seed) {
   const auto [place_m, heading_rad] = draw_place(*scene.scene, robot, RandomStream(seed));
@@ -52,30 +38,6 @@ SimulationConfig config_of(const SimulatedScene& scene, const Robot& robot, std:
           .start_heading_rad = heading_rad,
           .ticks_per_frame = kTicksPerFrame,
           .seed = seed};
-}
-
-/// The classes of a frame's pixels; void everywhere in the dark.
-Grid2d<ClassId> classes_of(const RgbdFrame& frame) {
-  if (frame.semantics.index.empty())
-    return Grid2d<ClassId>(frame.color.width(), frame.color.height());
-  return class_image(frame.semantics);
-}
-
-Grid2d<Rgb8> colors_of(const Grid2d<ClassId>& classes) {
-  Grid2d<Rgb8> image(classes.width(), classes.height());
-  std::ranges::transform(classes, image.begin(), class_color);
-  return image;
-}
-
-Grid2d<Rgb8> colors_of(const Grid2d<float>& depth_m) {
-  const cv::Mat bgr = depth_colors(depth_m, 0.4F, 8.0F);
-  Grid2d<Rgb8> image(bgr.cols, bgr.rows);
-  for (int y = 0; y < bgr.rows; ++y)
-    for (int x = 0; x < bgr.cols; ++x) {
-      const auto& c = bgr.at<cv::Vec3b>(y, x);
-      image(x, y) = {c[2], c[1], c[0]};
-    }
-  return image;
 }
 
 }  // namespace
@@ -128,39 +90,14 @@ void LiveDrive::note(const Twist2d& velocity) {
 }
 
 std::string LiveDrive::greeting() const {
-  Json rooms = Json::array(), things = Json::array(), names = Json::array();
-  for (const Room& room : scene_.scene->rooms) {
-    Json outline = Json::array();
-    for (const Eigen::Vector2d& p : room.polygon_m)
-      outline.push_back({rounded(p.x()), rounded(p.y())});
-    rooms.push_back({{"name", room.name}, {"outline", outline}});
-  }
-  for (const Instance& thing : scene_.scene->instances) {
-    const std::string_view name = classes()[thing.class_id].name;
-    constexpr float kHall_m2 = 12;  // larger instances surround rooms, like walls and floors
-    const Eigen::Vector3f size_m = thing.max_m - thing.min_m;
-    if (name == "floor" || name == "wall" || name == "ceiling" ||
-        size_m.x() * size_m.y() > kHall_m2)
-      continue;
-    things.push_back({rounded(thing.min_m.x()), rounded(thing.min_m.y()), rounded(thing.max_m.x()),
-                      rounded(thing.max_m.y()), thing.class_id});
-  }
-  for (const ClassInfo& info : classes()) {
-    const Rgb8 color = class_color(info.id);
-    names.push_back(
-        {std::string(info.name), fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b)});
-  }
   const BaseLimits& limits = robot_.limits;
-  return Json{{"hello",
-               {{"scene", scene_.scene->name},
+  Json hello = plan_for_page(scene_.scene.get());
+  hello.update({{"scene", scene_.scene->name},
                 {"robot", robot_.name},
-                {"rooms", rooms},
-                {"things", things},
-                {"classes", names},
                 {"radius_m", robot_.footprint_radius_m},
                 {"speed_m_per_s", limits.max_velocity_m_per_s},
-                {"turn_rad_per_s", limits.max_turn_rad_per_s}}}}
-      .dump();
+                {"turn_rad_per_s", limits.max_turn_rad_per_s}});
+  return Json{{"hello", hello}}.dump();
 }
 
 std::string LiveDrive::take(const std::string& message) {
@@ -270,9 +207,7 @@ LiveDrive::Shown LiveDrive::step(int wanted) {
   if ((wanted & kMessages) != 0) shown.messages = messages(seen, report);
   if ((wanted & kPage) != 0) {
     shown.state = state(seen, report);
-    shown.color = encode_jpeg(frame.color, kJpegQuality);
-    shown.depth = encode_jpeg(colors_of(frame.depth_m), kJpegQuality);
-    shown.labels = encode_jpeg(colors_of(classes_of(frame)), kJpegQuality);
+    shown.images = images_for_page(frame);
   }
   return shown;
 }
@@ -351,31 +286,31 @@ std::string LiveDrive::state(const RobotObservation& seen, const StepReport& rep
       const double a = laser.angle_rad(i);
       const Eigen::Vector3d end_m =
           world_from_laser * Eigen::Vector3d(range_m * std::cos(a), range_m * std::sin(a), 0);
-      lasers.push_back({rounded(end_m.x()), rounded(end_m.y())});
+      lasers.push_back({rounded_for_page(end_m.x()), rounded_for_page(end_m.y())});
     }
   }
-  Json json = {
-      {"time_s", rounded(simulation_.time_s())},
-      {"base",
-       {rounded(world_from_base.translation().x()), rounded(world_from_base.translation().y()),
-        rounded(std::atan2(ahead.y(), ahead.x()))}},
-      {"camera", from_above(simulation_.truth_of_frame()->world_from_camera)},
-      {"estimate", nullptr},
-      {"status", std::string(name(report.status))},
-      {"keypoints", report.keypoints},
-      {"inliers", report.inliers},
-      {"keyframes", slam_.map.keyframe_count()},
-      {"landmarks", slam_.map.landmark_count()},
-      {"command", {velocity_.x(), velocity_.y(), velocity_.z()}},
-      {"light", light_ && dark_steps_ == 0},
-      {"wheels", wheels_},
-      {"gamma", slam_.config.semantics.gamma},
-      {"xi", slam_.config.semantics.xi},
-      {"lasers", lasers}};
+  Json json = {{"time_s", rounded_for_page(simulation_.time_s())},
+               {"base",
+                {rounded_for_page(world_from_base.translation().x()),
+                 rounded_for_page(world_from_base.translation().y()),
+                 rounded_for_page(std::atan2(ahead.y(), ahead.x()))}},
+               {"camera", from_above_for_page(simulation_.truth_of_frame()->world_from_camera)},
+               {"estimate", nullptr},
+               {"status", std::string(name(report.status))},
+               {"keypoints", report.keypoints},
+               {"inliers", report.inliers},
+               {"keyframes", slam_.map.keyframe_count()},
+               {"landmarks", slam_.map.landmark_count()},
+               {"command", {velocity_.x(), velocity_.y(), velocity_.z()}},
+               {"light", light_ && dark_steps_ == 0},
+               {"wheels", wheels_},
+               {"gamma", slam_.config.semantics.gamma},
+               {"xi", slam_.config.semantics.xi},
+               {"lasers", lasers}};
   if (world_from_map_ && report.world_from_camera) {
     const SE3 estimate = *world_from_map_ * *report.world_from_camera;
-    json["estimate"] = from_above(estimate);
-    json["error_m"] = rounded(
+    json["estimate"] = from_above_for_page(estimate);
+    json["error_m"] = rounded_for_page(
         (estimate.translation() - simulation_.truth_of_frame()->world_from_camera.translation())
             .norm());
   }
@@ -387,11 +322,12 @@ std::string LiveDrive::state(const RobotObservation& seen, const StepReport& rep
     for (const Landmark& landmark : slam_.map.landmarks()) {
       if (landmark.erased || count++ % every != 0) continue;
       const Eigen::Vector3d at = *world_from_map_ * landmark.position_in_world;
-      points.push_back({rounded(at.x()), rounded(at.y()), landmark.label});
+      points.push_back({rounded_for_page(at.x()), rounded_for_page(at.y()), landmark.label});
     }
     for (const Keyframe& keyframe : slam_.map.keyframes())
       if (!keyframe.erased)
-        keyframes.push_back(from_above(*world_from_map_ * keyframe.camera_from_world.inverse()));
+        keyframes.push_back(
+            from_above_for_page(*world_from_map_ * keyframe.camera_from_world.inverse()));
     json["map"] = {{"points", points}, {"keyframes", keyframes}};
   }
   return json.dump();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/live/live_page.hpp"
 #include "scenes/recordings/messages/robot_types.hpp"
 #include "scenes/recordings/ros/camera_messages.hpp"
 #include "sim/motion/commands.hpp"
@@ -38,8 +39,8 @@ class LiveDrive {
 
   /// What to show after a step; empty what nobody wants.
   struct Shown {
-    std::string state;                        ///< JSON
-    std::string color, depth, labels;         ///< JPEG
+    std::string state;  ///< JSON
+    PageImages images;
     std::vector<MessageLog::Entry> messages;  ///< what a ROS 2 robot would publish, by stamp
   };
   enum Wanted { kNothing = 0, kPage = 1, kMessages = 2 };

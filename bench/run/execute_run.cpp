@@ -117,12 +117,18 @@ void execute_run(const RunOrder& order, const RunListener& listener) {
   // If the system is not repeatable, its new map differs from the one that earlier episodes used,
   // so their scores are discarded.
   if (!spec.system.repeatable) fs::remove_all(ended, no_matter);
+  MappingObserver observe;
+  if (listener.observe)
+    observe = [&](const MappedFrame& call, const RgbdFrame& frame, const SystemReport& report) {
+      listener.observe(world, call, frame, report);
+    };
   const RunResult run = run_one(spec, world,
                                 {.folder = folder,
                                  .hidden = {order.folder, order.cache},
                                  .progress = listener.progress,
                                  .status = listener.status,
                                  .system = {},
+                                 .observe = observe,
                                  .occupancy = !order.metrics_only,
                                  .maps = Cache(order.maps),
                                  .episodes = {.ended = Cache(ended), .key = order.key}});

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "bench/protocol/mapping.hpp"
+#include "bench/protocol/world/world.hpp"
 #include "bench/suite/run_spec.hpp"
 
 namespace mh {
@@ -26,13 +28,14 @@ struct RunOrder {
   std::string session_start;  ///< time at which the command started
   int jobs = 1;               ///< number of parallel runs, and of threads for baking light
   bool metrics_only = false;  ///< as in BenchOptions
+  int live_port = 0;          ///< port on which the run is shown while it maps; 0: nowhere
   int parent = 0;  ///< process id of the command; when it ends, the run is killed; 0: none
 };
 
 template <MaybeConst<RunOrder> O, class Visit>
 void fields(O& order, Visit& v) {
   auto& [spec, key, store, folder, cache, maps, images, images_limit, share_noise, views,
-         session_start, jobs, metrics_only, parent] = order;
+         session_start, jobs, metrics_only, live_port, parent] = order;
   v("spec", spec);
   v("key", key);
   v("store", store);
@@ -46,6 +49,7 @@ void fields(O& order, Visit& v) {
   v("session_start", session_start);
   v("jobs", jobs);
   v("metrics_only", metrics_only);
+  v("live_port", live_port);
   v("parent", parent);
 }
 
@@ -58,6 +62,9 @@ struct RunListener {
   std::function<void(std::string_view)> say = [](std::string_view) {};
   std::function<void(double)> progress = [](double) {};
   std::function<void(std::string_view)> status = [](std::string_view) {};  ///< as in RunTools
+  /// Called for each mapped frame; may be empty.
+  std::function<void(const World&, const MappedFrame&, const RgbdFrame&, const SystemReport&)>
+      observe = {};
 };
 
 /// Does one run in this process from start to end: builds its world, executes it, writes its files

@@ -163,6 +163,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                      .session_start = session_start,
                      .jobs = options.jobs,
                      .metrics_only = options.metrics_only,
+                     .live_port = options.live_port,
                      .parent = getpid()};
       if (options.cache) order.maps = cache;
       if (!job.images.empty() && !job.spec.environment.is_recorded())

@@ -31,6 +31,7 @@ struct BenchOptions {
   /// a result.
   double images_limit_gb = 20;
   bool retry_failed = false;
+  int live_port = 0;  ///< as in RunOrder; only with one job
   /// Metrics only: no occupancy map, no images and no files of runs.
   bool metrics_only = false;
   std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`

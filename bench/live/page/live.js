@@ -68,12 +68,15 @@ function take(message) {
   if (message.hello) {
     hello = message.hello;
     $("scene").textContent = `${hello.scene}, ${hello.robot}`;
+    document.body.classList.toggle("watch", hello.watch === true);
+    map = { points: [], keyframes: [] };
+    trail.true = []; trail.estimate = [];
     return;
   }
   if (message.error) { console.warn(message.error); return; }
   state = message;
   if (state.map) map = state.map;
-  trail.true.push(state.camera.slice(0, 2));
+  trail.true.push(state.camera ? state.camera.slice(0, 2) : null);
   trail.estimate.push(state.estimate ? state.estimate.slice(0, 2) : null);
   for (const each of Object.values(trail)) if (each.length > 4000) each.shift();
   const now = performance.now();
@@ -84,12 +87,14 @@ function take(message) {
   $("status").textContent = !state.light ? "dark" : lost ? "lost" : state.status;
   $("wheels").setAttribute("aria-pressed", state.wheels);
   for (const dial of ["gamma", "xi"]) {
+    if (state[dial] === undefined) continue;
     $(`${dial}_is`).textContent = state[dial].toFixed(2);
     if (document.activeElement !== $(dial)) $(dial).value = state[dial];
   }
   const facts = { "time": `${state.time_s.toFixed(1)} s`, "error": state.error_m === undefined ? "-" : `${(100 * state.error_m).toFixed(1)} cm`,
-                  "keypoints": state.keypoints, "inliers": state.inliers, "keyframes": state.keyframes,
-                  "landmarks": state.landmarks, "images": `${(times.length / 2).toFixed(0)} /s` };
+                  "keypoints": state.keypoints ?? "-", "inliers": state.inliers ?? "-", "keyframes": state.keyframes };
+  if (hello?.watch) Object.assign(facts, { "frame": `${state.frame} of ${state.of}`, "restarts": state.restarts });
+  else Object.assign(facts, { "landmarks": state.landmarks, "images": `${(times.length / 2).toFixed(0)} /s` });
   $("facts").replaceChildren(...Object.entries(facts).map(([name, value]) => {
     const div = document.createElement("div"), dt = document.createElement("dt"), dd = document.createElement("dd");
     dt.textContent = name; dd.textContent = value; dd.dataset.fact = name;
@@ -111,7 +116,7 @@ function draw() {
   if (!hello || !state) return;
   const corners = hello.rooms.flatMap((room) => room.outline);
   if (corners.length === 0) corners.push(...hello.things.flatMap((t) => [[t[0], t[1]], [t[2], t[3]]]));
-  if (corners.length === 0) corners.push([-5, -5], [5, 5]);
+  if (corners.length === 0) corners.push([-1, -1], [1, 1], ...[...trail.true, ...trail.estimate].filter(Boolean));
   const xs = corners.map((p) => p[0]), ys = corners.map((p) => p[1]);
   const low = [Math.min(...xs), Math.min(...ys)], high = [Math.max(...xs), Math.max(...ys)];
   const margin = 14;

@@ -135,8 +135,8 @@ TEST(LiveDrive, TheSameCommandsGiveTheSameBits) {
     for (LiveDrive* drive : {a.get(), b.get()}) drive->take(R"({"drive": [0.2, 0, 0.4]})");
     const LiveDrive::Shown x = a->step(), y = b->step();
     EXPECT_EQ(x.state, y.state);
-    EXPECT_EQ(x.color, y.color);
-    EXPECT_EQ(x.labels, y.labels);
+    EXPECT_EQ(x.images.color, y.images.color);
+    EXPECT_EQ(x.images.labels, y.images.labels);
   }
 }
 
@@ -148,7 +148,7 @@ TEST(LiveDrive, PublishesWhatARobotOfRos2Would) {
   for (int i = 0; i < 20; ++i) {
     drive->take(R"({"drive": [0, 0, 0.4]})");
     const LiveDrive::Shown shown = drive->step(LiveDrive::kMessages);
-    EXPECT_EQ(shown.state + shown.color, "") << "nobody watches the page";
+    EXPECT_EQ(shown.state + shown.images.color, "") << "nobody watches the page";
     for (const MessageLog::Entry& entry : shown.messages) {
       EXPECT_GE(entry.stamp_ns, last_ns);
       last_ns = entry.stamp_ns;
