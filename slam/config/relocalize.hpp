@@ -40,8 +40,6 @@ struct RelocalizeConfig {
   int min_inliers = 50;    ///< to accept a pose
   double rival_share = 0;  ///< a pose is refused if a rival elsewhere has at least this share of
                            ///< its inliers; 0: the first pose is taken
-  double twin_share = 0;  ///< the same for a twin: a place elsewhere that the keyframe which led to
-                          ///< the pose would be localized at; 0: twins are not looked for
   /// Radius of the first guided search, around the position at which a pose from few matches
   /// predicts a landmark; the second search uses 4 px.
   double search_radius_px = 10;
@@ -58,8 +56,8 @@ struct RelocalizeConfig {
 
 template <MaybeConst<RelocalizeConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, rival_share, twin_share,
-         search_radius_px, disparity_sigma_px, ransac] = c;
+  auto& [acceptance, neighbor_scores, min_word_matches, min_inliers, rival_share, search_radius_px,
+         disparity_sigma_px, ransac] = c;
   v("acceptance", acceptance, {},
     "by which rules a candidate's pose is accepted: ours or orb_slam2");
   v("neighbor_scores", neighbor_scores, {},
@@ -70,9 +68,6 @@ void fields(C& c, Visit& v) {
   v("rival_share", rival_share, setting::kShare,
     "a pose is rejected if another one elsewhere has this share of its inliers; 0: the first pose "
     "is taken");
-  v("twin_share", twin_share, setting::kShare,
-    "a pose is rejected if the keyframe that led to it would itself be localized elsewhere with "
-    "this share of its inliers; 0: never");
   v("search_radius_px", search_radius_px, setting::kRadius_px,
     "of the first search by pose (acceptance: ours)");
   v("disparity_sigma_px", disparity_sigma_px, {0, 1000},

@@ -55,12 +55,9 @@ void store(const std::vector<InvertedIndex::Score>& scores, Overlap what, double
 }  // namespace
 
 KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
-                                   const SemanticConfig& config, StaleScores* stale_scores,
-                                   const std::function<bool(KeyframeId)>& belongs) {
+                                   const SemanticConfig& config, StaleScores* stale_scores) {
   // Keyframes that share nothing fail equation 3 and can be skipped.
-  std::vector<InvertedIndex::Score> scores = map.sharing(query);
-  if (belongs)
-    std::erase_if(scores, [&](const InvertedIndex::Score& s) { return !belongs(s.keyframe); });
+  const std::vector<InvertedIndex::Score> scores = map.sharing(query);
   const Overlap what = query.labels.empty() ? Overlap::kWords : config.overlap;
   std::vector<KeyframeId> keyframes;
   std::vector<const InvertedIndex::Score*> of(map.keyframes().size(), nullptr);
@@ -91,7 +88,7 @@ KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
     return score.similarity;
   };
   const auto shared = [&](KeyframeId k) { return overlap(*of[k.value], what); };
-  const auto neighbors = [&](KeyframeId k) { return neighborhood(map, k, belongs); };
+  const auto neighbors = [&](KeyframeId k) { return neighborhood(map, k); };
   CandidateSelection<KeyframeId> selection =
       select_candidates(std::span<const KeyframeId>(keyframes), shared, neighbors, similarity,
                         config.alpha, config.beta);
@@ -184,30 +181,6 @@ RelocalizationResult try_rivals(const Query& query, std::span<const KeyframeId> 
   return result;
 }
 
-/// Whether a keyframe would be localized elsewhere in the map, too, with at least this many
-/// inliers: its view shows what several places have, and cannot tell which of them it is.
-bool has_twin(KeyframeId id, double inliers, const SlamContext& context, RandomStream stream) {
-  const Keyframe& own = context.map.at(id);
-  const auto shares_landmarks = [&](KeyframeId other) {
-    return other == id ||
-           std::ranges::any_of(own.covisible, [&](const auto& n) { return n.id == other; });
-  };
-  const Query query{own.features, own.grid, own.words};
-  const KeyframeSelection others =
-      select_keyframes(context.map, own.words.vector, context.config.semantics, nullptr,
-                       [&](KeyframeId k) { return !shares_landmarks(k); });
-  MatchCounts apart{};  // not matches of this query
-  const SlamContext quietly{context.camera, context.config, context.map, apart, nullptr, nullptr};
-  return std::ranges::any_of(others.candidates, [&](const Candidate<KeyframeId>& other) {
-    const KeyframeId k = other.keyframe;
-    const CandidateAttempt found =
-        try_candidate(k, query, quietly, stream.fork(id.value).fork(k.value), {});
-    const bool is_other_piece = context.map.at(k).origin != own.origin;
-    return found.stage == RelocalizationStage::kVerified && found.inliers >= inliers &&
-           (is_other_piece || is_elsewhere(found.camera_from_world, own.camera_from_world));
-  });
-}
-
 }  // namespace
 
 KeyframeSelection choose_candidates(const Map& map, const Query& query, const SlamConfig& config,
@@ -252,13 +225,6 @@ RelocalizationResult relocalize(const Query& query, const SlamContext& context, 
       config.relocalize.rival_share > 0
           ? try_rivals(query, candidates, leniently, stream, memo, is_possible)
           : try_candidates(query, candidates, leniently, stream, {}, memo, is_possible);
-  if (const double share = config.relocalize.twin_share;
-      share > 0 && result.camera_from_world && !is_possible &&
-      has_twin(result.keyframe, share * result.inliers, leniently, stream)) {
-    result.stage = kLastBeforeVerified;
-    result.camera_from_world.reset();
-    result.landmarks.clear();
-  }
   result.candidates = {.keyframes = context.map.keyframe_count(),
                        .c1 = selection.c1,
                        .c2 = selection.c2,

@@ -40,11 +40,9 @@ struct KeyframeSelection : CandidateSelection<KeyframeId> {
 /// whatever `overlap` says.
 /// @param stale_scores  first receives this query's similarities, then supplies those of equation
 /// 5; null: each similarity is computed for this query
-/// @param belongs  which keyframes are eligible; empty = all
 KeyframeSelection select_keyframes(const Map& map, const AugmentedVector& query,
                                    const SemanticConfig& config,
-                                   StaleScores* stale_scores = nullptr,
-                                   const std::function<bool(KeyframeId)>& belongs = {});
+                                   StaleScores* stale_scores = nullptr);
 
 /// The attempts at one query so far, by candidate, under one stream and one trial_key(). Searches
 /// that differ only in which candidates they choose can reuse them.
@@ -77,8 +75,7 @@ CandidateAttempt try_alone(KeyframeId candidate, const Query& query, const SlamC
 /// order of score. With acceptance `ours`, candidates are tried at
 /// RelocalizeConfig::disparity_sigma_px or the camera's own sigma, whichever is larger. The pose is
 /// provisional: the caller must confirm it in the local map, at the camera's own sigma. With
-/// RelocalizeConfig::rival_share, every candidate is tried. With twin_share, a pose is refused
-/// whose keyframe has a twin, unless something else is known about the camera's place.
+/// RelocalizeConfig::rival_share, every candidate is tried.
 /// @param stale_scores  of earlier queries. Read and updated only under
 /// NeighborScores::kAsReleased, and must then not be null
 RelocalizationResult relocalize(const Query& query, const SlamContext& context, RandomStream stream,

@@ -264,11 +264,9 @@ struct RoomAndCopy : MappedViews {
                   {});
     }
   }
-  RelocalizationResult find_place(double rival_share, const IsPossible& is_possible = {},
-                                  double twin_share = 0) const {
+  RelocalizationResult find_place(double rival_share, const IsPossible& is_possible = {}) const {
     SlamConfig config;
     config.relocalize.rival_share = rival_share;
-    config.relocalize.twin_share = twin_share;
     const FeatureGrid grid(features.keypoints, camera);
     MatchCounts counts{};
     return relocalize({features, grid, words}, {camera, config, map, counts}, RandomStream(1),
@@ -288,19 +286,6 @@ TEST(Relocalize, RefusesAPlaceThatHasARival) {
   const auto clear = RoomAndCopy(6).find_place(0.91);
   EXPECT_EQ(clear.stage, RelocalizationStage::kVerified);
   EXPECT_EQ(clear.keyframe, KeyframeId{0});
-}
-
-TEST(Relocalize, RefusesAPlaceWhoseKeyframeHasATwin) {
-  const IsPossible anywhere;
-  EXPECT_EQ(RoomAndCopy(0).find_place(0, anywhere, 1.0).stage, RelocalizationStage::kInliers);
-  const auto refused = RoomAndCopy(6).find_place(0, anywhere, 0.9);
-  EXPECT_EQ(refused.stage, RelocalizationStage::kInliers);
-  EXPECT_FALSE(refused.camera_from_world);
-  EXPECT_EQ(RoomAndCopy(6).find_place(0, anywhere, 0.91).stage, RelocalizationStage::kVerified);
-  // Whoever knows more about the place decides by that.
-  const auto known = RoomAndCopy(0).find_place(
-      0, [](const MapPose&) { return true; }, 0.9);
-  EXPECT_EQ(known.stage, RelocalizationStage::kVerified);
 }
 
 TEST(Relocalize, PassesOverPlacesThatAreImpossible) {
