@@ -55,7 +55,8 @@ LiveDrive::LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfi
       slam_topics_{.pose = log_.add_topic<ros::PoseStamped>("/slam/pose"),
                    .keyframes = log_.add_topic<ros::Path>("/slam/keyframes"),
                    .landmarks = log_.add_topic<ros::PointCloud2>("/slam/landmarks")},
-      slam_(make_slam(with_lens(robot.camera, level), {}, vocabulary_)) {
+      slam_(make_slam(with_lens(robot.camera, level), {}, vocabulary_)),
+      views_(with_lens(robot.camera, level)) {
   try {
     robot_messages_.add_grid(make_floor_grid(*scene_.scene, {.top_m = robot_.height_m}), SE3(), 0);
   } catch (const InputError&) {  // a scene without a floor has no grid
@@ -117,6 +118,7 @@ std::string LiveDrive::take(const std::string& message) {
     if (!vx || !vy || !wz) return "drive: expected three finite numbers";
     asked_.velocity = {*vx, *vy, *wz};
     asked_.steps_left = kStepsWithoutDriver;
+    if (!asked_.velocity.isZero()) asked_.go = "";
     return "";
   }
   if (key == "do" && value == "kidnap") {
@@ -125,6 +127,10 @@ std::string LiveDrive::take(const std::string& message) {
   }
   if (key == "do" && value == "restart") {
     asked_.restart = true;
+    return "";
+  }
+  if (key == "go" && value.is_string() && value.get_ref<const std::string&>().size() < 100) {
+    asked_.go = value.get<std::string>();
     return "";
   }
   if (key == "light" && value.is_boolean()) {
@@ -145,7 +151,7 @@ std::string LiveDrive::take(const std::string& message) {
       asked_.xi = xi;
       return "";
     }
-  return "not understood: one of drive, do, light, wheels, gamma, xi";
+  return "not understood: one of drive, do, go, light, wheels, gamma, xi";
 }
 
 void LiveDrive::obey(const Asked& asked) {
@@ -154,12 +160,24 @@ void LiveDrive::obey(const Asked& asked) {
     slam_ = make_slam(with_lens(robot_.camera, level_), {}, vocabulary_);
     set_query_settings(slam_, semantics);
     world_from_map_.reset();
+    views_.forget();
+    errand_.reset();
   }
   if (asked.gamma || asked.xi) {
     SemanticConfig semantics = slam_.config.semantics;
     semantics.gamma = asked.gamma.value_or(semantics.gamma);
     semantics.xi = asked.xi.value_or(semantics.xi);
     set_query_settings(slam_, semantics);
+  }
+  if (asked.go) {
+    errand_.reset();
+    errand_command_ = Twist2d::Zero();
+    note_.clear();
+    try {
+      if (!asked.go->empty()) errand_.emplace(views_, trajectory(slam_), robot_, *asked.go);
+    } catch (const InputError& error) {
+      note_ = error.what();
+    }
   }
   if (asked.light) light_ = *asked.light;
   if (asked.wheels) wheels_ = *asked.wheels;
@@ -185,13 +203,14 @@ LiveDrive::Shown LiveDrive::step(int wanted) {
       --asked_.steps_left;
     asked = asked_;
     asked_.kidnap = asked_.restart = false;
+    asked_.go.reset();
     asked_.light.reset();
     asked_.wheels.reset();
     asked_.gamma.reset();
     asked_.xi.reset();
   }
   obey(asked);
-  velocity_ = asked.velocity;
+  velocity_ = errand_ ? errand_command_ : asked.velocity;
   const RobotObservation seen = simulation_.step(velocity_, kStep_s);
   note(velocity_);
   if (!seen.frame) return {};
@@ -203,6 +222,13 @@ LiveDrive::Shown LiveDrive::step(int wanted) {
   if (!world_from_map_ && report.world_from_camera)
     world_from_map_ =
         simulation_.truth_of_frame()->world_from_camera * report.world_from_camera->inverse();
+  const bool is_found = report.status != TrackStatus::kLost && report.inliers > 0;
+  if (is_found && report.world_from_camera) views_.see(seen, *report.world_from_camera);
+  if (errand_)
+    errand_command_ = is_end(errand_->state())
+                          ? Twist2d(Twist2d::Zero())
+                          : errand_->step(simulation_.time_s(), seen,
+                                          is_found ? report.world_from_camera : std::nullopt);
   Shown shown;
   if ((wanted & kMessages) != 0) shown.messages = messages(seen, report);
   if ((wanted & kPage) != 0) {
@@ -313,6 +339,16 @@ std::string LiveDrive::state(const RobotObservation& seen, const StepReport& rep
     json["error_m"] = rounded_for_page(
         (estimate.translation() - simulation_.truth_of_frame()->world_from_camera.translation())
             .norm());
+  }
+  if (!note_.empty()) json["note"] = note_;
+  if (errand_) {
+    Json path = Json::array();
+    for (const Eigen::Vector3d& p : errand_->path()) {
+      const Eigen::Vector3d at = *world_from_map_ * p;
+      path.push_back({rounded_for_page(at.x()), rounded_for_page(at.y())});
+    }
+    json["errand"] = {
+        {"goal", errand_->goal()}, {"state", std::string(name(errand_->state()))}, {"path", path}};
   }
   if (frames_ % kStepsPerMap == 1 && world_from_map_) {
     Json points = Json::array(), keyframes = Json::array();

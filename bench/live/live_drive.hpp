@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/live/errand.hpp"
 #include "bench/live/live_page.hpp"
 #include "scenes/recordings/messages/robot_types.hpp"
 #include "scenes/recordings/ros/camera_messages.hpp"
@@ -60,6 +61,7 @@ class LiveDrive {
     Twist2d velocity;
     int steps_left = 0;  ///< at 0, the robot stops since its driver is gone
     bool kidnap = false, restart = false;
+    std::optional<std::string> go;  ///< to what; empty: nowhere
     std::optional<bool> light, wheels;
     std::optional<double> gamma, xi;
   };
@@ -94,6 +96,10 @@ class LiveDrive {
   /// The robot was carried away and is not relocalized yet: its wheels were in the air, so their
   /// odometry is useless.
   bool lifted_ = false;
+  KeptViews views_;
+  std::optional<Errand> errand_;
+  Twist2d errand_command_ = Twist2d::Zero();
+  std::string note_;  ///< for the viewers: why an errand is not done
   std::mutex mutex_;
   Asked asked_;  ///< guarded by mutex_
 };

@@ -66,8 +66,8 @@ std::vector<std::string> paper_headings() {
 
 /// The table in the form of the paper's Table 2. Empty if there were no queries, as in a suite that
 /// only scores trajectories of outside programs.
-std::string paper_table(const Block& block) {
-  const std::span<const PublishedRow> published = published_rows(block.suite);
+/// @param published  the paper's own rows; empty if they are shown elsewhere
+std::string paper_table(const Block& block, std::span<const PublishedRow> published) {
   const auto asked = [&](QuerySet set) { return most_queries(block, set) > 0; };
   if (published.empty() && std::ranges::none_of(kQuerySets, asked)) return "";
   TextTable table(paper_headings());
@@ -188,6 +188,20 @@ std::string mapping_details(const Block& block) {
   return table.text();
 }
 
+/// The same for a screen: the figures of overviews alone.
+std::string mapping_overview(const Block& block) {
+  std::vector<std::string> names = trajectory_headings();
+  names.insert(names.begin(), "mapping");
+  TextTable table(std::move(names));
+  for (const Row* row : block.detailed) {
+    std::vector<std::string> cells{block.system(row).name};
+    for (const Figure& figure : figures_of(row->trajectory))
+      if (figure.metric.in_overview) cells.push_back(row->trials.empty() ? "-" : shown(figure));
+    table.add(std::move(cells), incomplete(block.suite, *row));
+  }
+  return table.text();
+}
+
 /// The effect of xi, for each matcher.
 std::string penalties(const Block& block) {
   std::string text;
@@ -226,7 +240,7 @@ std::string common_ate(const Block& block) {
   return text;
 }
 
-std::string block_text(const Block& block, Extent extent) {
+std::string block_text(const Block& block, Extent extent, bool is_first) {
   const Suite& suite = block.suite;
   const Row& row = *block.rows.front();
   std::string text = fmt::format(
@@ -234,8 +248,8 @@ std::string block_text(const Block& block, Extent extent) {
       suite.environments.size() > 1 ? suite.environments[row.environment].name : suite.name,
       level_name(suite.levels[row.level]), with_labels(row.labels), counted(suite.trials, "trial"),
       suite.trials == 1 ? "" : " (medians)", shortened(suite, block.all));
-  text += paper_table(block);
-  if (extent == Extent::kScreen) return text + mapping_details(block);
+  text += paper_table(block, is_first ? published_rows(suite) : std::span<const PublishedRow>());
+  if (extent == Extent::kScreen) return text + mapping_overview(block);
   for (const QuerySet set : kQuerySets)
     if (most_queries(block, set) > 0)
       text += query_details(block, set) + candidate_details(block, set);
@@ -257,7 +271,7 @@ std::string place_table(const Suite& suite, std::span<const Row> rows, Extent ex
       block.rows.push_back(&*end);
       if (!already_shown(suite, *end)) block.detailed.push_back(&*end);
     }
-    text += block_text(block, extent);
+    text += block_text(block, extent, first == rows.begin());
     first = end;
   }
   if (extent == Extent::kScreen) return text;

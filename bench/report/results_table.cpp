@@ -113,6 +113,20 @@ std::string main_table(const Suite& suite, std::span<const Row> rows, Extent ext
          published_text(ate_beside_published(suite, rows));
 }
 
+/// What the tables' words mean, in a line.
+std::string terms(const Suite& suite, std::span<const Row> rows) {
+  const bool asked = std::ranges::any_of(rows, [](const Row& row) {
+    return std::ranges::any_of(kQuerySets,
+                               [&](QuerySet set) { return summary(row, set).queries > 0; });
+  });
+  if (!asked) return "";
+  return fmt::format(
+      "\nsuccess: a pose; correct: within {:g} m and {:g} deg; where mapped: success where a "
+      "mapped "
+      "frame is near\n",
+      suite.protocol.correct_distance_m, suite.protocol.correct_angle_deg);
+}
+
 }  // namespace
 
 std::string results_table(const Suite& suite, std::span<const RunResult> runs,
@@ -126,9 +140,10 @@ std::string results_table(const Suite& suite, std::span<const RunResult> runs,
 std::string results_screen(const Suite& suite, std::span<const RunResult> runs,
                            std::span<const FailedRun> failed,
                            std::span<const std::string> missing) {
-  const std::string tables =
-      suite.episodes ? episodes_table(suite, runs)
-                     : main_table(suite, make_rows(suite, runs, failed), Extent::kScreen);
+  const std::vector<Row> rows = make_rows(suite, runs, failed);
+  const std::string tables = suite.episodes
+                                 ? episodes_table(suite, runs)
+                                 : main_table(suite, rows, Extent::kScreen) + terms(suite, rows);
   return warning_of_cut(suite, runs) + tables + failures_text(failed) + missing_text(missing);
 }
 

@@ -33,7 +33,7 @@ function hold(what, on) {
 const keys = { KeyW: "1,0,0", ArrowUp: "1,0,0", KeyS: "-1,0,0", ArrowDown: "-1,0,0", KeyA: "0,1,0", KeyD: "0,-1,0",
                KeyQ: "0,0,1", ArrowLeft: "0,0,1", KeyE: "0,0,-1", ArrowRight: "0,0,-1" };
 addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey || event.target.type === "range") return;
+  if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "INPUT") return;
   if (keys[event.code]) { hold(keys[event.code], true); event.preventDefault(); }
   if (event.repeat) return;
   if (event.code === "KeyK") $("kidnap").click();
@@ -55,6 +55,11 @@ for (const what of ["light", "wheels"])
     $(what).setAttribute("aria-pressed", on);
     send({ [what]: on });
   };
+$("errand").onsubmit = (event) => {
+  event.preventDefault();
+  send({ go: $("goal").value.trim() });
+  $("goal").blur();
+};
 for (const dial of ["gamma", "xi"])
   $(dial).oninput = () => { send({ [dial]: Number($(dial).value) }); };
 
@@ -69,6 +74,7 @@ function take(message) {
     hello = message.hello;
     $("scene").textContent = `${hello.scene}, ${hello.robot}`;
     document.body.classList.toggle("watch", hello.watch === true);
+    $("goals").replaceChildren(...hello.classes.slice(1).map(([name]) => new Option(name)));
     map = { points: [], keyframes: [] };
     trail.true = []; trail.estimate = [];
     return;
@@ -91,6 +97,7 @@ function take(message) {
     $(`${dial}_is`).textContent = state[dial].toFixed(2);
     if (document.activeElement !== $(dial)) $(dial).value = state[dial];
   }
+  $("errand_is").textContent = state.errand ? `${state.errand.goal}: ${state.errand.state}` : state.note ?? "";
   const facts = { "time": `${state.time_s.toFixed(1)} s`, "error": state.error_m === undefined ? "-" : `${(100 * state.error_m).toFixed(1)} cm`,
                   "keypoints": state.keypoints ?? "-", "inliers": state.inliers ?? "-", "keyframes": state.keyframes };
   if (hello?.watch) Object.assign(facts, { "frame": `${state.frame} of ${state.of}`, "restarts": state.restarts });
@@ -162,6 +169,14 @@ function draw() {
       up = !p;
     }
     g.stroke();
+  }
+  if (state.errand?.path.length > 0) {
+    g.strokeStyle = ink("estimate");
+    g.setLineDash([5, 4]);
+    g.beginPath();
+    state.errand.path.forEach((p, k) => g[k ? "lineTo" : "moveTo"](...at(p)));
+    g.stroke();
+    g.setLineDash([]);
   }
   const robot = (pose, name, radius) => {
     if (!pose) return;

@@ -40,6 +40,10 @@ await page.keyboard.up("q");
 await page.keyboard.down("w");
 await page.waitForTimeout(700);
 await page.keyboard.up("w");
+await page.fill("#goal", "chair");
+await page.click("#errand button");
+await until(async () => (await page.textContent("#errand_is")).startsWith("chair"), "an errand to a chair");
+await page.waitForTimeout(1500);
 for (const scheme of ["light", "dark"]) {
   await shoot(`wide_${scheme}`, 1440, 900, scheme);
   await shoot(`phone_${scheme}`, 390, 844, scheme);

@@ -172,6 +172,38 @@ TEST(LiveDrive, PublishesWhatARobotOfRos2Would) {
   EXPECT_LT((estimate.translation()).norm(), 20) << "in the frame of the house";
 }
 
+TEST(LiveDrive, DrivesToAnObjectOfItsOwnMap) {
+  const auto drive = made_drive();
+  EXPECT_EQ(drive->take(R"({"go": "chair"})"), "");
+  EXPECT_THAT(held(*drive, "", 1).at("note").get<std::string>(), HasSubstr("no map yet"));
+  held(*drive, R"({"drive": [0, 0, 0.8]})", 140);  // a full turn
+  EXPECT_EQ(drive->take(R"({"go": "elephant"})"), "");
+  EXPECT_THAT(held(*drive, "", 1).at("note").get<std::string>(), HasSubstr("elephant"));
+  EXPECT_EQ(drive->take(R"({"go": "chair"})"), "");
+  Json state = held(*drive, "", 1);
+  ASSERT_TRUE(state.contains("errand")) << state.dump();
+  bool had_path = false;
+  for (int i = 0; i < 900 && state.at("errand").at("state") != "arrived"; ++i) {
+    state = held(*drive, "", 1);
+    had_path = had_path || !state.at("errand").at("path").empty();
+  }
+  EXPECT_EQ(state.at("errand").at("state"), "arrived");
+  EXPECT_TRUE(had_path);
+  const Json hello = Json::parse(drive->greeting()).at("hello");
+  double nearest_m = 100;
+  for (const Json& thing : hello.at("things")) {
+    if (hello.at("classes")[thing[4].get<std::size_t>()][0] != "chair") continue;
+    const auto beyond = [&](int axis) {
+      const double at = state.at("base")[axis];
+      return std::max({0.0, thing[axis].get<double>() - at, at - thing[axis + 2].get<double>()});
+    };
+    nearest_m = std::min(nearest_m, std::hypot(beyond(0), beyond(1)));
+  }
+  EXPECT_LT(nearest_m, 1.0);
+  held(*drive, R"({"drive": [0, 0, 0.3]})", 1);
+  EXPECT_FALSE(held(*drive, "", 1).contains("errand")) << "its driver is back";
+}
+
 TEST(LiveDrive, WhatWasDrivenCanBeDrivenAgain) {
   const auto drive = made_drive();
   held(*drive, R"({"drive": [0.3, 0, 0]})", 3);
