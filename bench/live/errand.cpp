@@ -10,7 +10,7 @@
 namespace mh {
 namespace {
 
-constexpr std::size_t kMostViews = 400;
+constexpr std::size_t kMostViews = 200;
 
 }  // namespace
 
@@ -22,6 +22,7 @@ void KeptViews::see(const RobotObservation& seen, const SE3& world_from_camera) 
       return;
   }
   views_.push_back({*seen.frame, seen.reading.lasers_m, world_from_camera});
+  views_.back().frame.color = {};  // the map needs none
   if (views_.size() <= kMostViews) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < views_.size(); i += 2) std::swap(views_[kept++], views_[i]);

@@ -580,7 +580,8 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfATumFolder) {
       [&](const fs::path& file) {
         const std::string name = file.lexically_relative(room()).string();
         return !name.starts_with("instance") && name != "associations.txt" &&
-               name != "camera_info.yaml" && file.filename() != ".modelhouse";
+               name != "camera_info.yaml" && name != "checksums.txt" &&
+               file.filename() != ".modelhouse";
       });
   // The key is made from exactly the inputs that a run is built from.
   EXPECT_EQ(run_key(spec_, world().inputs), key());
@@ -795,7 +796,7 @@ TEST_F(Recorded, TheKeyOfARunHoldsEveryByteOfAScanNetRecording) {
       room(), [&] { return key(); },
       [&](const fs::path& file) {
         const std::string name = file.lexically_relative(room()).string();
-        return !name.starts_with("instance-filt") && name != "_info.txt";
+        return !name.starts_with("instance-filt") && name != "_info.txt" && name != "checksums.txt";
       });
   EXPECT_EQ(run_key(spec_, world().inputs), key());
 

@@ -415,7 +415,7 @@ TEST_F(OutsideFaults, ATrajectoryIsAFileOfItsFolderOfABearableSize) {
   EXPECT_HOLDS(error("mkdir {trajectory}"), "it is a folder");
   EXPECT_HOLDS(error("ln -s trajectory.txt {trajectory}"), "wrote no trajectory");
   const std::string endless =
-      error("head -c 150000000 /dev/zero | tr '\\0' 'a' > {trajectory}; echo >> {trajectory}");
+      error("head -c 30000000 /dev/zero | tr '\\0' 'a' > {trajectory}; echo >> {trajectory}");
   EXPECT_HOLDS(endless, "trajectory.txt: contains no poses");
   EXPECT_LT(error("printf '1 ' > {trajectory}; head -c 3000000 /dev/zero | tr '\\0' 'a' >> "
                   "{trajectory}; echo ' 0 0 0 0 0 1' >> {trajectory}")
