@@ -165,7 +165,8 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
                      .metrics_only = options.metrics_only,
                      .live_port = options.live_port,
                      .parent = getpid()};
-      if (options.cache) order.maps = cache;
+      // Whoever watches wants to see the mapping, not its result.
+      if (options.cache && options.live_port == 0) order.maps = cache;
       if (!job.images.empty() && !job.spec.environment.is_recorded())
         order.images = images / job.images, order.images_limit = images_limit;
       const fs::path file = work.path() / (job.key + ".json");
