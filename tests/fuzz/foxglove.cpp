@@ -10,7 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::vector<mh::TopicSpec> topics{
       mh::topic_spec<mh::ros::String>("/said", mh::ros::Wire::kCdr),
-      mh::topic_spec<mh::ros::Twist>("/moved", mh::ros::Wire::kCdr)};
+      mh::topic_spec<mh::ros::TfMessage>("/moved", mh::ros::Wire::kCdr)};
   mh::FoxgloveClient client(topics);
   std::string_view left(reinterpret_cast<const char*>(data), size);
   while (!left.empty()) {
