@@ -99,8 +99,9 @@ std::string paper_table(const Block& block, std::span<const PublishedRow> publis
       }));
     table.add_line("  (as released, ORB-SLAM2's answers depend on the order of its queries)");
   }
-  const std::string rule = std::string(90, '-') + "\n";
-  return rule + table.text() + rule;
+  const std::string text = table.text();
+  const std::string rule = std::string(text.find('\n'), '-') + "\n";  // as wide as the headings
+  return rule + text + rule;
 }
 
 /// A title, followed by the headings of the figures that these scores have.

@@ -370,8 +370,8 @@ TEST_F(Reports, ThePapersFiguresStandWhereASuiteNamesThem) {
   const auto has_paper = [&] {
     write_pages(out(), std::array{source});
     const std::string text = read_file(out() / "data/0-overview.js");
-    EXPECT_EQ(text.find("the paper's semantic system") != std::string::npos,
-              read_file(out() / "data/0-figures.js").find("the paper's semantic system") !=
+    EXPECT_EQ(text.find("the paper's system") != std::string::npos,
+              read_file(out() / "data/0-figures.js").find("the paper's system") !=
                   std::string::npos);
     return text.find("0.7925") != std::string::npos;
   };
