@@ -983,10 +983,10 @@ TEST(ResultsTable, HasThePapersFormAndMarksASaturatedTable) {
   Place place;
   place.suite.published = Published::kTable2;
   const std::string table = results_table(place.suite, place.run());
-  for (const char* part : {"Reloc. success (%)", "Average distance (m)", "published, other data",
-                           "the paper's system", "79.25", "0.0512", "71.43", "0.0945",
-                           "exact labels", "labels from boxes", "held-out frames", "second tour",
-                           "saturated", "undecided; too few pairs"})
+  for (const char* part :
+       {"Reloc. success (%)", "Average distance (m)", "published, other data", "the paper's system",
+        "79.25", "0.0512", "71.43", "0.0945", "exact labels", "labels from boxes",
+        "held-out frames", "second tour", "saturated", "undecided; too few pairs"})
     EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
   EXPECT_EQ(table.find("is better"), std::string::npos) << table;
   EXPECT_NE(table.find("base: ours"), std::string::npos) << table;

@@ -370,9 +370,9 @@ TEST_F(Reports, ThePapersFiguresStandWhereASuiteNamesThem) {
   const auto has_paper = [&] {
     write_pages(out(), std::array{source});
     const std::string text = read_file(out() / "data/0-overview.js");
-    EXPECT_EQ(text.find("the paper's system") != std::string::npos,
-              read_file(out() / "data/0-figures.js").find("the paper's system") !=
-                  std::string::npos);
+    EXPECT_EQ(
+        text.find("the paper's system") != std::string::npos,
+        read_file(out() / "data/0-figures.js").find("the paper's system") != std::string::npos);
     return text.find("0.7925") != std::string::npos;
   };
   EXPECT_FALSE(has_paper());
