@@ -34,7 +34,7 @@ client.on("message", ({ subscriptionId, data }) => {
   count[topic] = (count[topic] ?? 0) + 1;
 });
 const until = async (is, what) => {
-  for (let k = 0; k < 600; ++k) {
+  for (let k = 0; k < 2000; ++k) {
     if (is()) return;
     await sleep(50);
   }
@@ -63,7 +63,7 @@ for (const [encoding, bytes] of [["cdr", writer.writeMessage(twist(0.8))],
   ["json", new TextEncoder().encode(JSON.stringify(twist(-0.8)))]]) {
   const id = client.advertise({ topic: "/cmd_vel", encoding, schemaName: "geometry_msgs/msg/Twist" });
   const before = heading();
-  for (let k = 0; k < 40 && turned(before) < 0.3; ++k) {
+  for (let k = 0; k < 300 && turned(before) < 0.3; ++k) {
     client.sendMessage(id, bytes);
     await sleep(100);
   }
