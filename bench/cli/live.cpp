@@ -45,14 +45,13 @@ class LiveRecording {
         file_(RosOption().open("mcap", out)) {
     for (const TopicSpec& topic : topics) topics_.push_back(file_->add_topic(topic));
   }
-  void add(const CommandScript& driven, const std::vector<MessageLog::Entry>& messages) {
-    driven_ = driven;
+  void add(const std::vector<MessageLog::Entry>& messages) {
     for (const MessageLog::Entry& entry : messages)
       file_->write(topics_[entry.topic], entry.stamp_ns, entry.message);
   }
-  void finish() {
+  void finish(const CommandScript& driven) {
     file_->finish();
-    write_atomically(out_ / kScript, commands_text(driven_));
+    write_atomically(out_ / kScript, commands_text(driven));
     fmt::print("live: recorded in {}\n", out_.string());
   }
 
@@ -61,7 +60,6 @@ class LiveRecording {
   OutputFolder folder_;
   std::unique_ptr<MessageWriter> file_;
   std::vector<std::uint16_t> topics_;
-  CommandScript driven_;
 };
 
 std::string new_token() {
@@ -108,19 +106,17 @@ void run(LiveArguments options) {
     LiveDrive::Shown shown =
         drive.step((server.viewers() > 0 ? LiveDrive::kPage : 0) |
                    (server.subscriptions() > 0 || recording ? LiveDrive::kMessages : 0));
-    if (recording) recording->add(drive.driven(), shown.messages);
+    if (recording) recording->add(shown.messages);
     server.send_messages(std::move(shown.messages));
     if (!shown.state.empty()) {
       server.send_text(std::move(shown.state));
-      char kind = 0;
-      for (std::string* image : {&shown.images.color, &shown.images.depth, &shown.images.labels})
-        server.send_image(std::string(1, kind++) + *image);
+      server.send_images(shown.images);
     }
     // On a machine that is too slow, the robot drives in slow motion instead of in leaps.
     due = std::max(due + period, Clock::now() - period);
     if (!options.fast) std::this_thread::sleep_until(due);
   }
-  if (recording) recording->finish();
+  if (recording) recording->finish(drive.driven());
 }
 
 }  // namespace

@@ -12,15 +12,15 @@
 
 namespace mh {
 
-/// What a robot keeps of what it saw, to make the map that it drives by: frames and scans wherever
-/// it had moved or turned enough. At most some hundred: then every other one is dropped, and it has
-/// to move farther.
+/// What a robot keeps of what it saw, to make the map that it drives by: scans and frames, without
+/// color, wherever it had moved or turned enough. Of 200, every other one is dropped, and it has to
+/// move farther from then on.
 class KeptViews : public Sequence {
  public:
   explicit KeptViews(const Camera& camera) : camera_(camera) {}
 
   void see(const RobotObservation& seen, const SE3& world_from_camera);
-  void forget() { views_.clear(); }
+  void forget() { *this = KeptViews(camera_); }
   const std::vector<std::vector<float>>& lasers_m(std::size_t i) const {
     return views_[i].lasers_m;
   }
@@ -39,7 +39,7 @@ class KeptViews : public Sequence {
   };
   Camera camera_;
   std::vector<View> views_;
-  double apart_m_ = 0.25, apart_rad_ = 0.26;  // as build_robot_map() chooses frames
+  double apart_m_ = kViewMoved_m, apart_rad_ = kViewTurned_rad;
 };
 
 /// A drive to an object of the robot's own map.

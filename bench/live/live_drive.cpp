@@ -14,6 +14,7 @@
 #include "bench/live/live_page.hpp"
 #include "bench/protocol/episodes/starts.hpp"
 #include "bench/report/drawing/false_colors.hpp"
+#include "scenes/recordings/frame_files.hpp"
 #include "scenes/recordings/ros/names.hpp"
 #include "sim/motion/floor_grid.hpp"
 #include "slam/core/labels.hpp"

@@ -83,10 +83,4 @@ PageImages images_for_page(const RgbdFrame& frame) {
           encode_jpeg(colors_of(classes_of(frame)), kJpegQuality)};
 }
 
-Grid2d<ClassId> classes_of(const RgbdFrame& frame) {
-  if (frame.semantics.index.empty())
-    return Grid2d<ClassId>(frame.color.width(), frame.color.height());
-  return class_image(frame.semantics);
-}
-
 }  // namespace mh

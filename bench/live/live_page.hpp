@@ -28,7 +28,4 @@ struct PageImages {
 };
 PageImages images_for_page(const RgbdFrame& frame);
 
-/// The classes of a frame's pixels; void everywhere if it has no labels.
-Grid2d<ClassId> classes_of(const RgbdFrame& frame);
-
 }  // namespace mh

@@ -104,7 +104,7 @@ struct LiveServer::Impl {
 
   void accept();
   void send(const Outgoing& message);
-  void send(const std::vector<MessageLog::Entry>& messages);
+  void send(std::vector<MessageLog::Entry> messages);
   void count();
   /// The reason for refusing a request; empty if it is not refused.
   std::string refusal(const http::request<http::string_body>& request) const;
@@ -147,13 +147,14 @@ class LiveServer::Impl::Viewer : public std::enable_shared_from_this<Viewer> {
       return reply(http::status::forbidden, "text/plain", why + "\n");
     std::string target = text_of(request.target());
     target = target.substr(0, target.find('?'));
-    if (websocket::is_upgrade(request)) {
+    const bool upgrades = websocket::is_upgrade(request);
+    if (upgrades) {
       const auto asked = request[http::field::sec_websocket_protocol];
       for (const auto& protocol : http::token_list(asked))
         if (text_of(protocol) == FoxgloveClient::kSubprotocol && target == "/")
           foxglove_.emplace(server_.show.topics);
     }
-    if (foxglove_ || (websocket::is_upgrade(request) && target == "/ws")) {
+    if (foxglove_ || (upgrades && target == "/ws")) {
       if (server_.joined.size() < kMostViewers) return upgrade();
       return reply(http::status::service_unavailable, "text/plain", "there are too many viewers\n");
     }
@@ -278,9 +279,9 @@ void LiveServer::Impl::send(const Outgoing& message) {
     if (!viewer->foxglove()) viewer->queue(message);
 }
 
-void LiveServer::Impl::send(const std::vector<MessageLog::Entry>& messages) {
-  for (const MessageLog::Entry& message : messages) {
-    const SharedBytes bytes = shared(message.message);
+void LiveServer::Impl::send(std::vector<MessageLog::Entry> messages) {
+  for (MessageLog::Entry& message : messages) {
+    const SharedBytes bytes = shared(std::move(message.message));
     const bool is_latched = show.topics[message.topic].latched;
     if (is_latched) latched[message.topic] = {message.stamp_ns, bytes};
     for (const auto& viewer : std::vector(joined.begin(), joined.end()))
@@ -376,9 +377,15 @@ void LiveServer::send_image(std::string bytes) {
     impl->send(Outgoing{.content = bytes, .is_binary = true, .may_be_missed = true});
   });
 }
+void LiveServer::send_images(const PageImages& images) {
+  char kind = 0;
+  for (const std::string* image : {&images.color, &images.depth, &images.labels})
+    send_image(std::string(1, kind++) + *image);
+}
 void LiveServer::send_messages(std::vector<MessageLog::Entry> messages) {
-  asio::post(impl_->io,
-             [impl = impl_.get(), messages = std::move(messages)] { impl->send(messages); });
+  asio::post(impl_->io, [impl = impl_.get(), messages = std::move(messages)]() mutable {
+    impl->send(std::move(messages));
+  });
 }
 int LiveServer::viewers() const {
   return impl_->viewers;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/live/live_page.hpp"
 #include "scenes/recordings/messages/message_log.hpp"
 
 namespace mh {
@@ -46,6 +47,7 @@ class LiveServer {
   int port() const;
   void send_text(std::string text);    ///< to every viewer of the page
   void send_image(std::string bytes);  ///< to every viewer of the page except those that lag behind
+  void send_images(const PageImages& images);  ///< the same for the images of a frame
   /// To the clients of Foxglove's protocol that subscribed, except those that lag behind. The last
   /// message of a latched topic is kept for later subscribers.
   void send_messages(std::vector<MessageLog::Entry> messages);

@@ -84,10 +84,7 @@ void LiveWatch::show(const World& world, const MappedFrame& call, const RgbdFram
           rounded_for_page((estimate.translation() - true_pose->translation()).norm());
   }
   server_.send_text(state.dump());
-  PageImages images = images_for_page(frame);
-  char kind = 0;
-  for (std::string* image : {&images.color, &images.depth, &images.labels})
-    server_.send_image(std::string(1, kind++) + *image);
+  server_.send_images(images_for_page(frame));
 }
 
 }  // namespace mh

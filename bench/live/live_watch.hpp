@@ -23,7 +23,6 @@ class LiveWatch {
   /// Shows a mapped frame if somebody watches, at most some ten times a second.
   void show(const World& world, const MappedFrame& call, const RgbdFrame& frame,
             const SystemReport& report);
-  std::string url() const { return server_.url(); }
 
  private:
   const RunSpec& spec_;

@@ -11,6 +11,7 @@
 
 #include "bench/report/table2.hpp"
 #include "bench/report/text_table.hpp"
+#include "bench/report/wording.hpp"
 #include "bench/results/rows.hpp"
 #include "bench/store/store.hpp"
 #include "slam/config/by_name.hpp"
@@ -58,17 +59,14 @@ std::string latex_cell(std::string_view text) {
 /// "& ATE m & RPE m/fr": the headings of a trajectory's figures in an overview.
 std::string latex_trajectory_headings() {
   std::string text;
-  for (const Figure& figure : figures_of(TrajectoryScore()))
-    if (figure.metric.in_overview) text += " & " + latex_cell(figure.metric.heading);
+  for (const std::string& heading : trajectory_headings()) text += " & " + latex_cell(heading);
   return text;
 }
 
 /// "& 0.0123 & 87.50\,\%"; "& -- & --" if no trial succeeded.
 std::string latex_trajectory(const TrajectoryScore& score, bool known) {
   std::string text;
-  for (const Figure& figure : figures_of(score)) {
-    if (!figure.metric.in_overview) continue;
-    std::string cell = known ? shown(figure) : "-";
+  for (std::string cell : trajectory_cells(score, known)) {
     if (cell == "-") cell = "--";
     if (cell.ends_with('%')) cell.replace(cell.size() - 1, 1, "\\,\\%");
     text += " & " + cell;
@@ -91,9 +89,7 @@ std::string latex_queries(const QuerySummary& summary) {
   std::string text;
   for (const Table2Column& column : kTable2Columns) {
     const auto value = summary.queries > 0 ? column.measured(summary) : std::nullopt;
-    text +=
-        value ? fmt::format(" & {:.{}f}", (column.unit == "%" ? 100 : 1) * *value, column.decimals)
-              : " & --";
+    text += " & " + (value ? shown(column, value) : "--");
   }
   return text;
 }

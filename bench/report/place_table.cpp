@@ -49,10 +49,7 @@ std::vector<std::string> paper_row(std::string_view title, const Value& value) {
   std::vector<std::string> cells{fmt::format("  {}", title)};
   for (const Table2Column& column : kTable2Columns) {
     if (column.text_heading.empty()) continue;
-    const std::optional<double> number = value(column);
-    cells.push_back(
-        number ? fmt::format("{:.{}f}", (column.unit == "%" ? 100 : 1) * *number, column.decimals)
-               : "-");
+    cells.push_back(shown(column, value(column)));
   }
   return cells;
 }
@@ -195,9 +192,8 @@ std::string mapping_overview(const Block& block) {
   names.insert(names.begin(), "mapping");
   TextTable table(std::move(names));
   for (const Row* row : block.detailed) {
-    std::vector<std::string> cells{block.system(row).name};
-    for (const Figure& figure : figures_of(row->trajectory))
-      if (figure.metric.in_overview) cells.push_back(row->trials.empty() ? "-" : shown(figure));
+    std::vector<std::string> cells = trajectory_cells(row->trajectory, !row->trials.empty());
+    cells.insert(cells.begin(), block.system(row).name);
     table.add(std::move(cells), incomplete(block.suite, *row));
   }
   return table.text();

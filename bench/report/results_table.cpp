@@ -122,8 +122,7 @@ std::string terms(const Suite& suite, std::span<const Row> rows) {
   if (!asked) return "";
   return fmt::format(
       "\nsuccess: a pose; correct: within {:g} m and {:g} deg; where mapped: success where a "
-      "mapped "
-      "frame is near\n",
+      "mapped frame is near\n",
       suite.protocol.correct_distance_m, suite.protocol.correct_angle_deg);
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "bench/protocol/metrics/query_summary.hpp"
 #include "bench/results/published.hpp"
@@ -39,5 +42,11 @@ inline constexpr Table2Column kTable2Columns[] = {
      [](const QuerySummary& s) { return s.distance_median_m; }},
     {"attempts", "attempts", "", 2,
      [](const QuerySummary& s) { return std::optional(s.attempts); }}};
+
+/// A number of a column as printed; "-" if unknown.
+inline std::string shown(const Table2Column& column, std::optional<double> value) {
+  return value ? fmt::format("{:.{}f}", (column.unit == "%" ? 100 : 1) * *value, column.decimals)
+               : "-";
+}
 
 }  // namespace mh

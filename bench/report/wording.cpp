@@ -90,7 +90,10 @@ std::vector<std::string> query_headings(QuerySet set) {
 }
 
 std::vector<std::string> trajectory_cells(const CategoryRow& row) {
-  return overview_cells(figures_of(row.trajectory), row.scenes > 0);
+  return trajectory_cells(row.trajectory, row.scenes > 0);
+}
+std::vector<std::string> trajectory_cells(const TrajectoryScore& score, bool known) {
+  return overview_cells(figures_of(score), known);
 }
 
 std::vector<std::string> query_cells(const CategoryRow& row, QuerySet set) {

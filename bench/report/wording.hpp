@@ -41,6 +41,8 @@ std::vector<std::string> trajectory_headings();
 std::vector<std::string> query_headings(QuerySet set);
 /// Cells for these columns; "-" if there were no queries.
 std::vector<std::string> trajectory_cells(const CategoryRow& row);
+/// @param known  false: "-" in each cell
+std::vector<std::string> trajectory_cells(const TrajectoryScore& score, bool known);
 std::vector<std::string> query_cells(const CategoryRow& row, QuerySet set);
 
 /// The mean share of a query's vector that labels make up, as "17.2%"; "-" if unknown.

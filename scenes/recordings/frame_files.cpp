@@ -34,6 +34,12 @@ Grid2d<ClassId> class_image(const SemanticImage& semantics) {
   return image;
 }
 
+Grid2d<ClassId> classes_of(const RgbdFrame& frame) {
+  if (frame.semantics.index.empty())
+    return Grid2d<ClassId>(frame.color.width(), frame.color.height(), kVoid);
+  return class_image(frame.semantics);
+}
+
 FrameFiles image_files(const RgbdFrame& frame) {
   static_assert(sizeof(Rgb8) == 3);
   const int width = frame.color.width(), height = frame.color.height();

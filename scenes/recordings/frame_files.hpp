@@ -21,6 +21,8 @@ inline std::uint16_t depth_units(float depth_m) {
 }
 /// The class of each pixel: the most probable one of its distribution.
 Grid2d<ClassId> class_image(const SemanticImage& semantics);
+/// The same for a frame; void everywhere if it has no labels.
+Grid2d<ClassId> classes_of(const RgbdFrame& frame);
 
 /// One frame's images as contents of files, uncompressed so that they cost no more than a copy.
 struct FrameFiles {

@@ -37,10 +37,7 @@ ExactFrame exact_frame(const Shutter& shutter, const SensorConfig& sensors,
   if (options.relabel) options.relabel(seen, i);
   const bool labels_are_exact = !options.relabel && is_per_pixel(options.labels) &&
                                 sensors.blank_frames.lost() == 0.0 && sensors.labels.noise.none();
-  if (!labels_are_exact)
-    exact.classes = seen.semantics.index.empty()
-                        ? Grid2d<ClassId>(exact.classes.width(), exact.classes.height(), kVoid)
-                        : class_image(seen.semantics);
+  if (!labels_are_exact) exact.classes = classes_of(seen);
   return {std::move(seen), std::move(exact.classes), std::move(exact.instances),
           shutter.path()[i].world_from_camera};
 }

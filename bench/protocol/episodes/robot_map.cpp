@@ -18,10 +18,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-// A view adds something new to the map once the camera has moved or turned this much: when it turns
-// by 0.26 rad, a point 2 m away shifts by half a meter.
-constexpr double kMoved_m = 0.25, kTurned_rad = 0.26;
-
 /// The cells in which a wall was seen.
 Grid2d<std::uint8_t> walls_of(const VoxelMap& map, const OccupancyGrid& grid) {
   const std::optional<ClassId> wall = class_by_name("wall");
@@ -98,8 +94,8 @@ std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory
     if (pose == estimate.end()) break;
     if (pose->stamp_ns != frames.stamp_ns(i)) continue;
     const SE3& now = pose->world_from_camera;
-    if (last && (now.translation() - last->translation()).norm() < kMoved_m &&
-        angle_between_rad(now, *last) < kTurned_rad)
+    if (last && (now.translation() - last->translation()).norm() < kViewMoved_m &&
+        angle_between_rad(now, *last) < kViewTurned_rad)
       continue;
     chosen.push_back(i);
     last = now;

@@ -43,6 +43,10 @@ KnownMap known_map(const VoxelMap& map, const OccupancyGrid& grid);
 std::vector<std::vector<Eigen::Vector2d>> footprints_of(const VoxelMap& map,
                                                         const std::vector<MapObject>& objects);
 
+/// A view adds something new to the map once the camera has moved or turned this much: when it
+/// turns by 0.26 rad, a point 2 m away shifts by half a meter.
+inline constexpr double kViewMoved_m = 0.25, kViewTurned_rad = 0.26;
+
 /// Indices of the frames that the map is made from: they have a pose, and the camera has moved or
 /// turned enough since the previous one of them.
 std::vector<std::size_t> frames_for_map(const Sequence& frames, const Trajectory& estimate);
