@@ -53,7 +53,9 @@ std::unique_ptr<LiveDrive> made_drive() {
 Json held(LiveDrive& drive, const std::string& command, int steps) {
   Json state;
   for (int i = 0; i < steps; ++i) {
-    if (!command.empty()) EXPECT_EQ(drive.take(command), "");
+    if (!command.empty()) {
+      EXPECT_EQ(drive.take(command), "");
+    }
     state = Json::parse(drive.step().state);
   }
   return state;
