@@ -10,7 +10,7 @@
 #include "bench/suite/labels.hpp"
 #include "bench/suite/shipped.hpp"
 #include "python/bind.hpp"
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/simulation.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh::python {

@@ -23,7 +23,7 @@ void add_export(CLI::App& app);
 void add_map(CLI::App& app);
 void add_map_build(CLI::App& map);
 void add_merge(CLI::App& app);
-void add_run_one(CLI::App& app);
+void add_run_child(CLI::App& app);
 void add_reference(CLI::App& app);
 void add_render(CLI::App& app);
 void add_report(CLI::App& app);

@@ -10,7 +10,7 @@
 #include "bench/report/pages/verdict.hpp"
 #include "bench/report/results_json.hpp"
 #include "bench/report/results_table.hpp"
-#include "bench/report/sweep.hpp"
+#include "bench/report/sweep_chart.hpp"
 #include "bench/report/write.hpp"
 #include "bench/run/plan_runs.hpp"
 #include "bench/suite/run_spec.hpp"

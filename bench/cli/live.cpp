@@ -19,7 +19,7 @@
 #include "bench/protocol/world/cached_light.hpp"
 #include "bench/run/signal_watch.hpp"
 #include "bench/suite/shipped.hpp"
-#include "sim/world/lit_scene.hpp"
+#include "sim/simulation/lit_scene.hpp"
 #include "slam/io/files.hpp"
 
 namespace mh::cli {

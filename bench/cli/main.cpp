@@ -70,7 +70,7 @@ bool has_commands(const CLI::App& app) {
 
 int run(int argc, char** argv) {
   // A run does not report interrupts: the process that started it must see that it was killed.
-  const bool is_run = argc >= 2 && std::string_view(argv[1]) == "run-one";
+  const bool is_run = argc >= 2 && std::string_view(argv[1]) == "run-child";
   if (!is_run) mh::tell_of_interrupts();
   mh::end_at_lost_pages(mh::kErrorMark, is_run ? mh::kInputChangedCode : kBadInput);
   // With this, a write beyond `ulimit -f` fails and is reported instead of ending the process
@@ -90,7 +90,7 @@ int run(int argc, char** argv) {
       "3 the machine or an outside program failed; 130 interrupted: a message says whether\n"
       "the same command resumes the work.");
   mh::cli::add_bench(app);
-  mh::cli::add_run_one(app);
+  mh::cli::add_run_child(app);
   mh::cli::add_merge(app);
   mh::cli::add_export(app);
   mh::cli::add_report(app);
@@ -130,13 +130,13 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "{}", mh::interrupted_line(interrupted.goes_on));
     return kInterrupted;
   } catch (const mh::InputChanged& error) {
-    return fail(app.got_subcommand("run-one") ? mh::kInputChangedCode : kBadInput, error.what());
+    return fail(app.got_subcommand("run-child") ? mh::kInputChangedCode : kBadInput, error.what());
   } catch (const mh::InputError& error) {
     return fail(kBadInput, error.what());
   } catch (const std::invalid_argument& error) {
     return fail(kBadInput, error.what());
   } catch (const mh::DiskFullError& error) {
-    return fail(app.got_subcommand("run-one") ? mh::kDiskFullCode : kMachineFailed, error.what());
+    return fail(app.got_subcommand("run-child") ? mh::kDiskFullCode : kMachineFailed, error.what());
   } catch (const mh::MachineError& error) {
     return fail(kMachineFailed, error.what());
   } catch (const std::bad_alloc&) {

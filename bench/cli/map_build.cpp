@@ -20,7 +20,7 @@
 #include "scenes/load.hpp"
 #include "scenes/recordings/images/write_image.hpp"
 #include "sim/render/renderer.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/core/interpolate.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/files/map_file.hpp"

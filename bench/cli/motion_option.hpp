@@ -10,13 +10,13 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/suite/shipped.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/suggest.hpp"
 
 namespace mh::cli {
 
-/// How the camera moves (see sim/world/travel.hpp), given as TOUR or as --motion.
+/// How the camera moves (see sim/simulation/travel.hpp), given as TOUR or as --motion.
 struct MotionOption {
   std::string tour, motion;
 

@@ -29,7 +29,7 @@
 #include "scenes/recordings/images/write_image.hpp"
 #include "scenes/scannet/scannet.hpp"
 #include "sim/render/scan_look.hpp"
-#include "sim/world/lit_scene.hpp"
+#include "sim/simulation/lit_scene.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"

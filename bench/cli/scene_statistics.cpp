@@ -16,9 +16,9 @@
 #include "scenes/image_file.hpp"
 #include "scenes/load.hpp"
 #include "scenes/recordings/tum_folder.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "sim/world/simulated_sequence.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/lit_scene.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"
 

@@ -19,7 +19,7 @@
 #include "scenes/recordings/images/write_image.hpp"
 #include "sim/sensors/config.hpp"
 #include "sim/sensors/difficulty.hpp"
-#include "sim/world/lit_scene.hpp"
+#include "sim/simulation/lit_scene.hpp"
 
 namespace mh::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "bench/results/statistics.hpp"
 #include "bench/suite/recorded_camera.hpp"
 #include "scenes/recordings/open_sequence.hpp"
-#include "sim/world/scene_sequence.hpp"
+#include "sim/simulation/scene_drive.hpp"
 #include "slam/features/undistort.hpp"
 #include "slam/io/counted.hpp"
 #include "slam/io/error.hpp"

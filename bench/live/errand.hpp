@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/protocol/episodes/robot_map.hpp"
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/simulation.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {

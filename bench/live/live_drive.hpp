@@ -13,8 +13,8 @@
 #include "scenes/recordings/messages/robot_types.hpp"
 #include "scenes/recordings/ros/camera_messages.hpp"
 #include "sim/motion/commands.hpp"
-#include "sim/world/robot_messages.hpp"
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/robot_messages.hpp"
+#include "sim/simulation/simulation.hpp"
 #include "slam/pipeline/slam.hpp"
 
 namespace mh {

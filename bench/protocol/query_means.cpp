@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bench/protocol/metrics/averages.hpp"
-#include "bench/protocol/metrics/measures.hpp"
+#include "bench/protocol/metrics/metrics_by_name.hpp"
 
 namespace mh {
 namespace {

@@ -15,8 +15,8 @@
 #include "bench/report/sweep_table.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/results/published.hpp"
+#include "bench/suite/parameters.hpp"
 #include "bench/suite/run_spec.hpp"
-#include "bench/suite/sweep.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/io/counted.hpp"
 

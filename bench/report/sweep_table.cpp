@@ -9,7 +9,7 @@
 #include "bench/report/comparisons_text.hpp"
 #include "bench/report/text_table.hpp"
 #include "bench/report/wording.hpp"
-#include "bench/results/sweep.hpp"
+#include "bench/results/sweep_results.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/io/counted.hpp"
 

@@ -13,7 +13,7 @@
 #include "bench/report/graded_report.hpp"
 #include "bench/report/results_json.hpp"
 #include "bench/report/results_table.hpp"
-#include "bench/report/sweep.hpp"
+#include "bench/report/sweep_chart.hpp"
 #include "bench/report/topdown.hpp"
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/json_fields.hpp"

@@ -21,8 +21,8 @@ struct PublishedRow {
   double success = 0;  ///< share of the queries
   double distance_mean_m = 0;
 };
-inline constexpr PublishedRow kTable2[] = {{"the paper's system", 0.7925, 0.0512},
-                                           {"ORB-SLAM2", 0.7143, 0.0945}};
+inline constexpr PublishedRow kPublishedTable2[] = {{"the paper's system", 0.7925, 0.0512},
+                                                    {"ORB-SLAM2", 0.7143, 0.0945}};
 
 /// From the paper's section 3.3.3: the keyframes left after each of the three steps, as shares of
 /// the map; the number of keyframes left at the end; and the share of queries with exactly one
@@ -32,17 +32,17 @@ struct PublishedCandidates {
   std::string_view system;
   double c1 = 0, c2 = 0, c3 = 0, final = 0, single = 0;
 };
-inline constexpr PublishedCandidates kCandidates[] = {
+inline constexpr PublishedCandidates kPublishedCandidates[] = {
     {"the paper's system", 0.9936, 0.0218, 0.0093, 1.89, 0.6618}};
 
 /// The published rows to show below a suite's own rows; none unless the suite names the table.
 inline std::span<const PublishedRow> published_rows(const Suite& suite) {
   if (suite.published != Published::kTable2) return {};
-  return kTable2;
+  return kPublishedTable2;
 }
 inline std::span<const PublishedCandidates> published_candidates(const Suite& suite) {
   if (suite.published != Published::kTable2) return {};
-  return kCandidates;
+  return kPublishedCandidates;
 }
 
 /// ATE (RMSE, m) by environment, for the suite's systems and for published ones.

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/metrics/measures.hpp"
+#include "bench/protocol/metrics/metrics_by_name.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {

@@ -13,7 +13,7 @@
 
 namespace mh {
 
-/// One run, as a command orders it from a separate process (`modelhouse run-one FILE`, where FILE
+/// One run, as a command orders it from a separate process (`modelhouse run-child FILE`, where FILE
 /// is this struct as JSON). Only the spec affects the bits of the result.
 struct RunOrder {
   RunSpec spec;

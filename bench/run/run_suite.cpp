@@ -171,7 +171,7 @@ BenchResults run_suite(const Suite& suite, const SuiteOverrides& overrides,
         order.images = images / job.images, order.images_limit = images_limit;
       const fs::path file = work.path() / (job.key + ".json");
       write_order(file, order);
-      return std::vector<std::string>{"run-one", file.string()};
+      return std::vector<std::string>{"run-child", file.string()};
     };
     pool.forget = [&](const std::string& name) {
       std::error_code no_matter;

@@ -34,7 +34,7 @@ struct BenchOptions {
   int live_port = 0;  ///< as in RunOrder; only with one job
   /// Metrics only: no occupancy map, no images and no files of runs.
   bool metrics_only = false;
-  std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-one`
+  std::filesystem::path executable = "/proc/self/exe";  ///< has the subcommand `run-child`
   FolderHold* hold = nullptr;  ///< the caller's, on `out`; null: `out` is held only during the runs
   InputReader* inputs = nullptr;  ///< has already read some inputs; null: a new one is used
   std::function<void(std::string_view)> say = [](std::string_view) {};

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/suite/run_spec.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"
 

@@ -15,7 +15,7 @@
 #include "bench/suite/recorded_entry.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/scannet/files.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/io/file_errors.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/suggest.hpp"

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/protocol/metrics/measures.hpp"
+#include "bench/protocol/metrics/metrics_by_name.hpp"
 
 namespace mh {
 namespace {
@@ -24,7 +24,7 @@ Tolerance read_tolerance(YamlReader node) {
 Tolerances read_tolerances(YamlReader node) {
   Tolerances tolerances;
   for (const auto& [measure, value] : node.entries()) {
-    if (find_measure(measure) == nullptr)
+    if (find_metric(measure) == nullptr)
       value.fail(fmt::format("'{}' is not a measure; see docs/ci.md", measure));
     tolerances[measure] = read_tolerance(value);
   }

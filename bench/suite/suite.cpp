@@ -11,7 +11,7 @@
 #include "bench/suite/names.hpp"
 #include "bench/suite/run_spec.hpp"
 #include "scenes/scannet/files.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/files/settings_file.hpp"

@@ -281,7 +281,7 @@ void fields(C& c, Visit& v) {
     "fraction of frames that arrive black (blank) or not at all (dropped)");
 }
 
-/// A handheld camera covers its path in less time: hurried(), sim/world/travel.hpp.
+/// A handheld camera covers its path in less time: hurried(), sim/simulation/travel.hpp.
 struct HurryConfig {
   bool enabled = false;
   double speed = 1.0;  ///< multiple of the path's own speed

@@ -8,8 +8,8 @@
 #include "bench/protocol/world/world.hpp"
 #include "bench/suite/suite.hpp"
 #include "scenes/load.hpp"
-#include "sim/world/pedestrian.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/pedestrian.hpp"
+#include "sim/simulation/travel.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

@@ -18,8 +18,8 @@
 #include "sim/sensors/depth_noise.hpp"
 #include "sim/sensors/develop.hpp"
 #include "sim/sensors/shutter.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/lit_scene.hpp"
+#include "sim/simulation/travel.hpp"
 
 namespace mh {
 namespace {

@@ -19,9 +19,9 @@
 
 #include "bench/lab/micro/timing.hpp"
 #include "sim/render/parallel.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "sim/world/render_sequence.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/lit_scene.hpp"
+#include "sim/simulation/render_sequence.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 

@@ -15,8 +15,8 @@
 #include "bench/suite/cache.hpp"
 #include "scenes/load.hpp"
 #include "sim/motion/floor_grid.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/lit_scene.hpp"
+#include "sim/simulation/simulation.hpp"
 #include "slam/core/digest.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "bench/protocol/episodes/robot_map.hpp"
 #include "bench/protocol/episodes/starts.hpp"
 #include "bench/protocol/system.hpp"
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/simulation.hpp"
 
 namespace mh {
 

@@ -11,7 +11,7 @@
 #include "bench/suite/code_version.hpp"
 #include "bench/suite/fingerprint.hpp"
 #include "scenes/load.hpp"
-#include "sim/world/lit_scene.hpp"
+#include "sim/simulation/lit_scene.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"
 

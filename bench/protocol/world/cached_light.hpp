@@ -10,7 +10,7 @@
 #include "bench/suite/cache.hpp"
 #include "scenes/scene.hpp"
 #include "sim/render/bake.hpp"
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/simulation.hpp"
 
 namespace mh {
 

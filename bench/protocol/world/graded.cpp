@@ -14,7 +14,7 @@
 #include "scenes/floor.hpp"
 #include "sim/motion/floor_grid.hpp"
 #include "sim/motion/handheld_scan.hpp"
-#include "sim/world/simulated_sequence.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
 #include "slam/core/random.hpp"
 #include "slam/io/error.hpp"
 

@@ -12,8 +12,8 @@
 #include "bench/suite/inputs.hpp"
 #include "robots/navigation/navigator.hpp"
 #include "scenes/load.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "sim/world/pedestrian.hpp"
+#include "sim/simulation/lit_scene.hpp"
+#include "sim/simulation/pedestrian.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh {

@@ -8,7 +8,7 @@
 #include "bench/suite/input_digest.hpp"
 #include "bench/suite/run_spec.hpp"
 #include "sim/sensors/config.hpp"
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/simulation.hpp"
 
 namespace mh {
 

@@ -12,7 +12,7 @@
 #include "bench/report/pages/tables.hpp"
 #include "bench/report/wording.hpp"
 #include "bench/results/graded.hpp"
-#include "bench/results/sweep.hpp"
+#include "bench/results/sweep_results.hpp"
 #include "scenes/generate/generate.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/core/interpolate.hpp"

@@ -9,7 +9,7 @@
 #include "bench/report/pages/page_table.hpp"
 #include "bench/report/pages/tables.hpp"
 #include "bench/report/wording.hpp"
-#include "bench/suite/sweep.hpp"
+#include "bench/suite/parameters.hpp"
 #include "slam/config/slam.hpp"
 
 namespace mh {

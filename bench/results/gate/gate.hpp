@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/protocol/metrics/measures.hpp"
+#include "bench/protocol/metrics/metrics_by_name.hpp"
 #include "bench/results/gate/figures.hpp"
 #include "bench/suite/gate_config.hpp"
 

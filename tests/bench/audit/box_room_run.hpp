@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/audit/audit.hpp"
-#include "sim/world/simulated_sequence.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
 #include "slam/config/slam.hpp"
 #include "tests/bench/audit/box_room_renderer.hpp"
 #include "tests/slam/pipeline/box_room_slam.hpp"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/protocol/metrics/measures.hpp"
+#include "bench/protocol/metrics/metrics_by_name.hpp"
 #include "bench/report/pages/tables.hpp"
 #include "bench/report/results_json.hpp"
 #include "bench/results/gate/from_runs.hpp"
@@ -186,7 +186,7 @@ TEST(EpisodesMetrics, AreOfTheGate) {
   EXPECT_EQ(of_run.values.at("episodes.count"), 4);
   EXPECT_EQ(of_run.values.at("episodes.success"), 0.5);
   EXPECT_EQ(of_run.values.at("episodes.median_s"), 30);
-  ASSERT_NE(find_measure("episodes.spl"), nullptr);
+  ASSERT_NE(find_metric("episodes.spl"), nullptr);
   const std::string before = of_run.digest;
   made.runs[0].episodes[0].digest ^= 1;
   EXPECT_NE(figures(made.runs[0]).digest, before);

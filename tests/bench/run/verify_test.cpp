@@ -218,7 +218,7 @@ TEST(DigestOfATrajectory, SeesStampsPlacesTurnsAndOrder) {
 
 constexpr const char* kPlay = "MH_TEST_PLAY";  // environment variable: what a played run does
 
-/// Plays the part of `modelhouse run-one`: puts a made-up result into the store. "alike": always
+/// Plays the part of `modelhouse run-child`: puts a made-up result into the store. "alike": always
 /// the same result; "apart": the pose of frame 4 differs if several runs are executed in parallel;
 /// "fail": no result.
 int play_a_run(const std::filesystem::path& file) {
@@ -299,7 +299,7 @@ TEST(Verify, ARunThatFailedIsNoVerification) {
 
 // The bench starts its own executable for each run; in this test that is this program.
 int main(int argc, char** argv) {
-  if (argc > 2 && std::string_view(argv[1]) == "run-one") return mh::play_a_run(argv[2]);
+  if (argc > 2 && std::string_view(argv[1]) == "run-child") return mh::play_a_run(argv[2]);
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

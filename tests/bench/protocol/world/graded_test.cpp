@@ -11,8 +11,8 @@
 #include "scenes/load.hpp"
 #include "sim/motion/handheld_scan.hpp"
 #include "sim/motion/motion.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/lit_scene.hpp"
+#include "sim/simulation/travel.hpp"
 #include "source_dir.hpp"
 
 namespace mh {

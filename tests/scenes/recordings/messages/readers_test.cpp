@@ -15,7 +15,7 @@
 #include "scenes/recordings/messages/marker_types.hpp"
 #include "scenes/recordings/messages/message_writer.hpp"
 #include "scenes/recordings/ros/recorder.hpp"
-#include "sim/world/robot_messages.hpp"
+#include "sim/simulation/robot_messages.hpp"
 #include "slam/io/files.hpp"
 #include "slam/io/temporary_folder.hpp"
 #include "source_dir.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "sim/motion/start.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 #include "slam/io/error.hpp"
 
 namespace mh {

@@ -12,8 +12,8 @@
 #include "sim/sensors/labels.hpp"
 #include "sim/sensors/sense.hpp"
 #include "sim/sensors/shutter.hpp"
-#include "sim/world/pedestrian.hpp"
-#include "sim/world/simulated_sequence.hpp"
+#include "sim/simulation/pedestrian.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
 #include "slam/core/rgbd_frame.hpp"
 
 namespace mh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 
 #include <algorithm>
 #include <charconv>

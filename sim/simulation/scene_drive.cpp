@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/scene_sequence.hpp"
+#include "sim/simulation/scene_drive.hpp"
 
 #include "scenes/load.hpp"
 #include "sim/sensors/shutter.hpp"
-#include "sim/world/lit_scene.hpp"
-#include "sim/world/simulated_sequence.hpp"
-#include "sim/world/travel.hpp"
+#include "sim/simulation/lit_scene.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
+#include "sim/simulation/travel.hpp"
 
 namespace mh {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/simulated_sequence.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/pedestrian.hpp"
+#include "sim/simulation/pedestrian.hpp"
 
 #include <algorithm>
 #include <array>

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "sim/sensors/shutter.hpp"
-#include "sim/world/pedestrian.hpp"
-#include "sim/world/shared_exposures.hpp"
+#include "sim/simulation/pedestrian.hpp"
+#include "sim/simulation/shared_exposures.hpp"
 #include "slam/core/sequence.hpp"
 
 namespace mh {

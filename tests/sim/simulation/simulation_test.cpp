@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/simulation.hpp"
+#include "sim/simulation/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "scenes/load.hpp"
 #include "sim/motion/commands.hpp"
-#include "sim/world/lit_scene.hpp"
+#include "sim/simulation/lit_scene.hpp"
 #include "slam/core/digest.hpp"
 #include "slam/io/error.hpp"
 #include "tests/sim/boxes.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/robot_messages.hpp"
+#include "sim/simulation/robot_messages.hpp"
 
 #include <algorithm>
 #include <limits>

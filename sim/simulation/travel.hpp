@@ -11,7 +11,7 @@
 #include "scenes/scene.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/sensors/config.hpp"
-#include "sim/world/pedestrian.hpp"
+#include "sim/simulation/pedestrian.hpp"
 
 namespace mh {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/lit_scene.hpp"
+#include "sim/simulation/lit_scene.hpp"
 
 #include <utility>
 

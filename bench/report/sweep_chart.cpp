@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/sweep.hpp"
+#include "bench/report/sweep_chart.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/shared_exposures.hpp"
+#include "sim/simulation/shared_exposures.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/suite/sweep.hpp"
+#include "bench/suite/parameters.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/pedestrian.hpp"
+#include "sim/simulation/pedestrian.hpp"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/world/simulated_sequence.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
 #include "slam/io/error.hpp"
 #include "tests/sim/scene_builder.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/lasers_along.hpp"
+#include "sim/simulation/lasers_along.hpp"
 
 #include <cmath>
 

@@ -11,7 +11,7 @@
 #include "scenes/scene_frame.hpp"
 #include "sim/render/bake.hpp"
 #include "sim/render/renderer.hpp"
-#include "sim/world/pedestrian.hpp"
+#include "sim/simulation/pedestrian.hpp"
 
 namespace mh {
 

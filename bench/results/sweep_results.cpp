@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/results/sweep.hpp"
+#include "bench/results/sweep_results.hpp"
 #include "slam/config/slam.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/protocol/metrics/measures.hpp"
+#include "bench/protocol/metrics/metrics_by_name.hpp"
 
 #include <algorithm>
 
@@ -32,7 +32,7 @@ Metric under(std::string_view questions, Metric metric) {
   return metric;
 }
 
-const Metric* find_measure(std::string_view name) {
+const Metric* find_metric(std::string_view name) {
   const auto found = std::ranges::find(all_metrics(), name, &Metric::name);
   return found == all_metrics().end() || found->better == Better::kNeither ? nullptr : &*found;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/shared_exposures.hpp"
+#include "sim/simulation/shared_exposures.hpp"
 
 #include <sys/resource.h>
 
@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/world/simulated_sequence.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
 #include "slam/io/temporary_folder.hpp"
 #include "tests/sim/scene_builder.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/render_sequence.hpp"
+#include "sim/simulation/render_sequence.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scenes/recordings/frame_files.hpp"
-#include "sim/world/simulated_sequence.hpp"
+#include "sim/simulation/simulated_sequence.hpp"
 
 namespace mh {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bench/report/drawing/plot.hpp"
-#include "bench/results/sweep.hpp"
+#include "bench/results/sweep_results.hpp"
 
 namespace mh {
 

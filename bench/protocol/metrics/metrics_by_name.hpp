@@ -18,6 +18,6 @@ std::span<const Metric> all_metrics();
 Metric under(std::string_view questions, Metric metric);
 
 /// Finds a metric that the gate may judge; nullptr if there is none with that name.
-const Metric* find_measure(std::string_view name);
+const Metric* find_metric(std::string_view name);
 
 }  // namespace mh

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/render_sequence.hpp"
+#include "sim/simulation/render_sequence.hpp"
 
 #include <unistd.h>
 

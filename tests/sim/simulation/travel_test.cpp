@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motions on floors that come from scanners and other programs.
-#include "sim/world/travel.hpp"
+#include "sim/simulation/travel.hpp"
 #include "sim/motion/replay.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/io/temporary_folder.hpp"

@@ -65,10 +65,10 @@ void offer_python_package() {
 
 }  // namespace
 
-void add_run_one(CLI::App& app) {
+void add_run_child(CLI::App& app) {
   auto file = std::make_shared<std::string>();
   CLI::App* command =
-      app.add_subcommand("run-one", "One run of a suite: what `bench` starts for each.");
+      app.add_subcommand("run-child", "One run of a suite: what `bench` starts for each.");
   command->group("");  // used only by `bench`, so not listed
   command->add_option("order", *file)->required();
   command->callback([file] {
