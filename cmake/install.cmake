@@ -9,9 +9,9 @@ install(TARGETS modelhouse modelhouse-library-host RUNTIME DESTINATION ${CMAKE_I
 set(data_dir ${CMAKE_INSTALL_DATADIR}/modelhouse)
 foreach(folder assets bench/live/page bench/report/pages/bundle bench/scenarios bench/studies bench/suites robots/pepper robots/turtlebot3
                scenes/model_house scenes/rooms sim/sensors/levels)
-  install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder})
+  install(DIRECTORY ${folder}/ DESTINATION ${data_dir}/${folder} COMPONENT data)
 endforeach()
-install(DIRECTORY examples/ DESTINATION ${data_dir}/examples PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY examples/ DESTINATION ${data_dir}/examples COMPONENT data PATTERN "__pycache__" EXCLUDE)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
 
@@ -25,9 +25,9 @@ install(FILES ${made}/completion.fish RENAME modelhouse.fish
         DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
 # To be used by `import modelhouse`, with ${data_dir}/python on PYTHONPATH.
-install(DIRECTORY python/modelhouse/ DESTINATION ${data_dir}/python/modelhouse
+install(DIRECTORY python/modelhouse/ DESTINATION ${data_dir}/python/modelhouse COMPONENT python
         PATTERN "__pycache__" EXCLUDE)
-install(TARGETS modelhouse_python LIBRARY DESTINATION ${data_dir}/python/modelhouse)
+install(TARGETS modelhouse_python LIBRARY DESTINATION ${data_dir}/python/modelhouse COMPONENT python)
 
 # Used as #include <modelhouse/semantics/augmented_vector.hpp>.
 install(DIRECTORY slam/semantics/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/modelhouse/semantics

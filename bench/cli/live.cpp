@@ -27,6 +27,7 @@ namespace {
 
 struct LiveArguments {
   std::string scene, robot = "pepper", level = "pepper", vocabulary = "vocabulary", pedestrian;
+  std::vector<std::string> other_scenes;
   LiveAddress address{.port = 8642};
   std::filesystem::path out;
   std::uint64_t seed = 0;
@@ -76,14 +77,22 @@ void run(LiveArguments options) {
   const Robot robot = load_robot(options.robot, &warnings);
   const SensorConfig level = load_sensor_config(options.level);
   const auto vocabulary = std::make_shared<const Vocabulary>(Vocabulary::load(options.vocabulary));
-  SimulatedScene scene = load_simulated_scene(
-      options.scene, usual_cache(),
-      [](std::string_view line) { fmt::print(stderr, "live: {}\n", line); }, &warnings);
+  std::vector<std::string> files = {options.scene};
+  for (std::string& other : options.other_scenes) {
+    resolve(other, Shipped::kScene);
+    files.push_back(other);
+  }
+  std::vector<SimulatedScene> scenes;
+  for (const std::string& file : files) {
+    SimulatedScene& scene = scenes.emplace_back(load_simulated_scene(
+        file, usual_cache(), [](std::string_view line) { fmt::print(stderr, "live: {}\n", line); },
+        &warnings));
+    if (!options.pedestrian.empty())
+      scene.pedestrian =
+          make_pedestrian_scene(*scene.scene, scene.renderer, load_pedestrian(options.pedestrian));
+  }
   print_warnings(warnings);
-  if (!options.pedestrian.empty())
-    scene.pedestrian =
-        make_pedestrian_scene(*scene.scene, scene.renderer, load_pedestrian(options.pedestrian));
-  LiveDrive drive(std::move(scene), robot, level, vocabulary, options.seed);
+  LiveDrive drive(std::move(scenes), robot, level, vocabulary, options.seed);
   if (options.address.host != "127.0.0.1" && options.address.token.empty())
     options.address.token = new_token();
 
@@ -134,6 +143,9 @@ void add_live(CLI::App& app) {
                       "Sensor level (YAML), or the name of a shipped one");
   command->add_option("--pedestrian", options->pedestrian,
                       "Adds a pedestrian (YAML) who walks through the scene");
+  command->add_option("--other-scene", options->other_scenes,
+                      "Another state of the scene, such as furniture moved or evening, that the "
+                      "page can switch to; may be repeated");
   command->add_option("--vocabulary", options->vocabulary,
                       "Vocabulary file, or the name of the shipped one");
   command->add_option("--port", options->address.port, "Port to listen on; 0: any free one")

@@ -43,14 +43,15 @@ SimulationConfig config_of(const SimulatedScene& scene, const Robot& robot, std:
 
 }  // namespace
 
-LiveDrive::LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
-                     std::shared_ptr<const Vocabulary> vocabulary, std::uint64_t seed)
-    : scene_(std::move(scene)),
+LiveDrive::LiveDrive(std::vector<SimulatedScene> scenes, const Robot& robot,
+                     const SensorConfig& level, std::shared_ptr<const Vocabulary> vocabulary,
+                     std::uint64_t seed)
+    : scenes_(std::move(scenes)),
       robot_(robot),
       level_(level),
       vocabulary_(std::move(vocabulary)),
       seed_(seed),
-      simulation_(scene_, robot_, level_, config_of(scene_, robot_, seed)),
+      simulation_(scene(), robot_, level_, config_of(scene(), robot_, seed)),
       camera_messages_(log_, with_lens(robot.camera, level), true),
       robot_messages_(log_, robot_, true, robot.equipment != nullptr, false),
       slam_topics_{.pose = log_.add_topic<ros::PoseStamped>("/slam/pose"),
@@ -59,7 +60,7 @@ LiveDrive::LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfi
       slam_(make_slam(with_lens(robot.camera, level), {}, vocabulary_)),
       views_(with_lens(robot.camera, level)) {
   try {
-    robot_messages_.add_grid(make_floor_grid(*scene_.scene, {.top_m = robot_.height_m}), SE3(), 0);
+    robot_messages_.add_grid(make_floor_grid(*scene().scene, {.top_m = robot_.height_m}), SE3(), 0);
   } catch (const InputError&) {  // a scene without a floor has no grid
   }
   put_down();
@@ -93,8 +94,12 @@ void LiveDrive::note(const Twist2d& velocity) {
 
 std::string LiveDrive::greeting() const {
   const BaseLimits& limits = robot_.limits;
-  Json hello = plan_for_page(scene_.scene.get());
-  hello.update({{"scene", scene_.scene->name},
+  const SimulatedScene& mapped = scenes_.front();
+  Json scenes = Json::array();
+  for (const SimulatedScene& each : scenes_) scenes.push_back(each.scene->name);
+  Json hello = plan_for_page(mapped.scene.get());
+  hello.update({{"scene", mapped.scene->name},
+                {"scenes", scenes},
                 {"robot", robot_.name},
                 {"radius_m", robot_.footprint_radius_m},
                 {"speed_m_per_s", limits.max_velocity_m_per_s},
@@ -152,7 +157,11 @@ std::string LiveDrive::take(const std::string& message) {
       asked_.xi = xi;
       return "";
     }
-  return "not understood: one of drive, do, go, light, wheels, gamma, xi";
+  if (key == "scene" && value.is_number_unsigned() && value.get<std::size_t>() < scenes_.size()) {
+    asked_.scene = value.get<std::size_t>();
+    return "";
+  }
+  return "not understood: one of drive, do, go, light, wheels, gamma, xi, scene";
 }
 
 void LiveDrive::obey(const Asked& asked) {
@@ -182,9 +191,17 @@ void LiveDrive::obey(const Asked& asked) {
   }
   if (asked.light) light_ = *asked.light;
   if (asked.wheels) wheels_ = *asked.wheels;
+  if (asked.scene && *asked.scene != at_) try {
+      simulation_.change_scene(scenes_[*asked.scene]);
+      at_ = *asked.scene;
+      note_.clear();
+      put_down();
+    } catch (const InputError& error) {
+      note_ = error.what();
+    }
   if (asked.kidnap) {
     const auto [place_m, heading_rad] =
-        draw_place(*scene_.scene, robot_, RandomStream(seed_).fork(++carried_));
+        draw_place(*scene().scene, robot_, RandomStream(seed_).fork(++carried_));
     simulation_.carry_to(place_m, heading_rad);
     put_down();
     dark_steps_ = kDarkSteps;
@@ -209,6 +226,7 @@ LiveDrive::Shown LiveDrive::step(int wanted) {
     asked_.wheels.reset();
     asked_.gamma.reset();
     asked_.xi.reset();
+    asked_.scene.reset();
   }
   obey(asked);
   velocity_ = errand_ ? errand_command_ : asked.velocity;
@@ -331,6 +349,7 @@ std::string LiveDrive::state(const RobotObservation& seen, const StepReport& rep
                {"command", {velocity_.x(), velocity_.y(), velocity_.z()}},
                {"light", light_ && dark_steps_ == 0},
                {"wheels", wheels_},
+               {"scene", at_},
                {"gamma", slam_.config.semantics.gamma},
                {"xi", slam_.config.semantics.xi},
                {"lasers", lasers}};

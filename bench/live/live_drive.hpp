@@ -26,8 +26,9 @@ class LiveDrive {
  public:
   static constexpr double kStep_s = 1.0 / 15;
 
+  /// @param scenes  states of one scene, such as furniture moved or evening; the first is mapped
   /// @throws InputError if the robot cannot drive or stand in the scene
-  LiveDrive(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
+  LiveDrive(std::vector<SimulatedScene> scenes, const Robot& robot, const SensorConfig& level,
             std::shared_ptr<const Vocabulary> vocabulary, std::uint64_t seed);
 
   /// The first message to a viewer: the plan, the classes, the robot. Safe to call from another
@@ -64,6 +65,7 @@ class LiveDrive {
     std::optional<std::string> go;  ///< to what; empty: nowhere
     std::optional<bool> light, wheels;
     std::optional<double> gamma, xi;
+    std::optional<std::size_t> scene;
   };
   void obey(const Asked& asked);
   void put_down();
@@ -72,7 +74,10 @@ class LiveDrive {
   std::vector<MessageLog::Entry> messages(const RobotObservation& seen, const StepReport& report);
   void add_landmarks(const ros::Header& header);
 
-  SimulatedScene scene_;
+  const SimulatedScene& scene() const { return scenes_[at_]; }
+
+  std::vector<SimulatedScene> scenes_;
+  std::size_t at_ = 0;  ///< the scene that the robot is in
   Robot robot_;
   SensorConfig level_;
   std::shared_ptr<const Vocabulary> vocabulary_;

@@ -116,12 +116,13 @@ fs::path data_folder() {
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     const fs::path installed = (program.parent_path() / MH_DATA_FROM_PROGRAM).lexically_normal();
     if (!error && fs::is_directory(installed / "bench/suites", error)) return installed;
-    // The Python package is installed among the data.
-    if (Dl_info here{}; dladdr(reinterpret_cast<const void*>(&data_folder), &here) != 0) {
-      const fs::path data =
-          (fs::absolute(here.dli_fname).parent_path() / "../..").lexically_normal();
-      if (fs::is_directory(data / "bench/suites", error)) return data;
-    }
+    // The Python package is installed among the data, or by pip with the data in it.
+    if (Dl_info here{}; dladdr(reinterpret_cast<const void*>(&data_folder), &here) != 0)
+      for (const char* from_package : {"../..", "data"}) {
+        const fs::path data =
+            (fs::absolute(here.dli_fname).parent_path() / from_package).lexically_normal();
+        if (fs::is_directory(data / "bench/suites", error)) return data;
+      }
     return fs::path(MH_SOURCE_DIR);
   }();
   return folder;

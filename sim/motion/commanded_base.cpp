@@ -42,6 +42,11 @@ void CommandedBase::add(MovingObstacle other) {
   others_.push_back(std::move(other));
 }
 
+void CommandedBase::set_time(double time_s) {
+  steps_ = std::lround(time_s / world_.step_s());
+  world_.show_at(time_s);
+}
+
 void CommandedBase::step(const Twist2d& command) {
   Twist2d twist = command;
   if (robot_.differential() != nullptr) twist.y() = 0;

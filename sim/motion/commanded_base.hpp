@@ -33,6 +33,8 @@ class CommandedBase {
                 double start_heading_rad, bool reflex);
 
   void add(MovingObstacle other);
+  /// Sets the time that steps continue from; obstacles move to where they are then.
+  void set_time(double time_s);
   /// One physics step. @param command  base frame; a differential base does not obey its second
   ///                                   component
   void step(const Twist2d& command);

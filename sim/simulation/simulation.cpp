@@ -30,6 +30,14 @@ const Robot& with_odometry(const Robot& robot) {
   return robot;
 }
 
+std::unique_ptr<CommandedBase> make_base(const SimulatedScene& scene, const Robot& robot,
+                                         bool reflex, const Eigen::Vector2d& at_m,
+                                         double heading_rad) {
+  auto base = std::make_unique<CommandedBase>(*scene.scene, robot, at_m, heading_rad, reflex);
+  if (scene.pedestrian) base->add(as_obstacle(*scene.scene, scene.pedestrian->pedestrian()));
+  return base;
+}
+
 }  // namespace
 
 Simulation::Simulation(SimulatedScene scene, const Robot& robot, const SensorConfig& level,
@@ -38,24 +46,23 @@ Simulation::Simulation(SimulatedScene scene, const Robot& robot, const SensorCon
       robot_(with_odometry(robot)),
       level_(level),
       config_(config),
-      base_(*scene_.scene, robot, config.start_m, config.start_heading_rad, config.reflex),
+      base_(make_base(scene_, robot, config.reflex, config.start_m, config.start_heading_rad)),
       odometer_(*robot.equipment->wheels, robot.equipment->odometry, config.seed) {
   robot_.camera = with_lens(robot_.camera, level_);
-  if (scene_.pedestrian) base_.add(as_obstacle(*scene_.scene, scene_.pedestrian->pedestrian()));
-  check_start(base_.world(), *scene_.scene, config_.start_m, "start");
-  odom_from_base_ = odometer_.drive_to(base_.world_from_base());
+  check_start(base_->world(), *scene_.scene, config_.start_m, "start");
+  odom_from_base_ = odometer_.drive_to(base_->world_from_base());
   recent_.push_back(pose_now());
 }
 
 TimedPose Simulation::pose_now() const {
   return {std::llround(static_cast<double>(ticks_) * 1e9 / robot_.camera.rate_hz),
-          base_.world_from_base()};
+          base_->world_from_base()};
 }
 
 void Simulation::tick() {
   ++ticks_;
   odom_before_ = odom_from_base_;
-  odom_from_base_ = odometer_.drive_to(base_.world_from_base());
+  odom_from_base_ = odometer_.drive_to(base_->world_from_base());
   recent_.push_back(pose_now());
   if (recent_.size() > kClip) recent_.erase(recent_.begin());
 }
@@ -83,11 +90,11 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
   bool due = false;
   std::vector<bool> pressed(robot_.equipment->bumpers.size(), false);
   for (long t = 0; t < ticks; ++t) {
-    for (int s = 0; s < base_.steps_per_frame(); ++s) {
-      base_.step(command);
+    for (int s = 0; s < base_->steps_per_frame(); ++s) {
+      base_->step(command);
       const std::vector<bool> now =
-          base_.contact().touching
-              ? pressed_bumpers(base_.contact(), *robot_.equipment, base_.world_from_base())
+          base_->contact().touching
+              ? pressed_bumpers(base_->contact(), *robot_.equipment, base_->world_from_base())
               : std::vector<bool>(pressed.size(), false);
       for (std::size_t b = 0; b < pressed.size(); ++b) pressed[b] = pressed[b] || now[b];
     }
@@ -101,7 +108,7 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
     seen.frame = std::move(moment.frame);
     seen.instances = std::move(moment.exact.instances);
   }
-  seen.reading = read_ranges(base_.world(), *robot_.equipment, base_.world_from_base(),
+  seen.reading = read_ranges(base_->world(), *robot_.equipment, base_->world_from_base(),
                              laser_noise(config_.seed, static_cast<std::size_t>(ticks_)));
   seen.stamp_ns = seen.reading.stamp_ns = recent_.back().stamp_ns;
   seen.reading.bumpers = std::move(pressed);
@@ -115,17 +122,26 @@ RobotObservation Simulation::step(const Twist2d& command, double dt_s) {
 }
 
 void Simulation::carry_to(const Eigen::Vector2d& place_m, double heading_rad) {
-  const BaseState before = base_.state();
-  base_.carry_to(place_m, heading_rad);
+  const BaseState before = base_->state();
+  base_->carry_to(place_m, heading_rad);
   try {
-    check_start(base_.world(), *scene_.scene, place_m, "carried");
+    check_start(base_->world(), *scene_.scene, place_m, "carried");
   } catch (...) {
-    base_.carry_to(before.position_m, before.heading_rad);
+    base_->carry_to(before.position_m, before.heading_rad);
     throw;
   }
-  odometer_.lift_to(base_.world_from_base());
+  odometer_.lift_to(base_->world_from_base());
   recent_.clear();
   recent_.push_back(pose_now());
+}
+
+void Simulation::change_scene(SimulatedScene scene) {
+  const BaseState now = base_->state();
+  auto base = make_base(scene, robot_, config_.reflex, now.position_m, now.heading_rad);
+  check_start(base->world(), *scene.scene, now.position_m, "robot");
+  base->set_time(time_s());
+  base_ = std::move(base);
+  scene_ = std::move(scene);
 }
 
 }  // namespace mh

@@ -68,15 +68,19 @@ class Simulation {
   /// Lifts the robot to another place; its wheels do not turn. @throws InputError if it cannot
   /// stand there; it then stands where it was.
   void carry_to(const Eigen::Vector2d& place_m, double heading_rad);
+  /// Exchanges the scene for another state of it, such as furniture moved or evening. The robot
+  /// stands where it is, at rest; its sensors go on. @throws InputError if it cannot stand there;
+  /// nothing has changed then.
+  void change_scene(SimulatedScene scene);
   /// While the light is off, frames are blank.
   void switch_light(bool on) { light_ = on; }
 
   // The ground truth: for scoring only.
-  const CommandedBase& truth() const { return base_; }
+  const CommandedBase& truth() const { return *base_; }
   /// world_from_camera of the last frame that was delivered, at its stamp; nullopt if there is
   /// none.
   const std::optional<TimedPose>& truth_of_frame() const { return frame_pose_; }
-  double time_s() const { return base_.time_s(); }
+  double time_s() const { return base_->time_s(); }
 
  private:
   void tick();
@@ -89,7 +93,7 @@ class Simulation {
   Robot robot_;
   SensorConfig level_;
   SimulationConfig config_;
-  CommandedBase base_;
+  std::unique_ptr<CommandedBase> base_;
   WheelOdometer odometer_;
   SE3 odom_from_base_, odom_before_;  ///< now and one tick ago
   std::vector<TimedPose> recent_;     ///< world_from_base, one per tick, since it was last carried

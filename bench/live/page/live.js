@@ -60,6 +60,7 @@ $("errand").onsubmit = (event) => {
   send({ go: $("goal").value.trim() });
   $("goal").blur();
 };
+$("scenes").onchange = () => { send({ scene: $("scenes").selectedIndex }); $("scenes").blur(); };
 for (const dial of ["gamma", "xi"])
   $(dial).oninput = () => { send({ [dial]: Number($(dial).value) }); };
 
@@ -75,6 +76,8 @@ function take(message) {
     $("scene").textContent = `${hello.scene}, ${hello.robot}`;
     document.body.classList.toggle("watch", hello.watch === true);
     $("goals").replaceChildren(...hello.classes.slice(1).map(([name]) => new Option(name)));
+    $("scenes").replaceChildren(...(hello.scenes ?? []).map((name) => new Option(name)));
+    $("scenes").hidden = $("scenes").length < 2;
     map = { points: [], keyframes: [] };
     trail.true = []; trail.estimate = [];
     return;
@@ -92,6 +95,7 @@ function take(message) {
   $("status").className = lost ? "lost" : "";
   $("status").textContent = !state.light ? "dark" : lost ? "lost" : state.status;
   $("wheels").setAttribute("aria-pressed", state.wheels);
+  if (document.activeElement !== $("scenes")) $("scenes").selectedIndex = state.scene ?? 0;
   for (const dial of ["gamma", "xi"]) {
     if (state[dial] === undefined) continue;
     $(`${dial}_is`).textContent = state[dial].toFixed(2);

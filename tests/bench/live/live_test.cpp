@@ -40,12 +40,13 @@ using Json = nlohmann::json;
 using testing::HasSubstr;
 
 std::unique_ptr<LiveDrive> made_drive() {
-  static const SimulatedScene scene =
-      load_simulated_scene(MH_SOURCE_DIR "/bench/scenarios/room.yaml", Cache(MH_TEST_CACHE));
+  static const std::vector<SimulatedScene> scenes = {
+      load_simulated_scene(MH_SOURCE_DIR "/bench/scenarios/room.yaml", Cache(MH_TEST_CACHE)),
+      load_simulated_scene(MH_SOURCE_DIR "/bench/scenarios/room_moved.yaml", Cache(MH_TEST_CACHE))};
   static const auto vocabulary = std::make_shared<const Vocabulary>(
       Vocabulary::load(MH_SOURCE_DIR "/assets/vocabulary.mhvoc"));
   return std::make_unique<LiveDrive>(
-      scene, load_robot(MH_SOURCE_DIR "/robots/pepper/pepper.yaml"),
+      scenes, load_robot(MH_SOURCE_DIR "/robots/pepper/pepper.yaml"),
       load_sensor_config(MH_SOURCE_DIR "/sim/sensors/levels/ideal.yaml"), vocabulary, 3);
 }
 
@@ -116,6 +117,21 @@ TEST(LiveDrive, ObeysTheSwitches) {
   EXPECT_EQ(anew.at("status"), "initialized");
   EXPECT_EQ(anew.at("keyframes"), 1);
   EXPECT_EQ(anew.at("gamma"), 2.5) << "the dials stay";
+}
+
+TEST(LiveDrive, SwitchesToAnotherStateOfTheScene) {
+  const auto drive = made_drive();
+  EXPECT_EQ(Json::parse(drive->greeting())["hello"]["scenes"].size(), 2U);
+  const Json before = held(*drive, R"({"drive": [0, 0, 0.8]})", 140);  // a full turn
+  EXPECT_EQ(before.at("scene"), 0);
+  EXPECT_EQ(drive->take(R"({"scene": 1})"), "");
+  const Json after = held(*drive, R"({"drive": [0, 0, 0.8]})", 140);
+  EXPECT_EQ(after.at("scene"), 1);
+  EXPECT_EQ(after.at("status"), "tracked") << "what has not moved is enough";
+  EXPECT_LT(after.at("error_m"), 0.1);
+  EXPECT_GT(after.at("time_s"), before.at("time_s"));
+  EXPECT_NE(drive->take(R"({"scene": 2})"), "");
+  EXPECT_NE(drive->take(R"({"scene": -1})"), "");
 }
 
 TEST(LiveDrive, RefusesWhatItDoesNotUnderstand) {

@@ -151,6 +151,28 @@ TEST(Simulation, CarriedInTheDarkItSeesNothingAndItsWheelsRest) {
   EXPECT_THROW(simulation.carry_to({6.5, 5}, 0), InputError);  // into the table
 }
 
+TEST(Simulation, AnotherStateOfItsSceneChangesWhatItSeesAndNothingOfItself) {
+  const SimulatedScene empty = place_of(empty_room()), table = place_of(furnished());
+  Simulation changed(empty, small_camera(), {}, {.start_m = {3, 5}, .ticks_per_frame = 1});
+  Simulation same(empty, small_camera(), {}, {.start_m = {3, 5}, .ticks_per_frame = 1});
+  for (Simulation* each : {&changed, &same})
+    for (int i = 0; i < 20; ++i) each->step(Twist2d::Zero(), 0.1);
+  changed.change_scene(table);
+  const RobotObservation seen = changed.step(Twist2d::Zero(), 0.1),
+                         as_before = same.step(Twist2d::Zero(), 0.1);
+  EXPECT_EQ(seen.stamp_ns, as_before.stamp_ns);
+  EXPECT_EQ(changed.time_s(), same.time_s());
+  EXPECT_EQ(seen.odom_from_base.matrix(), as_before.odom_from_base.matrix());
+  EXPECT_NE(digest(*seen.frame), digest(*as_before.frame));
+  EXPECT_NE(seen.reading.lasers_m, as_before.reading.lasers_m);
+  changed.change_scene(empty);
+  EXPECT_EQ(digest(*changed.step(Twist2d::Zero(), 0.1).frame),
+            digest(*same.step(Twist2d::Zero(), 0.1).frame));
+  changed.carry_to({6.5, 5}, 0);
+  EXPECT_THROW(changed.change_scene(table), InputError);  // the table would be in the robot
+  EXPECT_EQ(changed.truth().state().position_m, Eigen::Vector2d(6.5, 5));
+}
+
 TEST(Simulation, ATwoWheeledRobotIsNotMovedSidewaysAndKnowsItsWay) {
   Simulation simulation(place_of(furnished()), test::turtlebot(), {},
                         {.start_m = {3, 5}, .ticks_per_frame = 1000});
