@@ -104,7 +104,7 @@ class Worst {
 
 /// Scores of the detector and, on the same frames, of the level's simulated detector with the
 /// measured settings.
-struct Judged {
+struct JudgedRuns {
   DetectorScore real;
   std::optional<DetectorScore> simulated;
 };
@@ -142,7 +142,7 @@ void for_each_moment(const DetectorScoreArguments& options, const Robot& robot,
 }
 
 /// Judges the detector; then judges the simulated detector with the measured settings.
-Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, Worst* worst) {
+JudgedRuns judge(const DetectorScoreArguments& options, const DetectorSpec& asked, Worst* worst) {
   const Cache cache = options.detector.opened_cache("detector");
   DetectorSpec spec = asked;
   const double confidence = spec.settings.confidence;
@@ -169,7 +169,7 @@ Judged judge(const DetectorScoreArguments& options, const DetectorSpec& asked, W
     kept.instances = moment.sensed.exact.instances;
     poses.push_back(moment.world_from_camera);
   });
-  Judged both{.real = real.score(), .simulated = {}};
+  JudgedRuns both{.real = real.score(), .simulated = {}};
   LabelConfig fitted = sensors.labels;
   fitted.detector = with_measured(fitted.detector, both.real.dials);
   DetectorJudge simulated(0);
@@ -216,7 +216,7 @@ std::string most(const std::map<Key, std::size_t>& counts, const Name& name) {
   return text.empty() ? "none" : text;
 }
 
-void print_score(const Judged& judged) {
+void print_score(const JudgedRuns& judged) {
   const DetectorScore& s = judged.real;
   fmt::print("{}, {} of classes that COCO has\n\n", counted(s.images, "image"),
              counted(s.mean.truths, "object"));
@@ -269,7 +269,7 @@ nlohmann::ordered_json to_json(const AveragePrecision& p) {
           {"large", known(p.large)}};
 }
 
-std::string json_of(const Judged& judged) {
+std::string json_of(const JudgedRuns& judged) {
   const DetectorScore& s = judged.real;
   nlohmann::ordered_json json = {{"images", s.images}, {"mean", to_json(s.mean)}};
   for (const ClassScore& of : s.classes) {
@@ -315,7 +315,7 @@ void score(DetectorScoreArguments options) {
                    std::vector<std::string>{"score.json", "missed.png"});
   Worst worst;
   const ReadScope reading;
-  const Judged judged = judge(options, spec, &worst);
+  const JudgedRuns judged = judge(options, spec, &worst);
   const cv::Mat missed = worst.sheet(open_detector(spec)->names());
   require_unchanged(reading.record());
   options.json ? fmt::print("{}", json_of(judged)) : print_score(judged);
@@ -339,7 +339,7 @@ void fit(DetectorScoreArguments options) {
   require_no_other_than_level(options.out);
   SensorConfig level = load_sensor_config(options.base);
   const ReadScope scope;
-  const Judged judged = judge(options, spec, nullptr);
+  const JudgedRuns judged = judge(options, spec, nullptr);
   require_unchanged(scope.record());
   require_not_read(options.out, scope.record());  // includes the files of scenes and robot
   if (judged.real.mean.truths == 0)

@@ -95,14 +95,17 @@ int run(int argc, char** argv) {
   mh::cli::add_export(app);
   mh::cli::add_report(app);
   mh::cli::add_verify(app);
+  mh::cli::add_stress(app);
   mh::cli::add_check(app);
   mh::cli::add_audit(app);
+  mh::cli::add_diagnose(app);
   mh::cli::add_episode(app);
   mh::cli::add_evaluate(app);
   mh::cli::add_scene(app);
   mh::cli::add_drive(app);
   mh::cli::add_live(app);
   mh::cli::add_render(app);
+  mh::cli::add_degrade(app);
   mh::cli::add_sensors(app);
   mh::cli::add_slam(app);
   mh::cli::add_map(app);

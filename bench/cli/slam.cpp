@@ -17,6 +17,7 @@
 #include "bench/protocol/world/parts.hpp"
 #include "bench/run/one/run_one.hpp"
 #include "bench/systems/builtin.hpp"
+#include "scenes/recordings/open_sequence.hpp"
 #include "slam/core/trajectory_io.hpp"
 #include "slam/files/map_file.hpp"
 #include "slam/io/counted.hpp"

@@ -110,7 +110,7 @@ Json graded_json(const Suite& suite, std::span<const Row> rows) {
   return list;
 }
 
-std::string graded_image_name(const Labels& labels, const std::filesystem::path& level) {
+std::string graded_image_name(const Labels& labels, const Level& level) {
   return fmt::format("graded-{}-{}.png", name(labels), level_name(level));
 }
 
@@ -146,7 +146,7 @@ std::vector<GradedChart> graded_charts(const Suite& suite, std::span<const Row> 
       }
       plots.push_back(std::move(plot));
     }
-    const std::filesystem::path& level = suite.levels[first->level];
+    const Level& level = suite.levels[first->level];
     charts.push_back({graded_image_name(first->labels, level),
                       {fmt::format("{}: graded queries, {}, level {}", suite.name,
                                    with_labels(first->labels), level_name(level)),

@@ -20,7 +20,7 @@ std::string graded_table(const Suite& suite, std::span<const Row> rows);
 nlohmann::ordered_json graded_json(const Suite& suite, std::span<const Row> rows);
 
 /// "graded-exact-pepper.png"
-std::string graded_image_name(const Labels& labels, const std::filesystem::path& level);
+std::string graded_image_name(const Labels& labels, const Level& level);
 
 /// The curves of one level and kind of labels: one panel per curve, with a line per system and 95 %
 /// intervals.

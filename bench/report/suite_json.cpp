@@ -117,12 +117,15 @@ Json sweep_json(const Sweep& sweep) {
 }  // namespace
 
 Json suite_json(const Suite& suite) {
+  const auto level_json = [](const Suite& of, const Level& level) {
+    const std::string file = level.is_file() ? from_suite(of, level.file) : kRecordedLevel;
+    return level.doses.empty() ? Json(file) : Json{{"file", file}, {"doses", json_of(level.doses)}};
+  };
   Json levels = Json::array(), systems = Json::array(), labels = Json::array();
   Json environments = Json::array();
   for (const Environment& e : suite.environments)
     environments.push_back(environment_json(suite, e));
-  for (const auto& level : suite.levels)
-    levels.push_back(level == kRecordedLevel ? kRecordedLevel : from_suite(suite, level));
+  for (const auto& level : suite.levels) levels.push_back(level_json(suite, level));
   for (const SystemSpec& system : suite.systems) systems.push_back(system_json(system));
   for (const Labels& mode : suite.labels) labels.push_back(name(mode));
   Json json = {

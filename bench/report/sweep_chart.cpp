@@ -173,8 +173,7 @@ std::string caption(const SweepResult& result, QuerySet set, const std::vector<s
 
 }  // namespace
 
-std::string sweep_image_name(const SystemSpec& system, const Labels& labels,
-                             const std::filesystem::path& level) {
+std::string sweep_image_name(const SystemSpec& system, const Labels& labels, const Level& level) {
   return fmt::format("sweep-{}-{}-{}.png", system.name, name(labels), level_name(level));
 }
 

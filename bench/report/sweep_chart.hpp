@@ -18,7 +18,6 @@ namespace mh {
 PlotPage sweep_chart(const Suite& suite, std::span<const Row> rows, const SweepResult& result);
 
 /// "sweep-semantic-exact-pepper.png"
-std::string sweep_image_name(const SystemSpec& system, const Labels& labels,
-                             const std::filesystem::path& level);
+std::string sweep_image_name(const SystemSpec& system, const Labels& labels, const Level& level);
 
 }  // namespace mh

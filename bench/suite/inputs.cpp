@@ -115,7 +115,7 @@ std::vector<InputDigest> InputReader::inputs_of(const EpisodesSpec& episodes) {
 
 std::vector<InputDigest> InputReader::inputs_of(const RunSpec& spec) {
   std::vector<InputDigest> inputs = inputs_of(spec.environment);
-  if (!spec.environment.is_recorded()) inputs.push_back(level(spec.level));
+  if (spec.level.is_file()) inputs.push_back(level(spec.level.file));
   if (const auto& detector = labels_of_frames(spec).detector)
     inputs.push_back(this->detector(*detector));
   if (!spec.vocabulary.empty()) inputs.push_back(vocabulary(spec.vocabulary));

@@ -26,11 +26,37 @@ void check_varied(const std::string& name, const YamlReader& place, SweepMap map
     place.fail("decides the map, too: it needs `map: rebuilt`");
 }
 
+constexpr std::string_view kLevelPrefix = "level.";
+
+/// Multiplies the combinations by the listed values of a dial of the level.
+void read_doses(const std::string& dial, const YamlReader& list, Sweep& sweep) {
+  if (!is_dial(dial))
+    list.fail("is no dial of a level" + hint(dial, dial_names(), "docs/reference/sensors.md"));
+  if (sweep.map == SweepMap::kFixed) list.fail("decides the map, too: it needs `map: rebuilt`");
+  std::vector<double> values;
+  for (const YamlReader& item : items_of(list)) values.push_back(read_dose(dial, item));
+  require_distinct(list, words_of(values, [](double v) { return fmt::format("{:.6g}", v); }));
+  std::vector<std::vector<Dose>> combinations;
+  if (sweep.doses.empty()) sweep.doses.emplace_back();
+  if (sweep.doses.size() * values.size() > kMaxPoints)
+    list.fail(fmt::format("makes more than {} combinations", kMaxPoints));
+  for (const std::vector<Dose>& doses : sweep.doses)
+    for (const double value : values) {
+      combinations.push_back(doses);
+      combinations.back().push_back({dial, value});
+    }
+  sweep.doses = std::move(combinations);
+}
+
 /// Reads every combination of the listed values, the last setting varying fastest.
 void read_grid(YamlReader& node, const SlamConfig& base, Sweep& sweep) {
   sweep.points = {base};
   for (const auto& [name, list] : node.entries()) {
     if (name == "map") continue;
+    if (name.starts_with(kLevelPrefix)) {
+      read_doses(name.substr(kLevelPrefix.size()), list, sweep);
+      continue;
+    }
     check_varied(name, list, sweep.map);
     sweep.varied.push_back(name);
     const std::vector<YamlReader> items = items_of(list);
@@ -134,7 +160,8 @@ Sweep read_sweep(YamlReader node, const SlamConfig& base) {
   } else {
     read_grid(node, base, sweep);
   }
-  if (sweep.varied.empty())
+  if (sweep.varied.empty() && !sweep.doses.empty()) sweep.points.clear();
+  if (sweep.varied.empty() && sweep.doses.empty())
     node.fail("varies nothing: a setting with its values, or sobol, is needed");
   check_weights(node, sweep);
   return sweep;

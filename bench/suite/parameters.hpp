@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/sensors/dose.hpp"
 #include "slam/config/shared.hpp"
 #include "slam/io/yaml.hpp"
 
@@ -18,9 +19,10 @@ enum class SweepMap { kFixed, kRebuilt };
 std::string_view name(SweepMap map);
 
 /// The points of a sweep over SLAM settings. If there are none, only the suite's own settings are
-/// used.
+/// used. A sweep over dials of the level multiplies the suite's levels instead.
 struct Sweep {
   SweepMap map = SweepMap::kFixed;
+  std::vector<std::vector<Dose>> doses;  ///< every combination; empty if no dial is varied
   std::vector<std::string> varied;  ///< full names (slam/config/by_name.hpp), in the suite's order
   std::vector<SharedSlamConfig> points;  ///< complete settings, in the order of the results
 };
@@ -28,7 +30,8 @@ struct Sweep {
 /// Reads the section `parameters`: `map: fixed | rebuilt`, and either a grid (any settings, each
 /// with a list of values: `features.count: [500, 1000]`; the last one varies fastest) or `sobol:
 /// {points, seed, ranges: {semantics.gamma: [low, high], ...}}`. On a fixed map, only the section
-/// `semantics` can vary.
+/// `semantics` can vary. A grid may also vary dials of the level: `level.lens_blur.sigma_px: [0,
+/// 1]`.
 /// @param base  settings that are not varied
 /// @throws InputError naming file, line, field and value.
 Sweep read_sweep(YamlReader node, const SlamConfig& base);

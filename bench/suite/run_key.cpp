@@ -102,7 +102,7 @@ std::string map_key(const RunSpec& spec, std::span<const InputDigest> inputs) {
 std::string stored_spec(const RunSpec& spec) {
   RunSpec stored = spec;
   for_each_path(stored, [](fs::path& path) { path = name_of(path); });
-  stored.level = level_name(spec.level);
+  stored.level.file = spec.level.file.stem();
   Environment& e = stored.environment;
   if (e.is_recorded()) e.sequence = name_of_recording(e.sequence);
   if (e.queries) e.queries = name_of_recording(*e.queries);

@@ -19,7 +19,8 @@ namespace mh {
 struct RunSpec {
   std::string name;  ///< unique in the suite, valid as a folder name: "semantic-exact-pepper-0"
   Environment environment;
-  std::filesystem::path level, vocabulary;
+  Level level;
+  std::filesystem::path vocabulary;
   SystemSpec system;
   Labels labels;
   int trial = 0;

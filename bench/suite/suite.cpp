@@ -5,12 +5,14 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <xxhash.h>
 
 #include "bench/suite/gate_config.hpp"
 #include "bench/suite/names.hpp"
 #include "bench/suite/run_spec.hpp"
 #include "scenes/scannet/files.hpp"
+#include "sim/simulation/faulty_sequence.hpp"
 #include "sim/simulation/travel.hpp"
 #include "slam/config/by_name.hpp"
 #include "slam/config/slam.hpp"
@@ -71,23 +73,47 @@ Environment& only_environment(Suite& suite, const char* option) {
   return suite.environments.front();
 }
 
-/// Reads the levels of scenes; adds kRecordedLevel if there are recordings.
-std::vector<fs::path> read_levels(YamlReader& yaml, const SuitePaths& paths, const Suite& suite) {
+/// @throws InputError at `node` if a level has a fault that cannot be added to finished images
+void check_finished(const YamlReader& node, const Level& level) {
+  if (!level.of_recordings) return;
+  if (const auto faults = faults_of_scene(sensors_at(level)); !faults.empty())
+    node.fail(fmt::format("cannot be added to a recording: {}", fmt::join(faults, "; ")));
+}
+
+/// Reads the levels. They are of the scenes, if there are any; recordings are then as recorded.
+std::vector<Level> read_levels(YamlReader& yaml, const SuitePaths& paths, const Suite& suite) {
   const auto is_recorded = [](const Environment& e) { return e.is_recorded(); };
-  std::vector<fs::path> levels;
-  if (!std::ranges::all_of(suite.environments, is_recorded)) {
+  const bool only_recordings = std::ranges::all_of(suite.environments, is_recorded);
+  std::vector<Level> levels;
+  if (!only_recordings || yaml.has("levels")) {
     std::set<std::string> names;
-    for (const YamlReader& level : items_of(yaml.at("levels"))) {
-      levels.push_back(named_file(level, paths, Shipped::kLevel));
+    for (const YamlReader& node : items_of(yaml.at("levels"))) {
+      const bool as_recorded = only_recordings && node.as_string() == kRecordedLevel;
+      levels.push_back({.file = as_recorded ? fs::path(kRecordedLevel)
+                                            : named_file(node, paths, Shipped::kLevel),
+                        .of_recordings = only_recordings});
       const std::string name = level_name(levels.back());
-      if (!names.insert(name).second) level.fail(fmt::format("'{}' is listed twice", name));
-      if (name == kRecordedLevel) level.fail("is reserved for the level of recordings");
+      if (!names.insert(name).second) node.fail(fmt::format("'{}' is listed twice", name));
+      if (name == kRecordedLevel && !as_recorded)
+        node.fail("is reserved for the level of recordings");
+      if (paths.must_exist) check_finished(node, levels.back());
     }
-  } else if (const auto named = yaml.find("levels")) {
-    named->fail("are settings of simulated sensors: a suite of recordings has none");
   }
-  if (std::ranges::any_of(suite.environments, is_recorded)) levels.emplace_back(kRecordedLevel);
+  if (std::ranges::any_of(suite.environments, is_recorded) && (levels.empty() || !only_recordings))
+    levels.push_back({.file = kRecordedLevel, .of_recordings = true});
   return levels;
+}
+
+/// Each level with each combination of doses.
+std::vector<Level> dosed(const std::vector<Level>& levels,
+                         const std::vector<std::vector<Dose>>& combinations) {
+  std::vector<Level> all;
+  for (const Level& level : levels)
+    for (const std::vector<Dose>& doses : combinations) {
+      all.push_back(level);
+      all.back().doses = doses;
+    }
+  return all;
 }
 
 /// Boxes from a file belong to the frames of one sequence, so no environment may have a second
@@ -212,11 +238,8 @@ bool fits(const Environment& environment, const Labels& labels) {
   return labels.mode == LabelMode::kNone ||
          environment.is_recorded() == (labels.mode == LabelMode::kRecorded);
 }
-bool fits(const Environment& environment, const fs::path& level) {
-  return environment.is_recorded() == (level == kRecordedLevel);
-}
-std::string level_name(const fs::path& level) {
-  return level.stem().string();
+bool fits(const Environment& environment, const Level& level) {
+  return environment.is_recorded() == level.of_recordings;
 }
 
 Suite load_suite(const fs::path& file, const SuiteOverrides& overrides) {
@@ -279,6 +302,9 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
     yaml.at("parameters").fail("the suite has a sweep of its own: leave --vary out");
   if (sweep) {
     suite.sweep = read_sweep(*sweep, suite.slam);
+    if (!suite.sweep.doses.empty()) suite.levels = dosed(suite.levels, suite.sweep.doses);
+    if (files_must_exist)
+      for (const Level& level : suite.levels) check_finished(*sweep, level);
     if (yaml.has("study"))
       sweep->fail(
           "a sweep in a stated study would choose among its points by the rooms that evaluate "
@@ -319,6 +345,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
       if (e.is_recorded())
         episodes->fail(fmt::format("a robot drives in a scene, but '{}' is a recording", e.name));
   }
+  if (const auto stress = yaml.find("stress")) suite.stress = read_stress(*stress);
   if (const auto check = yaml.find("check")) {
     std::vector<std::string> names_of_all;
     for (const Environment& e : suite.environments) names_of_all.push_back(e.name);

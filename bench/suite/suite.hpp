@@ -14,8 +14,10 @@
 #include "bench/suite/gate_config.hpp"
 #include "bench/suite/graded_spec.hpp"
 #include "bench/suite/labels.hpp"
+#include "bench/suite/level.hpp"
 #include "bench/suite/parameters.hpp"
 #include "bench/suite/protocol_config.hpp"
+#include "bench/suite/stress_spec.hpp"
 #include "bench/suite/system_spec.hpp"
 #include "sim/sensors/sense.hpp"
 #include "slam/config/shared.hpp"
@@ -61,8 +63,9 @@ struct Suite {
   std::string text;  ///< of the file, as it was read
   std::vector<Environment> environments;
   std::filesystem::path vocabulary;  ///< empty if no system needs it
-  /// Sensor levels, as paths of their files; kRecordedLevel is last if there are recordings.
-  std::vector<std::filesystem::path> levels;
+  /// Each with every combination of the doses of `parameters`. If only some environments are
+  /// recordings, kRecordedLevel is last.
+  std::vector<Level> levels;
   std::vector<SystemSpec> systems;
   std::vector<Labels> labels;
   int trials = 1;
@@ -73,6 +76,7 @@ struct Suite {
   std::vector<Sense> senses;             ///< given while mapping, in addition to the camera
   std::optional<GradedSpec> graded;      ///< queries asked in every environment
   std::optional<EpisodesSpec> episodes;  ///< run in every environment: a robot drives by its map
+  std::optional<StressSpec> stress;      ///< dials for `modelhouse stress`; `bench` ignores them
   /// Pairs of systems to compare; differences are first minus second. Default: `semantic` and
   /// `plain`, if the suite has both.
   std::vector<SystemPair> compare;
@@ -126,16 +130,10 @@ Suite load_suite(const std::filesystem::path& file, const SuiteOverrides& overri
 Suite parse_suite(const std::string& content, const std::filesystem::path& file,
                   const SuiteOverrides& overrides = {}, bool files_must_exist = true);
 
-/// The level name of recordings, whose noise is already in the data; no level file has this name.
-inline constexpr const char* kRecordedLevel = "recorded";
-
 /// Whether runs of an environment may use these labels: a recording has recorded labels, a scene
 /// has simulated ones; both may run without labels or with those of a real detector.
 bool fits(const Environment& environment, const Labels& labels);
-/// Whether an environment is run at this level. Recordings are run only at kRecordedLevel, scenes
-/// only at other levels.
-bool fits(const Environment& environment, const std::filesystem::path& level);
-
-std::string level_name(const std::filesystem::path& level);
+/// Whether an environment is run at this level.
+bool fits(const Environment& environment, const Level& level);
 
 }  // namespace mh

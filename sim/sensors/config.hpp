@@ -204,7 +204,7 @@ template <MaybeConst<MotionBlurConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, exposure_ms] = c;
   v("enabled", enabled, setting::kSwitch, "images are integrated along the true motion");
-  v("exposure_ms", exposure_ms, setting::above(0, 1000), "how long each row collects light");
+  v("exposure_ms", exposure_ms, {0, 1000}, "how long each row collects light");
 }
 
 struct RollingShutterConfig {
@@ -220,7 +220,7 @@ template <MaybeConst<RollingShutterConfig> C, class Visit>
 void fields(C& c, Visit& v) {
   auto& [enabled, readout_ms] = c;
   v("enabled", enabled, setting::kSwitch, "rows are read out one after another");
-  v("readout_ms", readout_ms, setting::above(0, 1000), "from the first row to the last");
+  v("readout_ms", readout_ms, {0, 1000}, "from the first row to the last");
 }
 
 struct DepthOffsetConfig {
@@ -279,6 +279,115 @@ void fields(C& c, Visit& v) {
   v("enabled", enabled, setting::kSwitch, "whether frames are lost");
   v("share", share, setting::required(setting::kShare),
     "fraction of frames that arrive black (blank) or not at all (dropped)");
+}
+
+/// Light of the scene that reaches the sensor: less of it leaves fewer electrons, so the noise
+/// weighs more. Flicker: lamps on alternating current vary at twice its frequency, and a camera
+/// that is not in step with them records frames of different brightness.
+struct LightConfig {
+  bool enabled = false;
+  double share = 1.0;
+  double flicker = 0.0;
+  friend bool operator==(const LightConfig&, const LightConfig&) = default;
+};
+
+template <MaybeConst<LightConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, share, flicker] = c;
+  v("enabled", enabled, setting::kSwitch, "light that reaches the sensor");
+  v("share", share, setting::kShare, "share of the scene's light");
+  v("flicker", flicker, setting::kOpenShare,
+    "amplitude by which the light of a frame varies, at a random phase in each frame");
+}
+
+/// Spots on the lens, out of focus: soft disks, the same in every frame. See lens_dirt.hpp.
+struct LensDirtConfig {
+  bool enabled = false;
+  double share = 0.0;
+  std::uint64_t lens = 0;
+  friend bool operator==(const LensDirtConfig&, const LensDirtConfig&) = default;
+};
+
+template <MaybeConst<LensDirtConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, share, lens] = c;
+  v("enabled", enabled, setting::kSwitch, "spots on the lens of the color camera");
+  v("share", share, setting::kShare,
+    "share of the image behind spots, which let 1/10 of the light "
+    "through");
+  v("lens", lens, setting::kSeed, "which lens: seed of the spots");
+}
+
+/// Compression of the color image for transport: ROS's compressed_image_transport sends JPEG of
+/// quality 80 by default, many drivers less.
+struct JpegConfig {
+  bool enabled = false;
+  int loss = 0;
+  friend bool operator==(const JpegConfig&, const JpegConfig&) = default;
+};
+
+template <MaybeConst<JpegConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, loss] = c;
+  v("enabled", enabled, setting::kSwitch, "color images are compressed as JPEG");
+  v("loss", loss, {0, 99}, "100 - quality; 0: not compressed");
+}
+
+/// Faults that depth has in addition to those of its sensor (depth_noise); all are none at 0.
+struct DepthFaultsConfig {
+  bool enabled = false;
+  double noise = 0.0;
+  double edges = 0.0;
+  double holes = 0.0;
+  friend bool operator==(const DepthFaultsConfig&, const DepthFaultsConfig&) = default;
+};
+
+template <MaybeConst<DepthFaultsConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, noise, edges, holes] = c;
+  v("enabled", enabled, setting::kSwitch, "more faults of depth");
+  v("noise", noise, {0, 1000},
+    "noise along the ray, as a multiple of a Kinect's (depth_noise.axial)");
+  v("edges", edges, {0, 100}, "ragged edges, as a multiple of a Kinect's (depth_noise.lateral)");
+  v("holes", holes, setting::kShare,
+    "share of patches of 16 x 16 px without depth, others in each frame");
+}
+
+/// How frames are delivered. See feed_faults.hpp.
+struct FeedConfig {
+  bool enabled = false;
+  int keep_every = 1;
+  double stuck = 0.0;
+  double jitter_ms = 0.0;
+  friend bool operator==(const FeedConfig&, const FeedConfig&) = default;
+};
+
+template <MaybeConst<FeedConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, keep_every, stuck, jitter_ms] = c;
+  v("enabled", enabled, setting::kSwitch, "how frames are delivered");
+  v("keep_every", keep_every, setting::kCount, "1: all frames, 2: every second, ...");
+  v("stuck", stuck, setting::kShare, "share of frames with the images of the frame before");
+  v("jitter_ms", jitter_ms, {0, 1000},
+    "standard deviation of the stamps' errors; stamps still increase");
+}
+
+/// The calibration that is handed over with the frames, where it is wrong. The images stay.
+struct ToldConfig {
+  bool enabled = false;
+  double focal = 1.0;
+  double center_px = 0.0;
+  double k1 = 0.0;
+  friend bool operator==(const ToldConfig&, const ToldConfig&) = default;
+};
+
+template <MaybeConst<ToldConfig> C, class Visit>
+void fields(C& c, Visit& v) {
+  auto& [enabled, focal, center_px, k1] = c;
+  v("enabled", enabled, setting::kSwitch, "systems are told a wrong calibration");
+  v("focal", focal, {0.2, 5}, "factor on the focal lengths");
+  v("center_px", center_px, {-1000, 1000}, "error of the principal point, to the right and down");
+  v("k1", k1, {-1, 1}, "error of the first radial coefficient of the lens");
 }
 
 /// A handheld camera covers its path in less time: hurried(), sim/simulation/travel.hpp.
@@ -350,6 +459,12 @@ struct SensorConfig {
   LostFramesConfig blank_frames;    ///< arrive black, without depth and labels
   LostFramesConfig dropped_frames;  ///< never arrive
   HurryConfig hurry;
+  LightConfig light;
+  LensDirtConfig lens_dirt;
+  JpegConfig jpeg;
+  DepthFaultsConfig depth_faults;
+  FeedConfig feed;
+  ToldConfig told;
   ImuConfig imu;
   LabelConfig labels;
   MotionSampling motion_sampling;
@@ -362,8 +477,9 @@ template <MaybeConst<SensorConfig> C, class Visit>
 void for_each_setting(C& config, Visit&& visit) {
   [[maybe_unused]] auto& [depth_noise, color_noise, shot_noise, auto_exposure, vignetting,
                           lens_blur, processing, lens_distortion, motion_blur, rolling_shutter,
-                          depth_offset, depth_bias, blank_frames, dropped_frames, hurry, imu,
-                          labels, motion_sampling] = config;
+                          depth_offset, depth_bias, blank_frames, dropped_frames, hurry, light,
+                          lens_dirt, jpeg, depth_faults, feed, told, imu, labels, motion_sampling] =
+      config;
   const auto part = [&](const char* name, auto& c) {
     visit.section(name);
     fields(c, visit);
@@ -383,9 +499,18 @@ void for_each_setting(C& config, Visit&& visit) {
   part("blank_frames", blank_frames);
   part("dropped_frames", dropped_frames);
   part("hurry", hurry);
+  part("light", light);
+  part("lens_dirt", lens_dirt);
+  part("jpeg", jpeg);
+  part("depth_faults", depth_faults);
+  part("feed", feed);
+  part("told", told);
   part("imu", imu);
   for_each_setting(labels, visit);
 }
+
+/// Checks what holds between fields. @throws InputError naming the section
+void check_together(const SensorConfig& config);
 
 /// No noise at all: the default if no level is specified.
 SensorConfig exact_sensors();

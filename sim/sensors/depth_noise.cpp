@@ -18,6 +18,7 @@ namespace {
 constexpr double kAxialFloor = 0.0012, kAxialSquare = 0.0019, kAxialNearest = 0.4;
 constexpr double kAxialAngular = 0.0001;
 constexpr double kLateralFloor = 0.8, kLateralAngular = 0.035;
+enum FaultStream : std::uint64_t { kFaultNoise = 1, kFaultHoles = 2 };
 constexpr double kSteepRad = std::numbers::pi / 3.0;  // their angular term starts here
 
 /// theta^2 / (pi/2 - theta)^2 where the angular term applies, else 0.
@@ -130,12 +131,15 @@ struct Row {
 /// Processes an image row by row, with several passes over each row.
 class DepthSensor {
  public:
+  /// @param along, across  factors on the noise along the ray and perpendicular to it
   DepthSensor(const Grid2d<float>& depth_m, const Camera& camera, const DepthNoiseConfig& config,
-              RandomStream stream)
+              RandomStream stream, double along = 1, double across = 1)
       : depth_m_(depth_m),
         surfaces_(find_surfaces(depth_m, camera)),
         config_(config),
         stream_(stream),
+        along_(static_cast<float>(along)),
+        across_(static_cast<float>(across)),
         width_(depth_m.width()),
         steps_per_inverse_depth_(
             static_cast<float>(kDisparityStepsPerPx * camera.fx_px * camera.baseline_m)),
@@ -166,9 +170,9 @@ class DepthSensor {
     const auto first = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width_);
     for (int x = 0; x < width_; ++x) {
       const std::uint64_t bits = stream_.bits(first + static_cast<std::uint64_t>(x));
-      row_.normal_x[x] = normals_[bits & kNormalMask];
-      row_.normal_y[x] = normals_[(bits >> kNormalBits) & kNormalMask];
-      row_.normal_z[x] = normals_[(bits >> (2 * kNormalBits)) & kNormalMask];
+      row_.normal_x[x] = across_ * normals_[bits & kNormalMask];
+      row_.normal_y[x] = across_ * normals_[(bits >> kNormalBits) & kNormalMask];
+      row_.normal_z[x] = along_ * normals_[(bits >> (2 * kNormalBits)) & kNormalMask];
     }
   }
 
@@ -286,6 +290,7 @@ class DepthSensor {
   Grid2d<Surface> surfaces_;
   DepthNoiseConfig config_;
   RandomStream stream_;
+  float along_, across_;
   int width_;
   float steps_per_inverse_depth_;
   Row row_;
@@ -312,6 +317,29 @@ Grid2d<float> noisy_depth(const Grid2d<float>& depth_m, const Camera& camera,
   DepthSensor sensor(depth_m, camera, config, stream);
   Grid2d<float> read(depth_m.width(), depth_m.height());
   for (int y = 0; y < read.height(); ++y) sensor.read_row(y, read.row(y));
+  return read;
+}
+
+Grid2d<float> faulty_depth(const Grid2d<float>& depth_m, const Camera& camera,
+                           const DepthFaultsConfig& config, RandomStream stream) {
+  Grid2d<float> read = depth_m;
+  if (config.noise > 0 || config.edges > 0) {
+    DepthNoiseConfig kinds = no_depth_noise();
+    kinds.axial = config.noise > 0;
+    kinds.lateral = config.edges > 0;
+    DepthSensor sensor(depth_m, camera, kinds, stream.fork(kFaultNoise), config.noise,
+                       config.edges);
+    for (int y = 0; y < read.height(); ++y) sensor.read_row(y, read.row(y));
+  }
+  if (config.holes <= 0) return read;
+  const RandomStream holes = stream.fork(kFaultHoles);
+  constexpr int kPatch = 16;
+  const int across = (read.width() + kPatch - 1) / kPatch;
+  for (int y = 0; y < read.height(); ++y)
+    for (int x = 0; x < read.width(); ++x) {
+      const auto patch = static_cast<std::uint64_t>(y / kPatch * across + x / kPatch);
+      if (holes.uniform(patch) < config.holes) read(x, y) = 0;
+    }
   return read;
 }
 

@@ -9,4 +9,8 @@ namespace mh {
 Grid2d<float> noisy_depth(const Grid2d<float>& depth_m, const Camera& camera,
                           const DepthNoiseConfig& config, RandomStream stream);
 
+/// Adds the faults of `depth_faults`: noise and ragged edges as multiples of a Kinect's, and holes.
+Grid2d<float> faulty_depth(const Grid2d<float>& depth_m, const Camera& camera,
+                           const DepthFaultsConfig& config, RandomStream stream);
+
 }  // namespace mh

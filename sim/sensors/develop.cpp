@@ -4,27 +4,32 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <vector>
 
 #include "sim/render/color.hpp"
+#include "sim/sensors/jpeg.hpp"
+#include "sim/sensors/lens_dirt.hpp"
 #include "sim/sensors/normal_table.hpp"
 #include "sim/sensors/processing.hpp"
 
 namespace mh {
 namespace {
 
-enum DevelopStream : std::uint64_t { kShot = 1 };
+enum DevelopStream : std::uint64_t { kShot = 1, kFlicker = 2 };
 
 /// Linear light of an 8-bit value and the standard deviation of its noise.
 struct Signal {
   float light, sigma;
 };
 
-std::array<Signal, 256> signal_table(const SensorConfig& config) {
+/// @param brightness  share of the light that reaches the sensor
+std::array<Signal, 256> signal_table(const SensorConfig& config, double brightness) {
   const double well_e = config.shot_noise.well_e / config.shot_noise.gain;
   std::array<Signal, 256> table{};
   for (std::size_t v = 0; v < table.size(); ++v) {
-    const double light = srgb_to_linear(static_cast<std::uint8_t>(v));
+    const double light = brightness * srgb_to_linear(static_cast<std::uint8_t>(v));
     const double read = config.shot_noise.read_noise_e / well_e;
     const double sigma = config.shot_noise.enabled ? std::sqrt(light / well_e + read * read) : 0.0;
     table[v] = {static_cast<float>(light), static_cast<float>(sigma)};
@@ -43,9 +48,19 @@ void fall_off(const Camera& camera, double strength, int y, std::vector<float>& 
   }
 }
 
+/// The light of a frame relative to the scene's.
+double brightness_of(const LightConfig& config, RandomStream stream) {
+  if (!config.enabled) return 1.0;
+  const double phase = 2 * std::numbers::pi * stream.uniform(0);
+  return config.share * (1.0 + config.flicker * std::sin(phase));
+}
+
 void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& config, double gain,
-            RandomStream stream) {
-  const std::array<Signal, 256> signals = signal_table(config);
+            double brightness, RandomStream stream) {
+  const std::array<Signal, 256> signals = signal_table(config, brightness);
+  const Grid2d<float> dirt = config.lens_dirt.enabled
+                                 ? light_through(config.lens_dirt, color.width(), color.height())
+                                 : Grid2d<float>();
   const auto& normals = normal_table();
   const std::uint8_t* encode = kSrgbTable.data();
   const auto scale = static_cast<float>(gain * kSrgbTableMax);
@@ -53,6 +68,10 @@ void expose(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& confi
   std::uint64_t pixel = 0;
   for (int y = 0; y < color.height(); ++y) {
     if (config.vignetting.enabled) fall_off(camera, config.vignetting.strength, y, share);
+    if (!dirt.empty()) {
+      if (!config.vignetting.enabled) std::ranges::fill(share, 1.0F);
+      std::ranges::transform(share, dirt.row(y), share.begin(), std::multiplies<>());
+    }
     const float* lit = share.data();
     for (Rgb8& c : color.row(y)) {
       const std::uint64_t bits = stream.bits(pixel++);
@@ -98,10 +117,14 @@ double analog_gain(const ShotNoiseConfig& config, float exposure) {
 
 void develop(Grid2d<Rgb8>& color, const Camera& camera, const SensorConfig& config, double gain,
              RandomStream stream) {
-  if (config.shot_noise.enabled || config.vignetting.enabled || gain != 1.0)
-    expose(color, camera, config, gain, stream.fork(kShot));
+  const double brightness = brightness_of(config.light, stream.fork(kFlicker));
+  const bool dirty = config.lens_dirt.enabled && config.lens_dirt.share > 0;
+  if (config.shot_noise.enabled || config.vignetting.enabled || gain != 1.0 || brightness != 1.0 ||
+      dirty)
+    expose(color, camera, config, gain, brightness, stream.fork(kShot));
   if (config.color_noise.enabled) add_gray_noise(color, config.color_noise.sigma, stream);
   if (config.processing.enabled) process(color, config.processing);
+  if (config.jpeg.enabled && config.jpeg.loss > 0) compress(color, 100 - config.jpeg.loss);
 }
 
 }  // namespace mh

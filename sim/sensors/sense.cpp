@@ -10,13 +10,19 @@
 namespace mh {
 namespace {
 
-enum SenseStream : std::uint64_t { kDepth = 1, kColor = 2, kLabels = 3, kBlank = 4 };
+enum SenseStream : std::uint64_t {
+  kDepth = 1,
+  kColor = 2,
+  kLabels = 3,
+  kBlank = 4,
+  kDepthFaults = 5
+};
+
+}  // namespace
 
 bool is_blank(const SensorConfig& config, RandomStream stream) {
   return stream.fork(kBlank).uniform(0) < config.blank_frames.lost();
 }
-
-}  // namespace
 
 RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorConfig& config,
                 RandomStream stream, Stamp stamp_ns, double gain) {
@@ -30,6 +36,9 @@ RgbdFrame sense(const RenderedFrame& truth, const Camera& camera, const SensorCo
   frame.depth_m = config.depth_noise.enabled
                       ? noisy_depth(truth.depth_m, camera, config.depth_noise, stream.fork(kDepth))
                       : truth.depth_m;
+  if (config.depth_faults.enabled)
+    frame.depth_m =
+        faulty_depth(frame.depth_m, camera, config.depth_faults, stream.fork(kDepthFaults));
   if (config.depth_bias.enabled) frame.depth_m = biased_depth(frame.depth_m, config.depth_bias);
   SensorConfig set = config;
   set.shot_noise.gain = analog_gain(config.shot_noise, truth.exposure);

@@ -29,6 +29,9 @@ double lateral_sigma_px(double incidence_rad);
 /// time instead. Unknown exposure (0): the configured gain.
 double analog_gain(const ShotNoiseConfig& config, float exposure);
 
+/// Whether the frame of this stream arrives blank.
+bool is_blank(const SensorConfig& config, RandomStream stream);
+
 /// Returns the frame, without labels, that a camera with these faults delivers. All noise is a
 /// function of (stream, pixel) alone; each kind uses its own stream.
 /// @param truth   the image as the shutter captured it (see shutter.hpp), or an exact one

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "sim/sensors/config.hpp"
+#include "slam/io/error.hpp"
 #include "slam/io/settings_io.hpp"
 #include "slam/io/text_file.hpp"
 
@@ -20,15 +23,14 @@ class LevelReader : public SettingsReader {
   }
 };
 
-/// Checks constraints between fields. @throws InputError at the section.
-void check_together(YamlReader& level, const SensorConfig& config) {
-  if (config.depth_noise.max_range_m <= config.depth_noise.min_range_m)
-    level.at("depth_noise").fail("max_range_m must be above min_range_m");
-  if (config.labels.persistent_share + config.labels.frame_share > 1.0)
-    level.at("label_noise").fail("persistent_share and frame_share sum to more than 1");
-}
-
 }  // namespace
+
+void check_together(const SensorConfig& config) {
+  if (config.depth_noise.max_range_m <= config.depth_noise.min_range_m)
+    throw InputError("depth_noise: max_range_m must be above min_range_m");
+  if (config.labels.persistent_share + config.labels.frame_share > 1.0)
+    throw InputError("label_noise: persistent_share and frame_share sum to more than 1");
+}
 
 SensorConfig exact_sensors() {
   SensorConfig config;
@@ -44,7 +46,11 @@ SensorConfig parse_sensor_config(const std::string& text, const std::string& nam
   LevelReader reader(level);
   for_each_setting(config, reader);
   reader.finish();
-  check_together(level, config);
+  try {
+    check_together(config);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", name, error.what()));
+  }
   level.finish();
   return config;
 }

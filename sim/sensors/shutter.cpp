@@ -145,7 +145,9 @@ std::vector<std::size_t> arriving(std::size_t frames, const SensorConfig& config
                                   RandomStream stream) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < frames; ++i)
-    if (stream.fork(kDropped).uniform(i) >= config.dropped_frames.lost()) indices.push_back(i);
+    if ((!config.feed.enabled || i % static_cast<std::size_t>(config.feed.keep_every) == 0) &&
+        stream.fork(kDropped).uniform(i) >= config.dropped_frames.lost())
+      indices.push_back(i);
   if (indices.empty() && frames > 0) indices.push_back(0);
   return indices;
 }

@@ -16,6 +16,7 @@
 #include "scenes/load.hpp"
 #include "sim/sensors/imu.hpp"
 #include "sim/sensors/shutter.hpp"
+#include "sim/simulation/faulty_sequence.hpp"
 #include "sim/simulation/lit_scene.hpp"
 #include "sim/simulation/simulated_sequence.hpp"
 #include "sim/simulation/travel.hpp"
@@ -101,14 +102,17 @@ void simulate(World& world, LabelMode labels, const SharedImages& images) {
   const auto mapping = sequence("mapping", p.renderer, p.mapping, p.pedestrian_scene, p.lasers);
   mapping->set_odometry(p.odom_from_camera);
   mapping->set_imu(p.imu);
-  world.mapping = mapping;
+  world.mapping = with_feed_faults(mapping, p.sensors);
   if (p.query_tour)
-    world.query_tour = sequence("second", p.query_renderer ? p.query_renderer : p.renderer,
-                                *p.query_tour, p.query_pedestrian_scene, p.query_lasers);
+    world.query_tour =
+        with_feed_faults(sequence("second", p.query_renderer ? p.query_renderer : p.renderer,
+                                  *p.query_tour, p.query_pedestrian_scene, p.query_lasers),
+                         p.sensors);
   if (!p.graded.list.empty())
-    world.graded =
+    world.graded = with_feed_faults(
         std::make_shared<GradedSequence>(p.query_renderer ? p.query_renderer : p.renderer,
-                                         p.robot.camera, p.graded.list, p.sensors, labels);
+                                         p.robot.camera, p.graded.list, p.sensors, labels),
+        p.sensors);
 }
 
 PlaceFacts facts(const World& world, const RunSpec& spec) {
@@ -146,6 +150,11 @@ std::shared_ptr<const Vocabulary> load_vocabulary(const RunSpec& spec, World& wo
 World open_recordings(const RunSpec& spec) {
   const Environment& e = spec.environment;
   World world;
+  const SensorConfig level =
+      with_doses(spec.level.is_file() ? noted(world.inputs, "level", spec.level.file,
+                                              [&] { return sensors_at({.file = spec.level.file}); })
+                                      : exact_sensors(),
+                 spec.level.doses);
   const auto open = [&](const char* name, const std::string& sequence) {
     Settings calibration;
     OpenedRecording opened = noted(world.inputs, name, split_sequence(sequence).second, [&] {
@@ -164,8 +173,9 @@ World open_recordings(const RunSpec& spec) {
     if (gives_imu && opened.sequence->imu().empty())
       throw InputError(fmt::format(
           "{}: has no inertial sensor (imu.csv), but the suite uses one (`senses`)", sequence));
-    return first_frames(std::move(opened.sequence), spec.max_frames.value_or(all), std::nullopt,
-                        gives_imu);
+    std::shared_ptr<const Sequence> frames = first_frames(
+        std::move(opened.sequence), spec.max_frames.value_or(all), std::nullopt, gives_imu);
+    return level == exact_sensors() ? frames : degraded(std::move(frames), level);
   };
   world.mapping = open("sequence", e.sequence);
   if (e.queries) world.query_tour = open("queries", *e.queries);
@@ -230,10 +240,12 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   };
   place.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
   world.vocabulary = load_vocabulary(spec, world);
-  place.sensors = input("level", spec.level, [&] { return load_sensor_config(spec.level); });
+  place.sensors =
+      input("level", spec.level.file, [&] { return sensors_at({.file = spec.level.file}); });
   if (environment.sensors)
     place.sensors = input("sensors", *environment.sensors,
                           [&] { return load_sensor_config(*environment.sensors); });
+  place.sensors = with_doses(place.sensors, spec.level.doses);
   place.sensors = with_dials(place.sensors, labels_of_frames(spec));
   place.robot.camera = with_lens(place.robot.camera, place.sensors);
   if (environment.kidnapped_tour)

@@ -111,7 +111,7 @@ Json first_point(const PagesSource& source) {
 
 Json levels_json(const Suite& suite) {
   Json levels = Json::array();
-  for (const fs::path& level : suite.levels) levels.push_back(level_name(level));
+  for (const Level& level : suite.levels) levels.push_back(level_name(level));
   return levels;
 }
 

@@ -126,8 +126,8 @@ std::string gate_suite_digest(const Suite& suite, InputReader& reader) {
   for (const Sense sense : suite.senses)
     text += fmt::format("sense={};", name_of(sense, words(sense)));
   for (const auto& level : suite.levels)
-    text += level == kRecordedLevel ? "recorded;"
-                                    : content(level_name(level), level, reader.level(level));
+    text += level.is_file() ? content(level_name(level), level.file, reader.level(level.file))
+                            : level_name(level) + ";";
   for (const Environment& e : suite.environments) {
     const std::vector<InputDigest> inputs = reader.inputs_of(e);
     text += fmt::format("environment={};", e.name);
