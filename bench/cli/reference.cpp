@@ -224,6 +224,12 @@ std::string suite() {
   fields(graded, rest);
   rest.section("episodes");
   episode_settings(episodes, rest);
+  rest.section("stress");
+  const StressSpec stress;
+  fields(stress, rest);
+  rest.section("stress.dials: each");
+  const StressDial dial;
+  fields(dial, rest);
   return heading("Keys of a suite", "suite") +
          "Keys with a single value or file; for lists and mappings, see "
          "[formats.md](../formats.md#suite-benchsuitesyaml).\n" +

@@ -44,7 +44,7 @@ TEST(RecordedTour, GivesTheBitsOfTheSimulationWhereThatHasNoNoise) {
   RunSpec spec = expand(ci).front();
   spec.system = {SystemKind::kSemantic, "semantic", {}};
   spec.labels = LabelMode::kExact;
-  spec.level = MH_SOURCE_DIR "/sim/sensors/levels/ideal.yaml";
+  spec.level.file = MH_SOURCE_DIR "/sim/sensors/levels/ideal.yaml";
   spec.max_frames = kFrames;
   spec.environment.query_tour.reset();
   const World simulated = built(spec);
@@ -71,7 +71,7 @@ TEST(RecordedTour, GivesTheBitsOfTheSimulationWhereThatHasNoNoise) {
   of_recording.environment = {};
   of_recording.environment.name = "recorded";
   of_recording.environment.sequence = "tum:" + folder.string();
-  of_recording.level = kRecordedLevel;
+  of_recording.level = {.file = kRecordedLevel, .of_recordings = true};
   of_recording.labels = LabelMode::kRecorded;
   const RunResult read = run_one(of_recording, built(of_recording), {.occupancy = false});
   fs::remove_all(folder);

@@ -95,7 +95,7 @@ class Recorded : public testing::Test {
     spec_.name = "semantic-recorded-recorded-0";
     spec_.environment.name = spec_.environment.category = "room";
     spec_.environment.sequence = "tum:" + room().string();
-    spec_.level = kRecordedLevel;
+    spec_.level = {.file = kRecordedLevel, .of_recordings = true};
     spec_.system = {SystemKind::kSemantic, "semantic", {}};
     spec_.labels = LabelMode::kRecorded;
     spec_.points = {SemanticConfig{}};
@@ -119,7 +119,7 @@ class Recorded : public testing::Test {
   Suite suite() const {
     Suite all;
     all.environments = {spec_.environment};
-    all.levels = {kRecordedLevel};
+    all.levels = {{.file = kRecordedLevel, .of_recordings = true}};
     all.systems = {spec_.system};
     all.labels = {LabelMode::kRecorded};
     return all;
@@ -460,7 +460,7 @@ TEST_F(Recorded, WhatCannotBeRunIsToldBeforeAnythingIsWritten) {
   record(room(), "tum", 0, 12);
   Suite suite;
   suite.environments = {spec_.environment};
-  suite.levels = {kRecordedLevel};
+  suite.levels = {{.file = kRecordedLevel, .of_recordings = true}};
   suite.systems = {{SystemKind::kSemantic, "semantic", {}}};
   suite.labels = {LabelMode::kRecorded};
   std::vector<std::string> said;

@@ -160,7 +160,7 @@ struct Place {
                            .robot = "robot.yaml",
                            .mapping_tour = "tour.yaml",
                            .query_tour = "tour.yaml"}};
-    suite.levels = {"fake.yaml"};
+    suite.levels = {{.file = "fake.yaml"}};
     suite.systems = {{SystemKind::kSemantic, "semantic", {}}, {SystemKind::kPlain, "plain", {}}};
     suite.compare = {{0, 1}};
     suite.labels = {LabelMode::kExact, LabelMode::kBoxes};

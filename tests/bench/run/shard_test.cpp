@@ -179,7 +179,9 @@ TEST(PredictedCost, ImagesAreThoseOfThePlaceWhateverTheLabels) {
   RunSpec dose = exact;
   dose.labels = {LabelMode::kExact, LabelNoiseConfig{.enabled = true, .confusion = 0.25}, "dose"};
   EXPECT_EQ(images_of(dose), images_of(exact));
-  dose.level = "another.yaml";
+  dose.level.doses = {{"lens_blur.sigma_px", 1}};
+  EXPECT_NE(images_of(dose), images_of(exact));
+  dose.level = {.file = "another.yaml"};
   EXPECT_NE(images_of(dose), images_of(exact));
 }
 // Tests only numbers of shares into which the runs can be split evenly: images cost as much as four

@@ -386,7 +386,7 @@ class RunInputs : public TemporaryFolder {
                          .kidnapped_tour = folder_ / "kidnapped.yaml",
                          .sensors = folder_ / "sensors.yaml",
                          .pedestrian = folder_ / "pedestrian.yaml"};
-    spec_.level = folder_ / "level.yaml";
+    spec_.level.file = folder_ / "level.yaml";
     spec_.vocabulary = folder_ / "words.mhvoc";
     spec_.system = {
         .kind = SystemKind::kOutside,

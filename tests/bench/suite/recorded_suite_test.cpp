@@ -11,6 +11,7 @@
 #include "bench/suite/run_spec.hpp"
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/io/error.hpp"
+#include "source_dir.hpp"
 
 namespace mh {
 namespace {
@@ -83,7 +84,8 @@ TEST_F(RecordedSuite, ARecordingTakesThePlaceOfASceneAndHasALevelOfItsOwn) {
   EXPECT_EQ(e.queries, "tum:" + (folder_ / "desk_again").string());
   EXPECT_EQ(e.settings, folder_ / "camera.yaml");
   EXPECT_EQ(e.classes, folder_ / "classes.yaml");
-  EXPECT_EQ(suite.levels, std::vector<fs::path>{kRecordedLevel});
+  EXPECT_EQ(suite.levels,
+            (std::vector<Level>{{.file = kRecordedLevel, .of_recordings = true, .doses = {}}}));
   std::vector<std::string> names;
   for (const RunSpec& spec : expand(suite)) names.push_back(spec.name);
   EXPECT_EQ(names, (std::vector<std::string>{"semantic-recorded-recorded-0", "semantic-recorded-0",
@@ -125,8 +127,6 @@ TEST_F(RecordedSuite, WhatIsOfScenesIsRefusedWithItsReason) {
                           "pedestrian: robot.yaml", "sensors: pepper.yaml", "up: y"})
     expect_in(error(fmt::format("- {{category: desk, sequence: 'tum:desk', {}}}", key)),
               "is for simulated scenes: a recording has its own");
-  expect_in(error(kDesk, "[recorded]", "levels: [pepper.yaml]\n"),
-            "levels: are settings of simulated sensors");
   expect_in(error(kDesk, "[exact]"), "'exact' labels are rendered from a simulated scene");
   expect_in(error("- {category: house, scene: house.yaml, robot: robot.yaml}", "[recorded]",
                   "levels: [pepper.yaml]\n"),
@@ -177,6 +177,29 @@ TEST_F(RecordedSuite, OnePlaceUnderTwoNamesIsRefused) {
                           "mapping_tour: 'handheld:0'}",
                   "[exact]", "levels: [pepper.yaml]\n"),
             "'home' repeats 'house'");
+}
+
+TEST_F(RecordedSuite, TakesTheFaultsThatCanBeAddedToItsImages) {
+  const fs::path levels = fs::path(MH_SOURCE_DIR) / "sim/sensors/levels";
+  std::ofstream(folder_ / "dark.yaml") << "depth_noise: {enabled: false}\n"
+                                          "color_noise: {enabled: false}\nlight: {share: 0.1}\n";
+  const Suite suite = load(kDesk, "[recorded]", "levels: [recorded, dark.yaml]\n");
+  std::vector<std::string> names;
+  for (const RunSpec& spec : expand(suite)) {
+    names.push_back(spec.name);
+    EXPECT_EQ(run_spec_from_json(to_json(spec)).level, spec.level);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"semantic-recorded-recorded-0", "plain-recorded-0",
+                                             "semantic-recorded-dark-0", "plain-dark-0"}));
+  const Suite swept =
+      load(kDesk, "[recorded]", "parameters: {map: rebuilt, level.lens_blur.sigma_px: [0.5, 2]}\n");
+  ASSERT_EQ(swept.levels.size(), 2U);
+  EXPECT_EQ(level_name(swept.levels[1]), "recorded+lens_blur.sigma_px=2");
+  expect_in(error(kDesk, "[recorded]", "levels: [" + (levels / "handheld.yaml").string() + "]\n"),
+            "cannot be added to a recording: motion_blur: needs images along the camera's motion");
+  expect_in(error(kDesk, "[recorded]",
+                  "parameters: {map: rebuilt, level.motion_blur.exposure_ms: [10]}\n"),
+            "cannot be added to a recording: motion_blur");
 }
 
 TEST_F(RecordedSuite, MixedWithScenesEachTakesTheLabelsAndLevelsThatFitIt) {

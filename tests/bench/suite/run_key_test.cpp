@@ -52,7 +52,7 @@ std::vector<InputDigest> inputs_of(const RunSpec& spec) {
                                      {"classes of the network", detector->classes},
                                      {"boxes", detector->boxes}})
       add(name, file);
-  if (!e.is_recorded()) add("level", spec.level);
+  if (!e.is_recorded()) add("level", spec.level.file);
   if (spec.episodes)
     for (const EpisodeVariant& variant : spec.episodes->variants)
       sources(variant, [&](const WorldSource& source, const std::optional<fs::path>& path) {
@@ -126,7 +126,7 @@ class RunKey : public testing::Test {
                              .classes = file("classes.yaml"),
                              .topics = "color=/a,depth=/b",
                              .suite_states_readout = true};
-    recorded_.level = kRecordedLevel;
+    recorded_.level = {.file = kRecordedLevel, .of_recordings = true};
     recorded_.labels = LabelMode::kRecorded;
     dosed_.labels = {LabelMode::kBoxes, {.enabled = true, .class_set = ClassSet::kFive}, "coarse"};
     detected_.labels = {{.network = file("yolo.weights"),
@@ -364,7 +364,7 @@ TEST_F(RunKey, TellsWhichFileIsWhich) {
   std::swap(changed.environment.query_tour, changed.environment.kidnapped_tour);
   EXPECT_NE(run_key_of(changed), run_key_of(ours_));
   changed = ours_;
-  std::swap(changed.level, changed.vocabulary);
+  std::swap(changed.level.file, changed.vocabulary);
   EXPECT_NE(run_key_of(changed), run_key_of(ours_));
 }
 
@@ -383,7 +383,7 @@ TEST_F(RunKey, ChangesWithTheContentOfEachFileAndNotWithItsPlace) {
   RunSpec elsewhere = ours_;
   Environment& e = elsewhere.environment;
   for (fs::path* source :
-       {&elsewhere.level, &elsewhere.vocabulary, &e.scene, &e.robot, &e.mapping_tour,
+       {&elsewhere.level.file, &elsewhere.vocabulary, &e.scene, &e.robot, &e.mapping_tour,
         &*e.query_tour, &*e.query_scene, &*e.kidnapped_tour, &*e.sensors, &*e.pedestrian}) {
     const fs::path to = moved / source->filename();
     fs::copy(*source, to);

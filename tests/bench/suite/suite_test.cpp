@@ -186,8 +186,8 @@ TEST_F(SuiteFile, TakesWhatIsShippedByItsName) {
   EXPECT_EQ(suite.environments[0].mapping_tour, root / "scenes/model_house/tours/mapping.yaml");
   EXPECT_EQ(suite.environments[0].robot, root / "robots/pepper/pepper.yaml");
   EXPECT_EQ(suite.vocabulary, root / "assets/vocabulary.mhvoc");
-  EXPECT_EQ(suite.levels[0], folder_ / "pepper.yaml") << "a file beside the suite goes first";
-  EXPECT_EQ(suite.levels[1], root / "sim/sensors/levels/ideal.yaml");
+  EXPECT_EQ(suite.levels[0].file, folder_ / "pepper.yaml") << "a file beside the suite goes first";
+  EXPECT_EQ(suite.levels[1].file, root / "sim/sensors/levels/ideal.yaml");
   EXPECT_NE(error("", "[peper]").find("did you mean 'pepper'?"), std::string::npos);
 }
 
@@ -302,6 +302,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "parameters.semantics.gamma[0]: -1 is outside"},
         BadLine{"parameters: {map: fixed, semantics.gamma: [1, 1]}\n", "'1' is listed twice"},
         BadLine{"parameters: {map: fixed, semantics.gamma: []}\n", "is empty"},
+        BadLine{"parameters: {map: fixed, level.light.share: [0.5]}\n",
+                "decides the map, too: it needs `map: rebuilt`"},
+        BadLine{"parameters: {map: rebuilt, level.light.shares: [0.5]}\n",
+                "did you mean 'light.share'"},
+        BadLine{"parameters: {map: rebuilt, level.light.share: [1.5]}\n", "1.5 is outside [0, 1]"},
+        BadLine{"parameters: {map: rebuilt, level.light.share: [1, 1]}\n", "'1' is listed twice"},
         BadLine{"parameters: {map: fixed, delta: [1]}\n",
                 "parameters.delta: is not a setting of SLAM"},
         BadLine{"parameters: {map: fixed, semantics.gama: [1]}\n", "semantics.gamma"},

@@ -720,8 +720,9 @@ class InTheBrowser : public Reports {
     write("rooms", rooms);
     PagesSource later = rooms;
     later.name = "after";
-    later.suite->levels = {"dusk.yaml"};  // a different level does not change a system's color
-    for (RunResult& run : later.results.runs) run.spec.level = "dusk.yaml";
+    later.suite->levels = {
+        {.file = "dusk.yaml"}};  // a different level does not change a system's color
+    for (RunResult& run : later.results.runs) run.spec.level.file = "dusk.yaml";
     write_pages(root() / "two", std::array{rooms, later});
     write("sweep", source_of_suite(sweep()));
     PagesSource bare = source_of({"den"});
