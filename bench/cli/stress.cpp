@@ -16,8 +16,10 @@
 #include "bench/report/drawing/plot.hpp"
 #include "bench/report/stress_report.hpp"
 #include "bench/run/signal_watch.hpp"
+#include "bench/run/spread.hpp"
 #include "bench/run/stress.hpp"
 #include "bench/suite/shipped.hpp"
+#include "scenes/recordings/open_sequence.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
 
@@ -25,12 +27,12 @@ namespace mh::cli {
 namespace {
 
 struct StressArguments {
-  std::string suite = "stress", out, budget, cache;
+  std::string suite = "stress", out, budget, cache, settings;
   SetOption set;
   int jobs = 1;
   std::optional<std::size_t> frames;
   std::optional<std::uint64_t> seed;
-  bool no_cache = false, json = false;
+  bool no_cache = false, json = false, spread = false;
 };
 
 /// "90s", "30m", "2h" in seconds. @throws InputError
@@ -51,21 +53,33 @@ double seconds_of(const std::string& budget) {
   return number * kSeconds[unit];
 }
 
+/// Whether the word names a recording, not a suite.
+bool is_recording(const std::string& word) {
+  const auto [layout, path] = split_sequence(word);
+  return !layout.empty() || std::filesystem::is_directory(path);
+}
+
 void run(StressArguments options) {
   interrupts_go_on();
-  resolve(options.suite, Shipped::kSuite);
   SuiteOverrides overrides;
   overrides.set = options.set.values();
   overrides.max_frames = options.frames;
-  Suite suite = load_suite(options.suite, overrides);
+  const bool of_recording = is_recording(options.suite);
+  if (!of_recording) resolve(options.suite, Shipped::kSuite);
+  if (!of_recording && !options.settings.empty())
+    throw InputError("--settings: is for a recording; a suite names its own");
+  options.spread = options.spread || of_recording;
+  Suite suite = of_recording ? suite_of_recording(options.suite, options.settings)
+                             : load_suite(options.suite, overrides);
+  suite.max_frames = options.frames;
   if (options.seed) suite.seed = *options.seed;
   StressOptions stress_options;
   stress_options.budget_s = seconds_of(options.budget);
   const std::filesystem::path out = options.out.empty() ? std::filesystem::path("out") / suite.name
                                                         : std::filesystem::path(options.out);
-  OutputFolder folder(
-      out, "stress",
-      {"stress.txt", "stress.json", "stress.tex", "stress.png", "stress.html", "runs"});
+  const OutputFolder folder(out, "stress",
+                            {"stress.txt", "stress.json", "stress.tex", "stress.png", "stress.html",
+                             "spread.txt", "spread.json", "runs"});
   BenchOptions& bench = stress_options.bench;
   bench.out = out / "runs";
   std::filesystem::create_directories(bench.out);
@@ -75,6 +89,15 @@ void run(StressArguments options) {
   Progress progress("stress");
   bench.say = [&](std::string_view line) { progress.say(line); };
   stress_options.step = [&](double share, std::string_view what) { progress.share(share, what); };
+  if (options.spread) {
+    const std::vector<Spread> all = find_spread(suite, overrides, stress_options);
+    progress.end();
+    const std::string text = spread_text(all), json = spread_json(all).dump(2) + "\n";
+    write_atomically(out / "spread.txt", text);
+    write_atomically(out / "spread.json", json);
+    fmt::print("{}", options.json ? json : text);
+    return;
+  }
   const StressResults results = stress(suite, overrides, stress_options);
   progress.end();
   const std::string text = stress_text(suite, results),
@@ -95,7 +118,8 @@ void add_stress(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("stress", "Finds the dose of each fault at which a system breaks.");
   command->add_option("suite", options->suite,
-                      "Suite with a section `stress`: a file (YAML), or the name of a shipped one");
+                      "Suite with a section `stress`: a file (YAML), or the name of a shipped one; "
+                      "or a recording, for --spread");
   command->add_option("--out", options->out, "Folder for the results (default: out/<suite>)");
   command->add_option("--budget", options->budget,
                       "Begins no further dial after this time: 90s, 30m, 2h (default: no limit)");
@@ -111,8 +135,14 @@ void add_stress(CLI::App& app) {
   command->add_option("--cache", options->cache,
                       "Cache folder for expensive results (default: $XDG_CACHE_HOME/modelhouse)");
   command->add_flag("--no-cache", options->no_cache, "Rebuilds everything, caches nothing");
+  command->add_flag("--spread", options->spread,
+                    "Without truth: how far answers move under changes that should not matter");
+  command->add_option("--settings", options->settings,
+                      "Calibration of a recording (default: beside its frames)");
   command->add_flag("--json", options->json, "Prints stress.json instead of the table");
-  command->footer("Example:\n  modelhouse stress --budget 30m --jobs 2");
+  command->footer(
+      "Examples:\n  modelhouse stress --budget 30m --jobs 2\n"
+      "  modelhouse stress tum:rgbd_dataset_freiburg1_desk");
   command->callback([options] { run(*options); });
 }
 

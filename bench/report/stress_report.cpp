@@ -295,4 +295,55 @@ std::string stress_html(const Suite& suite, const StressResults& results,
       in_html(notes(suite, results)), in_html(image), sources);
 }
 
+std::string spread_text(const std::vector<Spread>& all) {
+  if (all.empty()) return "";
+  std::vector<std::string> names = {"environment", "system", "median"};
+  for (const Spread::Change& change : all.front().changes) names.push_back(change.name);
+  const bool known = std::ranges::any_of(all, [](const Spread& s) { return s.ate_rmse_m; });
+  if (known) names.emplace_back("true error");
+  const auto cm = [](const std::optional<double>& m) {
+    return m ? fmt::format("{:.2f}", 100 * *m) : "-";
+  };
+  TextTable table(names, 2);
+  for (const Spread& spread : all) {
+    std::vector<std::string> row = {spread.environment, spread.system, cm(spread.median_m)};
+    for (const Spread::Change& change : spread.changes)
+      row.push_back(change.both < 0.95 && change.rmse_m
+                        ? fmt::format("{} ({:.0f} %)", cm(change.rmse_m), 100 * change.both)
+                        : cm(change.rmse_m));
+    if (known) row.push_back(cm(spread.ate_rmse_m));
+    table.add(std::move(row));
+  }
+  std::string text =
+      "how far the path moves if the input changes in a way that should not matter (RMSE, cm)\n" +
+      table.text() +
+      "  (n %): only n % of the frames have a pose in both\n"
+      "  a large spread: at least some of these paths are wrong. A small one: no proof, since an\n"
+      "  error that is the same each time, such as a wrong scale, does not show\n";
+  if (const auto rank = rank_of_truth(all))
+    text += fmt::format("  rank correlation with the true error over {}: {:.2f}\n",
+                        counted(all.size(), "pair"), *rank);
+  return text;
+}
+
+Json spread_json(const std::vector<Spread>& all) {
+  const auto or_null = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+  };
+  Json list = Json::array();
+  for (const Spread& spread : all) {
+    Json changes = Json::array();
+    for (const Spread::Change& change : spread.changes)
+      changes.push_back({{"change", change.name},
+                         {"rmse_m", or_null(change.rmse_m)},
+                         {"share_of_frames", change.both}});
+    list.push_back({{"environment", spread.environment},
+                    {"system", spread.system},
+                    {"median_m", or_null(spread.median_m)},
+                    {"ate_rmse_m", or_null(spread.ate_rmse_m)},
+                    {"changes", changes}});
+  }
+  return {{"spread", list}, {"rank_correlation", or_null(rank_of_truth(all))}};
+}
+
 }  // namespace mh

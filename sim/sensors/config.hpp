@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "sim/sensors/labels.hpp"
@@ -359,17 +360,20 @@ struct FeedConfig {
   int keep_every = 1;
   double stuck = 0.0;
   double jitter_ms = 0.0;
+  bool backward = false;
   friend bool operator==(const FeedConfig&, const FeedConfig&) = default;
 };
 
 template <MaybeConst<FeedConfig> C, class Visit>
 void fields(C& c, Visit& v) {
-  auto& [enabled, keep_every, stuck, jitter_ms] = c;
+  auto& [enabled, keep_every, stuck, jitter_ms, backward] = c;
   v("enabled", enabled, setting::kSwitch, "how frames are delivered");
   v("keep_every", keep_every, setting::kCount, "1: all frames, 2: every second, ...");
   v("stuck", stuck, setting::kShare, "share of frames with the images of the frame before");
   v("jitter_ms", jitter_ms, {0, 1000},
     "standard deviation of the stamps' errors; stamps still increase");
+  v("backward", backward, setting::kSwitch,
+    "the last frame comes first, as if the camera had gone back; without other senses");
 }
 
 /// The calibration that is handed over with the frames, where it is wrong. The images stay.
@@ -509,8 +513,11 @@ void for_each_setting(C& config, Visit&& visit) {
   for_each_setting(labels, visit);
 }
 
-/// Checks what holds between fields. @throws InputError naming the section
-void check_together(const SensorConfig& config);
+/// What does not fit together in a level: a section and why.
+struct Contradiction {
+  const char *section, *why;
+};
+std::optional<Contradiction> contradiction_in(const SensorConfig& config);
 
 /// No noise at all: the default if no level is specified.
 SensorConfig exact_sensors();

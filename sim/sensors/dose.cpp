@@ -81,7 +81,8 @@ double read_dose(std::string_view dial, const YamlReader& value) {
 
 SensorConfig with_doses(SensorConfig level, std::span<const Dose> doses) {
   for (const Dose& dose : doses) set(level, dose);
-  check_together(level);
+  if (const auto wrong = contradiction_in(level))
+    throw InputError(fmt::format("{}: {}", wrong->section, wrong->why));
   return level;
 }
 

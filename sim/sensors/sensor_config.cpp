@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
 #include <string_view>
 
-#include <fmt/format.h>
-
 #include "sim/sensors/config.hpp"
-#include "slam/io/error.hpp"
 #include "slam/io/settings_io.hpp"
 #include "slam/io/text_file.hpp"
 
@@ -25,11 +23,12 @@ class LevelReader : public SettingsReader {
 
 }  // namespace
 
-void check_together(const SensorConfig& config) {
+std::optional<Contradiction> contradiction_in(const SensorConfig& config) {
   if (config.depth_noise.max_range_m <= config.depth_noise.min_range_m)
-    throw InputError("depth_noise: max_range_m must be above min_range_m");
+    return {{"depth_noise", "max_range_m must be above min_range_m"}};
   if (config.labels.persistent_share + config.labels.frame_share > 1.0)
-    throw InputError("label_noise: persistent_share and frame_share sum to more than 1");
+    return {{"label_noise", "persistent_share and frame_share sum to more than 1"}};
+  return std::nullopt;
 }
 
 SensorConfig exact_sensors() {
@@ -46,11 +45,7 @@ SensorConfig parse_sensor_config(const std::string& text, const std::string& nam
   LevelReader reader(level);
   for_each_setting(config, reader);
   reader.finish();
-  try {
-    check_together(config);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", name, error.what()));
-  }
+  if (const auto wrong = contradiction_in(config)) level.at(wrong->section).fail(wrong->why);
   level.finish();
   return config;
 }

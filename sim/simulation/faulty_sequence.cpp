@@ -67,52 +67,63 @@ class FaultyFeed : public Sequence {
       camera_.cy_px += level.told.center_px;
       camera_.distortion.k1 += level.told.k1;
     }
-    for (std::size_t i = 0; i < frames_->size(); ++i) {
-      const bool is_stuck =
-          i > 0 && level.feed.enabled && kFeed.fork(kStuck).uniform(i) < level.feed.stuck;
-      shown_.push_back(is_stuck ? shown_.back() : i);
+    const FeedConfig feed = level.feed.enabled ? level.feed : FeedConfig();
+    for (std::size_t i = 0; i < frames_->size(); ++i)
+      order_.push_back(feed.backward ? frames_->size() - 1 - i : i);
+    backward_ = feed.backward && !stamps_.empty();
+    if (backward_) {
+      const Stamp sum_ns = stamps_.front() + stamps_.back();
+      for (Stamp& stamp_ns : stamps_) stamp_ns = sum_ns - stamp_ns;
+      std::ranges::reverse(stamps_);
     }
-    if (level.feed.enabled && level.feed.jitter_ms > 0) shift_stamps(level.feed.jitter_ms);
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const bool is_stuck = i > 0 && kFeed.fork(kStuck).uniform(i) < feed.stuck;
+      shown_.push_back(is_stuck ? shown_.back() : order_[i]);
+    }
+    for (std::size_t i = 0; i < stamps_.size(); ++i)
+      stamps_[i] += std::llround(1e6 * feed.jitter_ms * kFeed.fork(kJitter).normal(i));
+    for (std::size_t i = 1; i < stamps_.size() && feed.jitter_ms > 0; ++i)
+      stamps_[i] = std::max(stamps_[i], stamps_[i - 1] + 1);
+    if (feed.jitter_ms > 0 || backward_) move_truth();
   }
 
   const Camera& camera() const override { return camera_; }
-  std::size_t size() const override { return shown_.size(); }
+  std::size_t size() const override { return order_.size(); }
   Stamp stamp_ns(std::size_t i) const override { return stamps_[i]; }
   const Trajectory* truth() const override { return truth_ ? &*truth_ : frames_->truth(); }
-  std::span<const ImuReading> imu() const override { return frames_->imu(); }
+  std::span<const ImuReading> imu() const override {
+    return backward_ ? std::span<const ImuReading>() : frames_->imu();
+  }
 
   RgbdFrame frame(std::size_t i, RandomStream noise) const override {
-    RgbdFrame frame = frames_->frame(i, noise);
-    if (shown_[i] != i) {
+    RgbdFrame frame = frames_->frame(order_[i], noise);
+    if (shown_[i] != order_[i]) {
       RgbdFrame before = frames_->frame(shown_[i], noise);
       frame.color = std::move(before.color);
       frame.depth_m = std::move(before.depth_m);
       frame.semantics = std::move(before.semantics);
     }
     frame.stamp_ns = stamps_[i];
+    if (backward_) frame.odom_from_camera.reset();
     return frame;
   }
 
  private:
-  /// Moves stamps at random, at most to just before the next; the true poses move along.
-  void shift_stamps(double sigma_ms) {
-    const std::vector<Stamp> right = stamps_;
-    for (std::size_t i = 0; i < stamps_.size(); ++i)
-      stamps_[i] += std::llround(1e6 * sigma_ms * kFeed.fork(kJitter).normal(i));
-    for (std::size_t i = 1; i < stamps_.size(); ++i)
-      stamps_[i] = std::max(stamps_[i], stamps_[i - 1] + 1);
+  /// Gives the true poses the stamps that the frames are delivered with.
+  void move_truth() {
     const Trajectory* poses = frames_->truth();
     if (poses == nullptr) return;
     truth_.emplace();
     constexpr Stamp kNear_ns = 20'000'000;
-    for (std::size_t i = 0; i < right.size(); ++i) {
-      const auto after = std::ranges::lower_bound(*poses, right[i], {}, &TimedPose::stamp_ns);
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const Stamp right_ns = frames_->stamp_ns(order_[i]);
+      const auto after = std::ranges::lower_bound(*poses, right_ns, {}, &TimedPose::stamp_ns);
       auto nearest = after;
       if (after != poses->begin() &&
           (after == poses->end() ||
-           right[i] - std::prev(after)->stamp_ns < after->stamp_ns - right[i]))
+           right_ns - std::prev(after)->stamp_ns < after->stamp_ns - right_ns))
         nearest = std::prev(after);
-      if (nearest != poses->end() && std::abs(nearest->stamp_ns - right[i]) <= kNear_ns)
+      if (nearest != poses->end() && std::abs(nearest->stamp_ns - right_ns) <= kNear_ns)
         truth_->push_back({stamps_[i], nearest->world_from_camera});
     }
   }
@@ -120,7 +131,9 @@ class FaultyFeed : public Sequence {
   std::shared_ptr<const Sequence> frames_;
   Camera camera_;
   std::vector<Stamp> stamps_;
-  std::vector<std::size_t> shown_;  ///< the frame whose images each frame has
+  std::vector<std::size_t> order_;  ///< the frame that each is
+  std::vector<std::size_t> shown_;  ///< the frame whose images each has
+  bool backward_ = false;
   std::optional<Trajectory> truth_;
 };
 
@@ -148,7 +161,8 @@ std::vector<std::string> faults_of_scene(const SensorConfig& level) {
 std::shared_ptr<const Sequence> with_feed_faults(std::shared_ptr<const Sequence> frames,
                                                  const SensorConfig& level) {
   const FeedConfig& feed = level.feed;
-  if (!level.told.enabled && !(feed.enabled && (feed.stuck > 0 || feed.jitter_ms > 0)))
+  if (!level.told.enabled &&
+      !(feed.enabled && (feed.stuck > 0 || feed.jitter_ms > 0 || feed.backward)))
     return frames;
   return std::make_shared<FaultyFeed>(std::move(frames), level);
 }

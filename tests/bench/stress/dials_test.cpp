@@ -145,6 +145,24 @@ TEST(Dials, WrongStampsMoveTheTruthAlong) {
   EXPECT_TRUE(moved);
 }
 
+TEST(Dials, BackwardIsTheSameFramesInTheOtherOrder) {
+  const SmallRoom room;
+  const auto forward = room.recording(exact_sensors());
+  const auto back = with_feed_faults(
+      forward, with_doses(exact_sensors(), std::vector<Dose>{{"feed.backward", 1}}));
+  const std::size_t n = forward->size();
+  ASSERT_EQ(back->size(), n);
+  EXPECT_EQ(back->stamp_ns(0), forward->stamp_ns(0));
+  for (std::size_t i = 0; i < n; ++i) {
+    const RgbdFrame frame = back->frame(i, room.noise());
+    EXPECT_EQ(frame.color, forward->frame(n - 1 - i, room.noise()).color);
+    EXPECT_EQ((*back->truth())[i].stamp_ns, frame.stamp_ns);
+    EXPECT_EQ((*back->truth())[i].world_from_camera.numbers(),
+              (*forward->truth())[n - 1 - i].world_from_camera.numbers());
+    if (i > 0) EXPECT_GT(back->stamp_ns(i), back->stamp_ns(i - 1));
+  }
+}
+
 TEST(Doses, AreRefusedByNameAndRange) {
   const auto why = [](const std::string& dial, double value) -> std::string {
     try {

@@ -542,9 +542,9 @@ std::vector<LevelNumber> level_numbers() {
        [](const C& c) { return c.lens_distortion.lens.p2; }},
       {"lens_distortion", "k3", -2, 2, false, "",
        [](const C& c) { return c.lens_distortion.lens.k3; }},
-      {"motion_blur", "exposure_ms", 0, 1000, true, "",
+      {"motion_blur", "exposure_ms", 0, 1000, false, "",
        [](const C& c) { return c.motion_blur.exposure_s(); }, 1e-3},
-      {"rolling_shutter", "readout_ms", 0, 1000, true, "",
+      {"rolling_shutter", "readout_ms", 0, 1000, false, "",
        [](const C& c) { return c.rolling_shutter.readout_s(); }, 1e-3},
       {"depth_offset", "offset_ms", -1000, 1000, false, "",
        [](const C& c) { return c.depth_offset.offset_s(); }, 1e-3},
@@ -572,6 +572,16 @@ std::vector<LevelNumber> level_numbers() {
        [](const C& c) { return c.labels.detector.recall_medium; }},
       {"detector", "recall_large", 0, 1, false, "",
        [](const C& c) { return c.labels.detector.recall_large; }},
+      {"light", "share", 0, 1, false, "", [](const C& c) { return c.light.share; }},
+      {"lens_dirt", "share", 0, 1, false, "", [](const C& c) { return c.lens_dirt.share; }},
+      {"depth_faults", "noise", 0, 1000, false, "", [](const C& c) { return c.depth_faults.noise; }},
+      {"depth_faults", "edges", 0, 100, false, "", [](const C& c) { return c.depth_faults.edges; }},
+      {"depth_faults", "holes", 0, 1, false, "", [](const C& c) { return c.depth_faults.holes; }},
+      {"feed", "stuck", 0, 1, false, "", [](const C& c) { return c.feed.stuck; }},
+      {"feed", "jitter_ms", 0, 1000, false, "", [](const C& c) { return c.feed.jitter_ms; }},
+      {"told", "focal", 0.2, 5, false, "", [](const C& c) { return c.told.focal; }},
+      {"told", "center_px", -1000, 1000, false, "", [](const C& c) { return c.told.center_px; }},
+      {"told", "k1", -1, 1, false, "", [](const C& c) { return c.told.k1; }},
       {"detector", "confusion", 0, 1, false, "",
        [](const C& c) { return c.labels.detector.confusion; }},
       {"detector", "false_alarms", 0, 8, false, "",
@@ -636,7 +646,7 @@ TEST(SensorLevels, BadFilesAreNamedWithLineAndValue) {
     EXPECT_NE(reported.find(named), std::string::npos) << reported;
   };
   third_line("motion_blur: {exposure_s: 0.02}", "exposure_s");
-  third_line("motion_blur: {exposure_ms: 0}", "exposure_ms: 0 is outside (0, 1000]");
+  third_line("motion_blur: {exposure_ms: -1}", "exposure_ms: -1 is outside [0, 1000]");
   third_line("motion_blur: {exposure_ms: 2000}", "2000");
   third_line("rolling_shutter: {readout_ms: -1}", "-1");
   third_line("shot_noise: {well_e: 0}", "well_e");
