@@ -299,7 +299,8 @@ std::string spread_text(const std::vector<Spread>& all) {
   if (all.empty()) return "";
   std::vector<std::string> names = {"environment", "system", "median"};
   for (const Spread::Change& change : all.front().changes) names.push_back(change.name);
-  const bool known = std::ranges::any_of(all, [](const Spread& s) { return s.ate_rmse_m; });
+  const bool known =
+      std::ranges::any_of(all, [](const Spread& s) { return s.ate_rmse_m.has_value(); });
   if (known) names.emplace_back("true error");
   const auto cm = [](const std::optional<double>& m) {
     return m ? fmt::format("{:.2f}", 100 * *m) : "-";
