@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBefore = 2;  // frames before one that count with it
-constexpr double kWorst[] = {0.02, 0.05, 0.1, 0.2, 0.3};
+constexpr int kWorst_percent = 30;
 
 double& of(FrameFactors& factors, Factor factor) {
   return factors[static_cast<std::size_t>(factor)];
@@ -235,7 +235,8 @@ std::vector<RelativeRisk> rank_factors(const std::vector<JudgedFrame>& frames) {
     else
       std::ranges::sort(values);
     std::optional<RelativeRisk> best;
-    for (const double share : kWorst) {
+    for (int percent = 1; percent <= kWorst_percent; ++percent) {
+      const double share = 0.01 * percent;
       const double limit =
           values[static_cast<std::size_t>(share * static_cast<double>(values.size()))];
       const RelativeRisk risk = risk_beyond(frames, factor, limit);

@@ -47,8 +47,8 @@ struct RelativeRisk {
   double ratio = 1, low = 0, high = 0;  ///< 95 % interval (Katz et al., 1978)
 };
 
-/// Each factor at the limit, among the worst 2, 5, 10, 20 and 30 % of the frames, that separates
-/// best; ordered by the lower end of the interval. Empty if no frame failed or all did.
+/// Each factor at the limit, within the worst 30 % of the frames, that separates best; ordered by
+/// the lower end of the interval. Empty if no frame failed or all did.
 std::vector<RelativeRisk> rank_factors(const std::vector<JudgedFrame>& frames);
 
 /// What was seen of one system, over all of its runs.
