@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """`modelhouse stress` finds what systems stand that return the truth until a known dose, and nothing beyond."""
+import hashlib
 import json
 import pathlib
 import subprocess
 import tempfile
 import unittest
 
+import modelhouse as mh
 from tests.python.tools import CACHE, PROGRAM, ROOM
 
-ORACLE = """import sys
+ORACLE = """import hashlib
+import json
+import sys
 import numpy as np
 from modelhouse import System, serve
 
-POSES = {}
-for line in open(sys.argv[1]):
-    if not line.startswith("#"):
-        stamp, *pose = line.split()
-        POSES[round(1000 * float(stamp))] = [float(number) for number in pose]
+POSES = json.load(open("answers.json"))  # by image: a query comes at another time than it was seen
 
 
 class Oracle(System):
     def track(self, frame):
         missing = np.mean(frame.depth == 0)
-        longer = self.camera.fx / float(sys.argv[3]) - 1
-        if {"depth": missing > 0.35, "focal": longer > 0.02}[sys.argv[2]]:
+        longer = self.camera.fx / float(sys.argv[2]) - 1
+        if {"depth": missing > 0.35, "focal": longer > 0.02}[sys.argv[1]]:
             return None
-        return POSES[round(1000 * frame.stamp)]
+        return POSES[hashlib.sha1(frame.color.tobytes()).hexdigest()]
 
     relocalize = track
 
@@ -42,8 +42,8 @@ trials: 1
 seed: 0
 protocol: {{test_interval: 5, max_effort: 1}}
 systems:
-- {{name: depth, protocol: conversation, command: "/usr/bin/python3 oracle.py truth.txt depth {fx}"}}
-- {{name: focal, protocol: conversation, command: "/usr/bin/python3 oracle.py truth.txt focal {fx}"}}
+- {{name: depth, protocol: conversation, command: "/usr/bin/python3 oracle.py depth {fx}"}}
+- {{name: focal, protocol: conversation, command: "/usr/bin/python3 oracle.py focal {fx}"}}
 stress:
   steps: 5
   dials:
@@ -58,13 +58,14 @@ class StressTest(unittest.TestCase):
             folder = pathlib.Path(folder)
             run = lambda *words: subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=True)
             run("render", ROOM, "--motion", "handheld:0:40", "--robot", "pepper", "--out", folder / "seen")
-            (folder / "truth.txt").write_text((folder / "seen/groundtruth.txt").read_text())
-            calibration = (folder / "seen/camera.yaml").read_text()
-            fx = next(line.split(":")[1].split("#")[0].strip() for line in calibration.splitlines()
-                      if line.strip().startswith("fx"))
+            seen = mh.open_sequence(f"tum:{folder / 'seen'}")
+            (folder / "answers.json").write_text(json.dumps(
+                {hashlib.sha1(frame.color.tobytes()).hexdigest(): mh.system.numbers(pose)
+                 for frame, pose in zip(seen, seen.truth.poses)}))
+            fx = mh.Simulation(ROOM, cache=CACHE).camera.fx
             (folder / "oracle.py").write_text(ORACLE)
             (folder / "suite.yaml").write_text(SUITE.format(room=ROOM, fx=fx))
-            run("stress", folder / "suite.yaml", "--out", folder / "out", "--cache", CACHE, "--jobs", "2")
+            run("stress", folder / "suite.yaml", "--out", folder / "out", "--cache", CACHE)
             sheet = json.loads((folder / "out/stress.json").read_text())
             found = {(dial["dial"], system["system"]): system
                      for dial in sheet["dials"] for system in dial["systems"]}
