@@ -68,6 +68,7 @@ void run(StressArguments options) {
   if (!of_recording) resolve(options.suite, Shipped::kSuite);
   if (!of_recording && !options.settings.empty())
     throw InputError("--settings: is for a recording; a suite names its own");
+  resolve(options.settings, Shipped::kSettings);
   options.spread = options.spread || of_recording;
   Suite suite = of_recording ? suite_of_recording(options.suite, options.settings)
                              : load_suite(options.suite, overrides);
@@ -138,7 +139,8 @@ void add_stress(CLI::App& app) {
   command->add_flag("--spread", options->spread,
                     "Without truth: how far answers move under changes that should not matter");
   command->add_option("--settings", options->settings,
-                      "Calibration of a recording (default: beside its frames)");
+                      "Calibration of a recording (YAML), or the name of a shipped one (default: "
+                      "beside its frames)");
   command->add_flag("--json", options->json, "Prints stress.json instead of the table");
   command->footer(
       "Examples:\n  modelhouse stress --budget 30m --jobs 2\n"

@@ -101,8 +101,9 @@ std::vector<std::vector<std::string>> rows_of(const Suite& suite, const StressRe
 
 std::string title(const Suite& suite) {
   const bool correct = suite.stress->measure == StressMeasure::kCorrect;
+  const std::string placed = fmt::format("frames placed within {:g} m", suite.stress->near_m);
   return fmt::format("{}: the dose at which {} fall to {:g} % of what they are without the fault",
-                     suite.name, correct ? "correct answers" : "frames with a pose",
+                     suite.name, correct ? "correct answers" : placed.c_str(),
                      100 * suite.stress->bar);
 }
 
@@ -187,6 +188,7 @@ Json stress_json(const Suite& suite, const StressResults& results) {
                       : point.breaks == Breaks::kAtDose ? "at"
                       : point.breaks == Breaks::kNever  ? "never"
                                                         : "without"},
+           {"error", curve->error.empty() ? Json() : Json(curve->error)},
            {"at", breaks ? Json(shown_at(dial, point.at)) : Json()},
            {"interval", breaks ? Json{std::min(low, high), std::max(low, high)} : Json()},
            {"times_usual", breaks && dial.usual && *dial.usual != dial.from
@@ -230,7 +232,15 @@ PlotPage stress_plots(const Suite& suite, const StressResults& results) {
                 .plots = {}};
   for (std::size_t d = 0; d < results.dials_reached; ++d) {
     const StressDial& dial = suite.stress->dials[d];
-    Plot plot{.title = dial.name, .x_label = dial.unit, .y_label = "share left", .series = {}};
+    const bool in_log = dial.scale == DoseScale::kLog;
+    const auto x_of = [&](double dose) {
+      const double shown = shown_dose(dial, dose);
+      return in_log ? std::log10(shown) : shown;
+    };
+    Plot plot{.title = dial.name,
+              .x_label = (in_log ? "log10: " : "") + dial.unit,
+              .y_label = "share left",
+              .series = {}};
     for (std::size_t s = 0; s < suite.systems.size(); ++s) {
       const StressCurve* curve = curve_of(results, d, s);
       Series line{.name = suite.systems[s].name, .dots = false, .points = {}},
@@ -241,7 +251,7 @@ PlotPage stress_plots(const Suite& suite, const StressResults& results) {
           for (const StressedAt& at : curve->doses) shares.push_back(at.result.share() / whole);
           const std::vector<double> smooth = never_rising(shares);
           for (std::size_t i = 0; i < shares.size(); ++i) {
-            const double x = shown_dose(dial, curve->doses[i].dose);
+            const double x = x_of(curve->doses[i].dose);
             line.points.push_back({x, smooth[i]});
             dots.points.push_back({x, shares[i]});
           }
@@ -249,7 +259,7 @@ PlotPage stress_plots(const Suite& suite, const StressResults& results) {
       plot.series.push_back(std::move(line));
       plot.series.push_back(std::move(dots));
     }
-    const double first = shown_dose(dial, dial.from), last = shown_dose(dial, dial.to);
+    const double first = x_of(dial.from), last = x_of(dial.to);
     plot.x_range = {std::min(first, last), std::max(first, last)};
     plot.y_range = {0, 1.2};
     page.plots.push_back(std::move(plot));

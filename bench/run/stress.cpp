@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/protocol/metrics/alignment.hpp"
 #include "bench/protocol/metrics/averages.hpp"
+#include "bench/protocol/metrics/trajectory_score.hpp"
 #include "bench/suite/stress_spec.hpp"
 #include "slam/io/error.hpp"
 
@@ -26,6 +28,20 @@ void require_stressable(const Suite& suite) {
   if (!suite.sweep.points.empty())
     refuse("parameters: the dials of `stress` are turned, not these");
   if (suite.episodes || suite.graded) refuse("a stress test has neither `episodes` nor `graded`");
+}
+
+/// The number of frames whose pose is near the truth, after alignment of the whole path.
+double placed_right(const RunResult& run, double near_m) {
+  const MatchedTrajectories matched = match_by_stamp(run.truth, run.estimate);
+  const SE3 truth_from_estimate = align_estimate(run.estimate, run.truth).truth_from_estimate;
+  double right = 0;
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    const SE3 placed = truth_from_estimate * matched.estimate[i].world_from_camera;
+    const double error_m =
+        (placed.translation() - matched.truth[i].world_from_camera.translation()).norm();
+    if (error_m <= near_m) ++right;
+  }
+  return right;
 }
 
 /// One system's share of right answers in each room at a dose.
@@ -48,8 +64,8 @@ StressedAt stressed_at(const Suite& suite, const std::string& system, const Benc
       offered += run.trajectory.offered;
       tracked += run.trajectory.tracked;
       if (run.trajectory.ate_rmse_m) errors_m.push_back(*run.trajectory.ate_rmse_m);
-      if (suite.stress->measure == StressMeasure::kCompleteness) {
-        right += run.trajectory.tracked;
+      if (suite.stress->measure == StressMeasure::kPlaced) {
+        right += placed_right(run, suite.stress->near_m);
         asked += run.trajectory.offered;
       } else {
         for (const QueryScore& query : run.points.front().held_out) {

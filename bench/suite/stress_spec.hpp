@@ -48,15 +48,18 @@ void fields(D& d, Visit& v) {
   v("source", source, {}, "of that figure");
 }
 
-/// What a system is judged by while it is stressed.
-enum class StressMeasure { kCorrect, kCompleteness };
+/// What a system is judged by while it is stressed: frames of the mapped path that it placed right,
+/// or correct answers to held-out queries. The latter are judged by the map around them, so that
+/// they hardly see a wrong scale.
+enum class StressMeasure { kPlaced, kCorrect };
 constexpr Names<StressMeasure, 2> words(StressMeasure) {
-  return {{{"correct", StressMeasure::kCorrect}, {"completeness", StressMeasure::kCompleteness}}};
+  return {{{"placed", StressMeasure::kPlaced}, {"correct", StressMeasure::kCorrect}}};
 }
 
 /// The section `stress` of a suite: how much can each system stand?
 struct StressSpec {
-  StressMeasure measure = StressMeasure::kCorrect;
+  StressMeasure measure = StressMeasure::kPlaced;
+  double near_m = 0.05;
   double bar = 0.5;
   int steps = 4;
   std::vector<StressDial> dials;
@@ -64,10 +67,12 @@ struct StressSpec {
 
 template <MaybeConst<StressSpec> S, class Visit>
 void fields(S& s, Visit& v) {
-  auto& [measure, bar, steps, dials] = s;
+  auto& [measure, near_m, bar, steps, dials] = s;
   (void)dials;
   v("measure", measure, {},
-    "share of correct answers to held-out queries, or of frames with a pose");
+    "share of the frames with a pose near the truth, or of held-out queries answered correctly");
+  v("near_m", near_m, setting::above(0, 100),
+    "`placed`: a frame is placed right within this distance, after alignment of the whole path");
   v("bar", bar, setting::above(0, 1),
     "a system is broken where its share is below this part of its share without the fault");
   v("steps", steps, {1, 12}, "bisections of a dial's range");

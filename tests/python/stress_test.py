@@ -45,6 +45,7 @@ systems:
 - {{name: depth, protocol: conversation, command: "/usr/bin/python3 oracle.py depth {fx}"}}
 - {{name: focal, protocol: conversation, command: "/usr/bin/python3 oracle.py focal {fx}"}}
 stress:
+  measure: correct
   steps: 5
   dials:
     depth_faults.holes: {{from: 0, to: 0.9}}
