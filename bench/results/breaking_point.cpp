@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "slam/core/random.hpp"
 
@@ -51,6 +53,13 @@ std::vector<DoseResult> resampled(std::span<const DoseResult> doses,
   std::vector<DoseResult> some;
   for (const DoseResult& dose : doses) some.push_back(of_rooms(dose, rooms));
   return some;
+}
+
+/// The doses between which a share of the range lies.
+std::pair<double, double> bracket_of(std::span<const DoseResult> doses, double at) {
+  for (std::size_t i = 1; i < doses.size(); ++i)
+    if (doses[i - 1].at <= at && at <= doses[i].at) return {doses[i - 1].at, doses[i].at};
+  return {at, at};
 }
 
 /// The value below which a share of the sorted values lies.
@@ -116,12 +125,9 @@ BreakingPoint breaking_point(std::span<const DoseResult> doses, double bar, std:
   point.low = std::min(quantile(drawn, 0.025), point.at);
   point.high = std::max(quantile(drawn, 0.975), point.at);
   if (!at) return point;
-  for (std::size_t i = 1; i < doses.size(); ++i)
-    if (doses[i - 1].at <= *at && *at <= doses[i].at) {
-      point.low = std::min(point.low, doses[i - 1].at);
-      point.high = std::max(point.high, doses[i].at);
-      break;
-    }
+  const auto [low, high] = bracket_of(doses, *at);
+  point.low = std::min(point.low, low);
+  point.high = std::max(point.high, high);
   return point;
 }
 
@@ -144,7 +150,13 @@ std::optional<BreakingRatio> compare_breaking(std::span<const DoseResult> first,
   }
   if (drawn.empty()) return std::nullopt;
   std::ranges::sort(drawn);
-  return BreakingRatio{ratio_of(*a, *b), quantile(drawn, 0.025), quantile(drawn, 0.975)};
+  BreakingRatio ratio{ratio_of(*a, *b), quantile(drawn, 0.025), quantile(drawn, 0.975)};
+  const auto [a_low, a_high] = bracket_of(first, *a);
+  const auto [b_low, b_high] = bracket_of(second, *b);
+  if (b_high > 0) ratio.low = std::min(ratio.low, ratio_of(a_low, b_high));
+  ratio.high = b_low > 0 || factor > 0 ? std::max(ratio.high, ratio_of(a_high, b_low))
+                                       : std::numeric_limits<double>::infinity();
+  return ratio;
 }
 
 }  // namespace mh

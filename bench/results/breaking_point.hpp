@@ -40,7 +40,8 @@ struct BreakingPoint {
 BreakingPoint breaking_point(std::span<const DoseResult> doses, double bar, std::uint64_t seed);
 
 /// The ratio of two systems' breaking points with its 95 % interval; rooms are resampled for both
-/// together. nullopt unless both break at a dose.
+/// together, and the interval covers what the two brackets leave open. nullopt unless both break at
+/// a dose.
 /// @param factor  0 for a linear dial: the ratio of the distances from no fault; otherwise the
 ///                factor from no fault to the strongest dose, at least 1: the ratio of the factors
 struct BreakingRatio {

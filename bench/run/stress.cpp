@@ -78,6 +78,8 @@ StressedAt stressed_at(const Suite& suite, const std::string& system, const Benc
     at.result.right.push_back(right);
     at.result.asked.push_back(asked);
   }
+  if (std::accumulate(at.result.asked.begin(), at.result.asked.end(), 0.0) == 0 && share == 0)
+    at.error = "nothing is asked: no frame is held out, or it answers no queries; use `placed`";
   at.completeness = offered > 0 ? tracked / offered : 0;
   if (!errors_m.empty()) at.ate_rmse_m = median(std::move(errors_m));
   return at;
@@ -115,6 +117,7 @@ StressResults find_breaking_points(const Suite& suite, const RunAtDose& run,
            std::chrono::duration<double>(Clock::now() - start).count() > options.budget_s;
   };
   StressResults results;
+  std::vector<std::string> fails(suite.systems.size());  // why a system fails without any fault
   for (std::size_t d = 0; d < spec.dials.size() && !is_late(); ++d) {
     const StressDial& dial = spec.dials[d];
     std::vector<Search> searches(suite.systems.size());
@@ -126,7 +129,12 @@ StressResults find_breaking_points(const Suite& suite, const RunAtDose& run,
     };
     std::vector<std::size_t> standing(suite.systems.size());
     std::iota(standing.begin(), standing.end(), std::size_t{0});
-    run_at(standing, dial.from, false);
+    std::erase_if(standing, [&](std::size_t s) {
+      searches[s].curve.error = fails[s];
+      return !fails[s].empty();
+    });
+    if (!standing.empty()) run_at(standing, dial.from, false);
+    for (const std::size_t s : standing) fails[s] = searches[s].curve.error;
     std::erase_if(standing, [&](std::size_t s) {
       Search& search = searches[s];
       if (!search.done) search.bar = spec.bar * search.curve.doses.front().result.share();

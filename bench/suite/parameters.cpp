@@ -17,21 +17,21 @@ namespace {
 
 constexpr Names<SweepMap, 2> kMaps{{{"fixed", SweepMap::kFixed}, {"rebuilt", SweepMap::kRebuilt}}};
 constexpr std::size_t kMaxPoints = 10000;
+constexpr std::string_view kLevelPrefix = "level.";
 
 /// @throws InputError at the value's place unless the name is that of a setting that can be varied.
 void check_varied(const std::string& name, const YamlReader& place, SweepMap map) {
+  if (is_dial(name))
+    place.fail(fmt::format("is a dial of the level: name it '{}{}'", kLevelPrefix, name));
   if (!is_setting(name))
     place.fail("is not a setting of SLAM" + hint(name, setting_names(), "`slam --print-settings`"));
   if (map == SweepMap::kFixed && !name.starts_with("semantics."))
     place.fail("decides the map, too: it needs `map: rebuilt`");
 }
 
-constexpr std::string_view kLevelPrefix = "level.";
-
 /// Multiplies the combinations by the listed values of a dial of the level.
 void read_doses(const std::string& dial, const YamlReader& list, Sweep& sweep) {
-  if (!is_dial(dial))
-    list.fail("is no dial of a level" + hint(dial, dial_names(), "docs/reference/sensors.md"));
+  if (!is_dial(dial)) list.fail(no_dial(dial));
   if (sweep.map == SweepMap::kFixed) list.fail("decides the map, too: it needs `map: rebuilt`");
   std::vector<double> values;
   for (const YamlReader& item : items_of(list)) values.push_back(read_dose(dial, item));

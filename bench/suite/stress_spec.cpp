@@ -13,8 +13,7 @@ namespace mh {
 namespace {
 
 StressDial read_dial(const std::string& name, YamlReader node) {
-  if (!is_dial(name))
-    node.fail("is no dial of a level" + hint(name, dial_names(), "docs/reference/sensors.md"));
+  if (!is_dial(name)) node.fail(no_dial(name));
   StressDial dial;
   dial.dial = dial.name = name;
   MappingReader reader(node);
@@ -25,6 +24,14 @@ StressDial read_dial(const std::string& name, YamlReader node) {
       node.at(node.has(key) ? key : "to")
           .fail(fmt::format("{} is outside {}", dose, interval(range)));
   }
+  const DialFacts facts = facts_of_dial(name);
+  if (facts.whole && (dial.from != std::floor(dial.from) || dial.to != std::floor(dial.to)))
+    node.fail("takes whole numbers only");
+  if (dial.times == 0) node.at("times").fail("0 would show every dose as the same");
+  if (dial.usual && !allows(facts.range, *dial.usual))
+    node.at("usual").fail(fmt::format("{} is outside {}", *dial.usual, interval(facts.range)));
+  if (!dial.usual && !dial.source.empty())
+    node.at("source").fail("is of `usual`, which is missing");
   if (dial.from == dial.to) node.at("to").fail("is no fault: it equals `from`");
   if (dial.scale == DoseScale::kLog && (dial.from <= 0 || dial.to <= 0))
     node.at("scale").fail("log: needs doses above 0");

@@ -104,6 +104,32 @@ std::vector<Level> read_levels(YamlReader& yaml, const SuitePaths& paths, const 
   return levels;
 }
 
+/// Checks the dials of a stress test at the suite's levels: no fault is no fault, the strongest
+/// dose is possible. @throws InputError at the dial
+void check_doses(YamlReader& stress, const Suite& suite) {
+  for (const StressDial& dial : suite.stress->dials) {
+    const YamlReader node = stress.at("dials").at(dial.dial.c_str());
+    for (const Level& level : suite.levels) {
+      const auto at = [&](double dose) {
+        Level dosed = level;
+        dosed.doses.push_back({dial.dial, dose});
+        try {
+          return sensors_at(dosed);
+        } catch (const InputError& error) {
+          node.fail(error.what());
+        }
+      };
+      if (level.of_recordings)
+        if (const auto faults = faults_of_scene(at(dial.to)); !faults.empty())
+          node.fail(fmt::format("cannot be added to a recording: {}", fmt::join(faults, "; ")));
+      at(dial.to);
+      if (!(effective(at(dial.from)) == effective(sensors_at(level))))
+        node.fail(fmt::format("from: {} is not what level '{}' has: it would be a fault itself",
+                              dial.from, level_name(level)));
+    }
+  }
+}
+
 /// Each level with each combination of doses.
 std::vector<Level> dosed(const std::vector<Level>& levels,
                          const std::vector<std::vector<Dose>>& combinations) {
@@ -345,7 +371,10 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
       if (e.is_recorded())
         episodes->fail(fmt::format("a robot drives in a scene, but '{}' is a recording", e.name));
   }
-  if (const auto stress = yaml.find("stress")) suite.stress = read_stress(*stress);
+  if (const auto stress = yaml.find("stress")) {
+    suite.stress = read_stress(*stress);
+    if (files_must_exist) check_doses(*stress, suite);
+  }
   if (const auto check = yaml.find("check")) {
     std::vector<std::string> names_of_all;
     for (const Environment& e : suite.environments) names_of_all.push_back(e.name);

@@ -28,6 +28,8 @@ void fields(D& dose, Visit& v) {
 /// The full names of all settings of a level that are numbers or switches.
 std::vector<std::string> dial_names();
 bool is_dial(std::string_view name);
+/// Why a name is refused: "is no dial of a level; did you mean ...".
+std::string no_dial(std::string_view name);
 /// What the dial means, and the values that it may have. @pre is_dial()
 struct DialFacts {
   std::string meaning;
@@ -40,7 +42,12 @@ DialFacts facts_of_dial(std::string_view name);
 double read_dose(std::string_view dial, const YamlReader& value);
 
 /// Returns the level with the doses set. A section of which a field is set is on.
-/// @throws InputError if a dose is unknown or out of range, or two settings contradict each other
+/// @throws InputError if a dose is unknown, out of range, or a fraction where whole numbers are
+///                    needed, or if two settings contradict each other
 SensorConfig with_doses(SensorConfig level, std::span<const Dose> doses);
+
+/// The level with every section off that has no effect: two levels with equal results for any frame
+/// are equal in this form, if they differ only in settings that do nothing.
+SensorConfig effective(SensorConfig level);
 
 }  // namespace mh
