@@ -51,20 +51,33 @@ SensorConfig level_of(DegradeArguments& options) {
   return sensors_at(level);
 }
 
+/// @throws InputError if the folder holds a recording, so that nothing is overwritten
+void refuse_older(const DegradeArguments& options) {
+  const std::filesystem::path out = options.out;
+  for (const char* part : {"rgb.txt", "associations.txt", "groundtruth.txt", "level.yaml"})
+    if (std::filesystem::exists(out / part))
+      throw InputError(fmt::format("{}: already holds a recording ({}); name another folder",
+                                   out.string(), part));
+}
+
 void run(DegradeArguments options) {
   const SensorConfig level = level_of(options);
-  if (level == exact_sensors())
+  if (effective(level) == effective(exact_sensors()))
     throw InputError("changes nothing: name a --level, or a --dose of one of its dials");
   options.source.check();
   if (options.source.is_scene())
     throw InputError("degrades recordings; for a scene, use `render --level`");
+  refuse_older(options);
   Source source = open_source(options.source);
+  const std::size_t recorded = source.frames->size();
   const std::shared_ptr<const Sequence> frames = degraded(std::move(source.frames), level);
   const std::filesystem::path out = options.out;
   const OutputFolder folder(
       out, "degrade",
       {"rgb", "rgb.txt", "depth", "depth.txt", "label", "label.txt", "associations.txt",
        "groundtruth.txt", "camera.yaml", "camera_info.yaml", "level.yaml", FileChecksums::kName});
+  for (const char* images : {"rgb", "depth", "label"})  // of an interrupted run
+    std::filesystem::remove_all(out / images);
   Progress progress("degrade");
   const SignalWatch watch;
   TumWriter writer(out, frames->camera());
@@ -83,7 +96,7 @@ void run(DegradeArguments options) {
   if (const Trajectory* truth = frames->truth()) write_tum(out / "groundtruth.txt", *truth);
   write_atomically(out / "level.yaml", format_sensor_config(level));
   progress.end();
-  fmt::print("{}: {} of {} frames\n", out.string(), frames->size() - skipped, frames->size());
+  fmt::print("{}: {} of {} frames\n", out.string(), frames->size() - skipped, recorded);
 }
 
 }  // namespace

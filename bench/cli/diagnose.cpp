@@ -24,11 +24,17 @@ struct DiagnoseArguments {
 
 void run(const DiagnoseArguments& options) {
   const std::filesystem::path file = std::filesystem::path(options.results) / "results.sqlite";
+  if (!std::filesystem::is_directory(options.results))
+    throw InputError(fmt::format("{}: is no folder of `bench`", options.results));
   if (!std::filesystem::exists(file))
     throw InputError(fmt::format("{}: holds no results of `bench`", options.results));
   const Store store(file);
   const BenchResults results = load_results(store, store.planned_suite());
-  if (results.runs.empty()) throw InputError(fmt::format("{}: no run is done", options.results));
+  if (results.runs.empty())
+    throw InputError(
+        fmt::format("{}: no run of its suite is done; of a stress test, run the dose "
+                    "in question with `bench --vary level.DIAL=DOSE`",
+                    options.results));
   Progress progress("diagnose");
   const std::vector<Diagnosis> all =
       diagnose(results.runs, {.cache = usual_cache(options.cache),

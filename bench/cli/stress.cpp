@@ -110,6 +110,8 @@ void run(StressArguments options) {
   write_plots(out / "stress.png", stress_plots(suite, results));
   fmt::print("{}", options.json ? json : text);
   if (!options.json) fmt::print("  more: {}\n", (out / "stress.html").string());
+  for (const StressCurve& curve : results.curves)
+    if (!curve.error.empty() && curve.doses.empty()) throw MachineError(curve.error);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -117,10 +118,22 @@ std::string notes(const Suite& suite, const StressResults& results) {
       text += fmt::format("{} {}", d == results.dials_reached ? "" : ",", dials[d].name);
     text += "; the same command continues\n";
   }
+  std::set<std::string> said;
   for (const StressCurve& curve : results.curves)
-    if (!curve.error.empty())
-      text += fmt::format("  {} failed: {}\n", dials[curve.dial].name, curve.error);
+    if (!curve.error.empty() && said.insert(curve.error).second)
+      text += curve.doses.empty()
+                  ? fmt::format("  failed without any fault: {}\n", curve.error)
+                  : fmt::format("  {} failed: {}\n", dials[curve.dial].name, curve.error);
   return text;
+}
+
+/// A breaking point relative to the usual dose: of the distances from no fault or, for factors, of
+/// the factors.
+double times_usual(const StressDial& dial, double at) {
+  const double usual = share_of(dial, *dial.usual);
+  return dial.scale == DoseScale::kLog
+             ? std::pow(std::max(dial.to / dial.from, dial.from / dial.to), at - usual)
+             : at / usual;
 }
 
 std::string in_latex(const std::string& text) {
@@ -144,9 +157,12 @@ std::string in_html(const std::string& text) {
 std::string stress_text(const Suite& suite, const StressResults& results) {
   TextTable table(headings(suite), 2);
   for (std::vector<std::string>& row : rows_of(suite, results)) table.add(std::move(row));
-  return fmt::format("{}\n{}{}  {}; level {}; 95 % intervals over rooms\n", title(suite),
-                     table.text(), notes(suite, results),
-                     counted(suite.environments.size(), "room"), level_name(suite.levels.front()));
+  return fmt::format(
+      "{}\n{}{}  {}{}; level {}; seed {}; 95 % intervals over rooms; A : B is the ratio of their "
+      "breaking points\n",
+      title(suite), table.text(), notes(suite, results), counted(suite.environments.size(), "room"),
+      suite.max_frames ? fmt::format(", first {}", counted(*suite.max_frames, "frame")) : "",
+      level_name(suite.levels.front()), suite.seed);
 }
 
 std::string stress_latex(const Suite& suite, const StressResults& results) {
@@ -175,6 +191,7 @@ Json stress_json(const Suite& suite, const StressResults& results) {
       Json doses = Json::array();
       for (const StressedAt& at : curve->doses)
         doses.push_back({{"dose", at.dose},
+                         {"shown", shown_dose(dial, at.dose)},
                          {"share", at.result.share()},
                          {"right", at.result.right},
                          {"asked", at.result.asked},
@@ -192,8 +209,7 @@ Json stress_json(const Suite& suite, const StressResults& results) {
            {"at", breaks ? Json(shown_at(dial, point.at)) : Json()},
            {"interval", breaks ? Json{std::min(low, high), std::max(low, high)} : Json()},
            {"times_usual", breaks && dial.usual && *dial.usual != dial.from
-                               ? Json((shown_at(dial, point.at) - shown_dose(dial, dial.from)) /
-                                      (shown_dose(dial, *dial.usual) - shown_dose(dial, dial.from)))
+                               ? Json(times_usual(dial, point.at))
                                : Json()},
            {"doses", doses}});
     }
@@ -298,7 +314,8 @@ std::string stress_html(const Suite& suite, const StressResults& results,
       "th:nth-child(-n+2), td:nth-child(-n+2) {{ text-align: left; }}\n"
       "img {{ max-width: 100%; background: #fff; }} .wide {{ overflow-x: auto; }}\n"
       "</style></head><body>\n<h1>How much can it stand?</h1>\n<p>{1}, with 95 % intervals over "
-      "{2}. \"stands\": not broken by the strongest dose.</p>\n<div class=\"wide\"><table>\n{3}"
+      "{2}. \"stands\": not broken by the strongest dose. A : B: the ratio of their breaking "
+      "points.</p>\n<div class=\"wide\"><table>\n{3}"
       "</table></div>\n<pre>{4}</pre>\n<img src=\"{5}\" alt=\"what is left over the dose of each "
       "fault\">\n<h2>What is usual</h2>\n<ul>\n{6}</ul>\n</body></html>\n",
       in_html(suite.name), in_html(title(suite)), counted(suite.environments.size(), "room"), rows,

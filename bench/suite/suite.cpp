@@ -108,7 +108,7 @@ std::vector<Level> read_levels(YamlReader& yaml, const SuitePaths& paths, const 
 /// dose is possible. @throws InputError at the dial
 void check_doses(YamlReader& stress, const Suite& suite) {
   for (const StressDial& dial : suite.stress->dials) {
-    const YamlReader node = stress.at("dials").at(dial.dial.c_str());
+    const YamlReader node = YamlReader(stress.at("dials")).at(dial.dial);
     for (const Level& level : suite.levels) {
       const auto at = [&](double dose) {
         Level dosed = level;
