@@ -371,7 +371,7 @@ Suite parse_suite(const std::string& content, const fs::path& file, const SuiteO
       if (e.is_recorded())
         episodes->fail(fmt::format("a robot drives in a scene, but '{}' is a recording", e.name));
   }
-  if (const auto stress = yaml.find("stress")) {
+  if (auto stress = yaml.find("stress")) {
     suite.stress = read_stress(*stress);
     if (files_must_exist) check_doses(*stress, suite);
   }
