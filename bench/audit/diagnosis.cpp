@@ -14,6 +14,7 @@
 
 #include "bench/protocol/streams.hpp"
 #include "bench/protocol/world/world.hpp"
+#include "scenes/recordings/nearest_stamp.hpp"
 #include "slam/config/slam.hpp"
 #include "slam/features/features.hpp"
 #include "slam/io/counted.hpp"
@@ -55,35 +56,11 @@ void measure_image(const RgbdFrame& frame, FrameFactors& factors) {
       100.0 * static_cast<double>(seen) / static_cast<double>(frame.depth_m.size());
 }
 
-/// The true pose at a stamp, if one is within 20 ms.
-const TimedPose* pose_near(const Trajectory& truth, Stamp stamp_ns) {
-  constexpr Stamp kNear_ns = 20'000'000;
-  const auto after = std::ranges::lower_bound(truth, stamp_ns, {}, &TimedPose::stamp_ns);
-  const TimedPose* nearest = nullptr;
-  for (const auto at : {after, after == truth.begin() ? truth.end() : std::prev(after)})
-    if (at != truth.end() && std::abs(at->stamp_ns - stamp_ns) <= kNear_ns &&
-        (nearest == nullptr ||
-         std::abs(at->stamp_ns - stamp_ns) < std::abs(nearest->stamp_ns - stamp_ns)))
-      nearest = &*at;
-  return nearest;
-}
-
-void measure_motion(const Sequence& frames, std::size_t i, FrameFactors& factors) {
-  if (i == 0 || frames.truth() == nullptr) return;
-  const TimedPose *now = pose_near(*frames.truth(), frames.stamp_ns(i)),
-                  *before = pose_near(*frames.truth(), frames.stamp_ns(i - 1));
-  if (now == nullptr || before == nullptr || now->stamp_ns <= before->stamp_ns) return;
-  const double dt_s = 1e-9 * static_cast<double>(now->stamp_ns - before->stamp_ns);
-  const SE3 moved = before->world_from_camera.inverse() * now->world_from_camera;
-  of(factors, Factor::kTurn) =
-      Eigen::AngleAxisd(moved.rotation()).angle() * 180 / std::numbers::pi / dt_s;
-  of(factors, Factor::kSpeed) = moved.translation().norm() / dt_s;
-}
-
 /// The factors of the frames of a sequence, each made once.
 class MeasuredFrames {
  public:
-  MeasuredFrames(const Sequence& frames, RandomStream noise) : frames_(frames), noise_(noise) {}
+  MeasuredFrames(const Sequence& frames, RandomStream noise)
+      : frames_(frames), noise_(noise), known_(stamps_of_truth(frames)) {}
 
   /// The worst of this frame and those before it.
   FrameFactors at(std::size_t i) {
@@ -113,14 +90,36 @@ class MeasuredFrames {
       measure_image(frame, factors);
       of(factors, Factor::kKeypoints) =
           static_cast<double>(extract(frame, frames_.camera(), FeatureConfig()).size());
-      measure_motion(frames_, i, factors);
+      measure_motion(i, factors);
     } catch (const InputError&) {  // a damaged frame was shown to nobody
     }
     return factors;
   }
 
+  static std::vector<Stamp> stamps_of_truth(const Sequence& frames) {
+    std::vector<Stamp> stamps_ns;
+    if (frames.truth() != nullptr)
+      for (const TimedPose& pose : *frames.truth()) stamps_ns.push_back(pose.stamp_ns);
+    return stamps_ns;
+  }
+  /// Turn rate and speed since the frame before, where both have a true pose.
+  void measure_motion(std::size_t i, FrameFactors& factors) const {
+    if (i == 0) return;
+    const auto now = known_.nearest(frames_.stamp_ns(i)),
+               before = known_.nearest(frames_.stamp_ns(i - 1));
+    if (!now || !before) return;
+    const TimedPose &here = (*frames_.truth())[*now], &there = (*frames_.truth())[*before];
+    if (here.stamp_ns <= there.stamp_ns) return;
+    const double dt_s = 1e-9 * static_cast<double>(here.stamp_ns - there.stamp_ns);
+    const SE3 moved = there.world_from_camera.inverse() * here.world_from_camera;
+    of(factors, Factor::kTurn) =
+        Eigen::AngleAxisd(moved.rotation()).angle() * 180 / std::numbers::pi / dt_s;
+    of(factors, Factor::kSpeed) = moved.translation().norm() / dt_s;
+  }
+
   const Sequence& frames_;
   RandomStream noise_;
+  StampIndex known_;  ///< of the true poses
   std::map<std::size_t, FrameFactors> made_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "slam/core/trajectory_io.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
+#include "slam/io/number_in.hpp"
 
 namespace mh::cli {
 namespace {
@@ -37,16 +39,9 @@ SensorConfig level_of(DegradeArguments& options) {
   if (options.level != kRecordedLevel) resolve(options.level, Shipped::kLevel);
   Level level{.file = options.level, .of_recordings = true};
   for (const auto& [dial, value] : named_values("--dose", options.doses)) {
-    std::size_t read = 0;
-    double dose = 0;
-    try {
-      dose = std::stod(value, &read);
-    } catch (const std::exception&) {
-      read = 0;
-    }
-    if (read == 0 || read != value.size())
-      throw InputError(fmt::format("--dose {}={}: is no number", dial, value));
-    level.doses.push_back({dial, dose});
+    const std::optional<double> dose = number_in(value);
+    if (!dose) throw InputError(fmt::format("--dose {}={}: is no number", dial, value));
+    level.doses.push_back({dial, *dose});
   }
   return sensors_at(level);
 }

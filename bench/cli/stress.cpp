@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "scenes/recordings/open_sequence.hpp"
 #include "slam/io/error.hpp"
 #include "slam/io/files.hpp"
+#include "slam/io/number_in.hpp"
 
 namespace mh::cli {
 namespace {
@@ -40,17 +42,11 @@ double seconds_of(const std::string& budget) {
   if (budget.empty()) return 0;
   const std::string units = "smh";
   const std::size_t unit = units.find(budget.back());
-  std::size_t read = 0;
-  double number = 0;
-  try {
-    number = std::stod(budget, &read);
-  } catch (const std::exception&) {
-    read = 0;
-  }
-  if (unit == std::string::npos || read == 0 || read + 1 != budget.size() || !(number > 0))
+  const std::optional<double> number = number_in(budget.substr(0, budget.size() - 1));
+  if (unit == std::string::npos || !number || !(*number > 0) || !std::isfinite(*number))
     throw InputError(fmt::format("--budget {}: expected a time such as 90s, 30m or 2h", budget));
   constexpr double kSeconds[] = {1, 60, 3600};
-  return number * kSeconds[unit];
+  return *number * kSeconds[unit];
 }
 
 /// Whether the word names a recording, not a suite.

@@ -38,6 +38,8 @@ std::string latex_character(char32_t c, std::string_view bytes) {
   return is_letter ? std::string(bytes) : fmt::format("[U+{:04X}]", static_cast<unsigned>(c));
 }
 
+}  // namespace
+
 std::string latex_cell(std::string_view text) {
   std::string safe;
   while (!text.empty()) {
@@ -57,6 +59,9 @@ std::string latex_cell(std::string_view text) {
 }
 
 /// "& ATE m & RPE m/fr": the headings of a trajectory's figures in an overview.
+
+namespace {
+
 std::string latex_trajectory_headings() {
   std::string text;
   for (const std::string& heading : trajectory_headings()) text += " & " + latex_cell(heading);

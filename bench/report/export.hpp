@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "bench/store/store.hpp"
 
@@ -16,5 +17,7 @@ std::string export_csv(const Store& store);
 std::string export_json(const Store& store);
 /// A table for the booktabs package, one line per row of the results.
 std::string export_latex(const Store& store);
+/// A text as LaTeX source.
+std::string latex_cell(std::string_view text);
 
 }  // namespace mh

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/report/export.hpp"
 #include "bench/report/text_table.hpp"
 #include "slam/io/counted.hpp"
 
@@ -26,10 +27,7 @@ const StressCurve* curve_of(const StressResults& results, std::size_t dial, std:
 
 /// The dose at a share of the range, as shown; not rounded to what a whole dial takes.
 double shown_at(const StressDial& dial, double share) {
-  const double dose = dial.scale == DoseScale::kLog
-                          ? dial.from * std::pow(dial.to / dial.from, share)
-                          : dial.from + share * (dial.to - dial.from);
-  return shown_dose(dial, dose);
+  return shown_dose(dial, exact_dose_at(dial, share));
 }
 
 std::string figure(double value) {
@@ -64,8 +62,7 @@ std::optional<BreakingRatio> ratio_of(const Suite& suite, const StressResults& r
   if (first == nullptr || second == nullptr || !first->error.empty() || !second->error.empty())
     return std::nullopt;
   const StressDial& of = suite.stress->dials[dial];
-  const double factor =
-      of.scale == DoseScale::kLog ? std::max(of.to / of.from, of.from / of.to) : 0;
+  const double factor = of.scale == DoseScale::kLog ? factor_of(of) : 0;
   return compare_breaking(doses_of(*first), doses_of(*second), suite.stress->bar, suite.seed,
                           factor);
 }
@@ -131,18 +128,7 @@ std::string notes(const Suite& suite, const StressResults& results) {
 /// the factors.
 double times_usual(const StressDial& dial, double at) {
   const double usual = share_of(dial, *dial.usual);
-  return dial.scale == DoseScale::kLog
-             ? std::pow(std::max(dial.to / dial.from, dial.from / dial.to), at - usual)
-             : at / usual;
-}
-
-std::string in_latex(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (std::string("&%$#_{}").find(c) != std::string::npos) out += '\\';
-    out += c;
-  }
-  return out;
+  return dial.scale == DoseScale::kLog ? std::pow(factor_of(dial), at - usual) : at / usual;
 }
 
 std::string in_html(const std::string& text) {
@@ -170,7 +156,7 @@ std::string stress_latex(const Suite& suite, const StressResults& results) {
   std::string text =
       fmt::format("\\begin{{tabular}}{{ll{}}}\n\\hline\n", std::string(names.size() - 2, 'r'));
   const auto line = [&](const std::vector<std::string>& cells) {
-    for (std::size_t c = 0; c < cells.size(); ++c) text += (c ? " & " : "") + in_latex(cells[c]);
+    for (std::size_t c = 0; c < cells.size(); ++c) text += (c ? " & " : "") + latex_cell(cells[c]);
     text += " \\\\\n";
   };
   line(names);

@@ -21,9 +21,7 @@ double sum(const std::vector<double>& values) {
 /// Draws rooms with replacement.
 std::vector<std::size_t> draw_rooms(std::size_t rooms, RandomStream stream) {
   std::vector<std::size_t> drawn(rooms);
-  for (std::size_t r = 0; r < rooms; ++r)
-    drawn[r] = std::min(rooms - 1,
-                        static_cast<std::size_t>(stream.uniform(r) * static_cast<double>(rooms)));
+  for (std::size_t r = 0; r < rooms; ++r) drawn[r] = stream.below(r, rooms);
   return drawn;
 }
 

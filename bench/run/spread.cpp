@@ -91,9 +91,8 @@ std::vector<Spread> find_spread(const Suite& suite, const SuiteOverrides& overri
         const RunResult* made = run_of(at_doses, environment.name, system.name, level_name(level));
         if (made == nullptr) continue;
         const bool back = change.dial == "feed.backward";
-        const Trajectory& truth = base->truth;
         const std::vector<MappedFrame>& calls = base->mapping.calls;
-        Stamp first_ns = truth.empty() ? 0 : truth.front().stamp_ns, last_ns = first_ns;
+        Stamp first_ns = 0, last_ns = 0;
         if (!calls.empty()) {
           const auto [low, high] = std::ranges::minmax(calls, {}, &MappedFrame::stamp_ns);
           first_ns = low.stamp_ns;

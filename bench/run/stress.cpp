@@ -117,30 +117,33 @@ StressResults find_breaking_points(const Suite& suite, const RunAtDose& run,
            std::chrono::duration<double>(Clock::now() - start).count() > options.budget_s;
   };
   StressResults results;
-  std::vector<std::string> fails(suite.systems.size());  // why a system fails without any fault
+  std::vector<StressedAt> clean;  // without any fault, by system: the same for every dial
   for (std::size_t d = 0; d < spec.dials.size() && !is_late(); ++d) {
     const StressDial& dial = spec.dials[d];
     std::vector<Search> searches(suite.systems.size());
-    const auto run_at = [&](const std::vector<std::size_t>& systems, double dose, bool is_fault) {
+    const auto run_at = [&](const std::vector<std::size_t>& systems, double dose) {
       options.step(static_cast<double>(d) / static_cast<double>(spec.dials.size()),
                    fmt::format("{} {:.4g} {}", dial.name, shown_dose(dial, dose), dial.unit));
-      const std::vector<StressedAt> made = run(systems, dial, dose, is_fault);
+      const std::vector<StressedAt> made = run(systems, dial, dose, true);
       for (std::size_t k = 0; k < systems.size(); ++k) searches[systems[k]].add(made[k]);
     };
     std::vector<std::size_t> standing(suite.systems.size());
     std::iota(standing.begin(), standing.end(), std::size_t{0});
-    std::erase_if(standing, [&](std::size_t s) {
-      searches[s].curve.error = fails[s];
-      return !fails[s].empty();
-    });
-    if (!standing.empty()) run_at(standing, dial.from, false);
-    for (const std::size_t s : standing) fails[s] = searches[s].curve.error;
+    if (clean.empty()) {
+      options.step(0, "without a fault");
+      clean = run(standing, dial, dial.from, false);
+    }
+    for (const std::size_t s : standing) {
+      StressedAt at = clean[s];
+      at.dose = dial.from;
+      searches[s].add(std::move(at));
+    }
     std::erase_if(standing, [&](std::size_t s) {
       Search& search = searches[s];
       if (!search.done) search.bar = spec.bar * search.curve.doses.front().result.share();
       return search.done || search.bar <= 0;
     });
-    if (!standing.empty()) run_at(standing, dial.to, true);
+    if (!standing.empty()) run_at(standing, dial.to);
     std::erase_if(standing, [&](std::size_t s) {
       return searches[s].done || searches[s].curve.doses.back().result.share() >= searches[s].bar;
     });
@@ -159,7 +162,7 @@ StressResults find_breaking_points(const Suite& suite, const RunAtDose& run,
         return false;
       });
       for (const auto& [dose, systems] : next) {
-        run_at(systems, dose, true);
+        run_at(systems, dose);
         for (const std::size_t s : systems) {
           Search& search = searches[s];
           if (search.done) continue;

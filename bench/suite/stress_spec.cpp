@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/suite/stress_spec.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "sim/sensors/dose.hpp"
 #include "slam/io/settings_io.hpp"
-#include "slam/io/suggest.hpp"
 
 namespace mh {
 namespace {
@@ -18,13 +18,12 @@ StressDial read_dial(const std::string& name, YamlReader node) {
   dial.dial = dial.name = name;
   MappingReader reader(node);
   fields(dial, reader);
-  for (const auto& [key, dose] : {std::pair("from", dial.from), std::pair("to", dial.to)}) {
-    const SettingRange range = facts_of_dial(name).range;
-    if (!allows(range, dose))
-      node.at(node.has(key) ? key : "to")
-          .fail(fmt::format("{} is outside {}", dose, interval(range)));
-  }
   const DialFacts facts = facts_of_dial(name);
+  for (const auto& [key, dose] : {std::pair("from", dial.from), std::pair("to", dial.to)}) {
+    if (!allows(facts.range, dose))
+      node.at(node.has(key) ? key : "to")
+          .fail(fmt::format("{} is outside {}", dose, interval(facts.range)));
+  }
   if (facts.whole && (dial.from != std::floor(dial.from) || dial.to != std::floor(dial.to)))
     node.fail("takes whole numbers only");
   if (dial.times == 0) node.at("times").fail("0 would show every dose as the same");
@@ -53,10 +52,13 @@ StressSpec read_stress(YamlReader node) {
   return spec;
 }
 
+double exact_dose_at(const StressDial& dial, double share) {
+  return dial.scale == DoseScale::kLog ? dial.from * std::pow(dial.to / dial.from, share)
+                                       : dial.from + share * (dial.to - dial.from);
+}
+
 double dose_at(const StressDial& dial, double share) {
-  const double dose = dial.scale == DoseScale::kLog
-                          ? dial.from * std::pow(dial.to / dial.from, share)
-                          : dial.from + share * (dial.to - dial.from);
+  const double dose = exact_dose_at(dial, share);
   if (facts_of_dial(dial.dial).whole) return std::round(dose);
   // Four digits, so that a dose reads well and is what was run.
   if (dose == 0) return 0;
@@ -67,6 +69,10 @@ double dose_at(const StressDial& dial, double share) {
 double share_of(const StressDial& dial, double dose) {
   return dial.scale == DoseScale::kLog ? std::log(dose / dial.from) / std::log(dial.to / dial.from)
                                        : (dose - dial.from) / (dial.to - dial.from);
+}
+
+double factor_of(const StressDial& dial) {
+  return std::max(dial.to / dial.from, dial.from / dial.to);
 }
 
 double shown_dose(const StressDial& dial, double dose) {

@@ -81,10 +81,14 @@ void fields(S& s, Visit& v) {
 /// Reads the section. @throws InputError naming file, line, field and value.
 StressSpec read_stress(YamlReader node);
 
-/// The dose at a share of a dial's range: `from` at 0, `to` at 1. Whole dials are rounded.
+/// The dose at a share of a dial's range: `from` at 0, `to` at 1.
+double exact_dose_at(const StressDial& dial, double share);
+/// The same rounded, as it is run: to whole numbers for whole dials, to four digits for others.
 double dose_at(const StressDial& dial, double share);
 /// The inverse of dose_at(), without the rounding.
 double share_of(const StressDial& dial, double dose);
+/// The factor between no fault and the strongest dose, at least 1. @pre the scale is kLog
+double factor_of(const StressDial& dial);
 /// A dose as people say it: "180 deg/s"
 double shown_dose(const StressDial& dial, double dose);
 

@@ -354,7 +354,7 @@ void fields(C& c, Visit& v) {
     "share of patches of 16 x 16 px without depth, others in each frame");
 }
 
-/// How frames are delivered. See feed_faults.hpp.
+/// How frames are delivered. See sim/simulation/faulty_sequence.hpp.
 struct FeedConfig {
   bool enabled = false;
   int keep_every = 1;

@@ -102,7 +102,6 @@ SensorConfig effective(SensorConfig level) {
       section.enabled = false;
     }
   };
-  const auto is_bent = [](const Distortion& lens) { return !lens.none(); };
   drop(level.depth_noise, true);
   drop(level.color_noise, level.color_noise.sigma > 0);
   drop(level.shot_noise, true);
@@ -110,7 +109,7 @@ SensorConfig effective(SensorConfig level) {
   drop(level.vignetting, level.vignetting.strength > 0);
   drop(level.lens_blur, level.lens_blur.sigma_px > 0);
   drop(level.processing, level.processing.contrast > 0 || level.processing.sharpening > 0);
-  drop(level.lens_distortion, is_bent(level.lens_distortion.lens));
+  drop(level.lens_distortion, !level.lens_distortion.lens.none());
   drop(level.motion_blur, level.motion_blur.exposure_ms > 0);
   drop(level.rolling_shutter, level.rolling_shutter.readout_ms > 0);
   drop(level.depth_offset, level.depth_offset.offset_ms != 0);

@@ -31,8 +31,13 @@ Grid2d<float> light_through(const LensDirtConfig& config, int width_px, int heig
                y0 = static_cast<float>(draws.uniform(3 * k + 1) * height_px),
                radius = static_cast<float>(
                    (kSmallest + draws.uniform(3 * k + 2) * (kLargest - kSmallest)) * width_px);
-    for (int y = 0; y < height_px && behind < wanted; ++y)
-      for (int x = 0; x < width_px && behind < wanted; ++x) {
+    const float reach = (1 + kSoft / 2) * radius;  // nothing of the spot is beyond
+    const int left = std::max(0, static_cast<int>(x0 - reach)),
+              right = std::min(width_px, static_cast<int>(x0 + reach) + 2),
+              top = std::max(0, static_cast<int>(y0 - reach)),
+              bottom = std::min(height_px, static_cast<int>(y0 + reach) + 2);
+    for (int y = top; y < bottom && behind < wanted; ++y)
+      for (int x = left; x < right && behind < wanted; ++x) {
         const float w =
             weight(std::hypot(static_cast<float>(x) - x0, static_cast<float>(y) - y0), radius);
         float& spot = spots(x, y);

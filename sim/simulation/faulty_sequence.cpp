@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scenes/recordings/nearest_stamp.hpp"
 #include "sim/sensors/lens.hpp"
 #include "sim/sensors/sense.hpp"
 #include "sim/sensors/shutter.hpp"
@@ -114,18 +115,12 @@ class FaultyFeed : public Sequence {
     const Trajectory* poses = frames_->truth();
     if (poses == nullptr) return;
     truth_.emplace();
-    constexpr Stamp kNear_ns = 20'000'000;
-    for (std::size_t i = 0; i < order_.size(); ++i) {
-      const Stamp right_ns = frames_->stamp_ns(order_[i]);
-      const auto after = std::ranges::lower_bound(*poses, right_ns, {}, &TimedPose::stamp_ns);
-      auto nearest = after;
-      if (after != poses->begin() &&
-          (after == poses->end() ||
-           right_ns - std::prev(after)->stamp_ns < after->stamp_ns - right_ns))
-        nearest = std::prev(after);
-      if (nearest != poses->end() && std::abs(nearest->stamp_ns - right_ns) <= kNear_ns)
-        truth_->push_back({stamps_[i], nearest->world_from_camera});
-    }
+    std::vector<Stamp> known_ns;
+    for (const TimedPose& pose : *poses) known_ns.push_back(pose.stamp_ns);
+    const StampIndex known(known_ns);
+    for (std::size_t i = 0; i < order_.size(); ++i)
+      if (const auto nearest = known.nearest(frames_->stamp_ns(order_[i])))
+        truth_->push_back({stamps_[i], (*poses)[*nearest].world_from_camera});
   }
 
   std::shared_ptr<const Sequence> frames_;

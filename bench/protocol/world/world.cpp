@@ -152,7 +152,7 @@ World open_recordings(const RunSpec& spec) {
   World world;
   const SensorConfig level =
       with_doses(spec.level.is_file() ? noted(world.inputs, "level", spec.level.file,
-                                              [&] { return sensors_at({.file = spec.level.file}); })
+                                              [&] { return load_sensor_config(spec.level.file); })
                                       : exact_sensors(),
                  spec.level.doses);
   const auto open = [&](const char* name, const std::string& sequence) {
@@ -241,7 +241,7 @@ World build(const RunSpec& spec, int threads, const Cache& cache, const Say& say
   place.robot = input("robot", environment.robot, [&] { return load_robot(environment.robot); });
   world.vocabulary = load_vocabulary(spec, world);
   place.sensors =
-      input("level", spec.level.file, [&] { return sensors_at({.file = spec.level.file}); });
+      input("level", spec.level.file, [&] { return load_sensor_config(spec.level.file); });
   if (environment.sensors)
     place.sensors = input("sensors", *environment.sensors,
                           [&] { return load_sensor_config(*environment.sensors); });

@@ -9,26 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "slam/io/error.hpp"
+#include "tests/slam/core/kept_frames.hpp"
 
 namespace mh {
 namespace {
-
-/// Frames in memory, with ground truth for some of them.
-class Recorded : public Sequence {
- public:
-  Recorded(std::vector<RgbdFrame> frames, const Camera& camera, Trajectory truth)
-      : frames_(std::move(frames)), camera_(camera), truth_(std::move(truth)) {}
-  const Camera& camera() const override { return camera_; }
-  std::size_t size() const override { return frames_.size(); }
-  Stamp stamp_ns(std::size_t i) const override { return frames_[i].stamp_ns; }
-  RgbdFrame frame(std::size_t i, RandomStream) const override { return frames_[i]; }
-  const Trajectory* truth() const override { return &truth_; }
-
- private:
-  std::vector<RgbdFrame> frames_;
-  Camera camera_;
-  Trajectory truth_;
-};
 
 constexpr Stamp kSecond_ns = 1'000'000'000;
 
@@ -48,11 +32,11 @@ RgbdFrame blocks(const Camera& camera, int right_px, float depth_m, Stamp stamp_
   return frame;
 }
 
-std::unique_ptr<Recorded> recorded(Trajectory truth) {
+std::unique_ptr<KeptFrames> recorded(Trajectory truth) {
   const Camera camera;
   std::vector<RgbdFrame> frames;
   for (int i = 0; i < 4; ++i) frames.push_back(blocks(camera, 0, 2, i * kSecond_ns));
-  return std::make_unique<Recorded>(std::move(frames), camera, std::move(truth));
+  return std::make_unique<KeptFrames>(std::move(frames), camera, std::move(truth));
 }
 
 TEST(PosedFrames, AreThoseWithATruePoseInTheFrameOfTheScene) {
@@ -104,7 +88,7 @@ TEST(CompareTwins, AnEqualTwinAgreesAndADisplacedOneDoesNot) {
   const auto twin_of = [&](int right_px, float depth_m) {
     std::vector<RgbdFrame> frames;
     for (int i = 0; i < 4; ++i) frames.push_back(blocks(camera, right_px, depth_m, i * kSecond_ns));
-    return Recorded(std::move(frames), camera, {});
+    return KeptFrames(std::move(frames), camera, {});
   };
   const auto equal = compare_twins(*real, twin_of(0, 2), {}, 2);
   ASSERT_EQ(equal.size(), 2U);
